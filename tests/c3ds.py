@@ -24,9 +24,11 @@ def _numbers(code: str, values, order: str) -> bytes:
 
 def _texts(values) -> bytes:
     width = max(map(len, values))
-    return struct.pack("bB", -1, 2) + bytes([width, len(values)]) + "".join(
-        value.ljust(width) for value in values
-    ).encode()  # fmt: skip
+    return (
+        struct.pack("bB", -1, 2)
+        + bytes([width, len(values)])
+        + "".join(value.ljust(width) for value in values).encode()
+    )
 
 
 def c3d_bytes(swim, bodies=("BlueROV2",), unit="mm", order="<", rotations=True) -> bytes:

@@ -12,10 +12,12 @@ from urllib.request import urlopen
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 FLAGS = (
-    "--no-sandbox", "--disable-background-networking",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader",  # three dimensions without a GPU
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",  # three dimensions without a GPU
     "--disable-gpu-compositing",  # all else straight into memory: a third of the browser's time
-)  # fmt: skip
+)
 SLOW_DRAWING = "GL Driver Message (OpenGL, Performance"  # of these flags: no user has them
 DESK, PHONE = (1280, 720), (390, 844)
 PICTURES = os.environ.get("ROVSIM_SCREENSHOTS")  # a folder: `make screenshots`

@@ -26,9 +26,12 @@ PROGRAMS = r"rovsim|snakemake|mlflow|python -m rovsim\S*|gz"
 INDENTED = re.compile(rf"(?:^    (?:(?:{PROGRAMS}) .*)\n)+", re.MULTILINE)
 INLINE = re.compile(r"`((?:rovsim|snakemake|mlflow) [^`]*)`")
 OWN = {  # what a page calls by a name of its own, and what it is here
-    "FILE…": '"my recordings"/*', "FOLDER": '"my recordings"', "model=FILE": "model=NEW.yaml",
-    "[a,b]": "[linear_damping,quadratic_damping]", "effect.parameter": "quadratic_damping.surge",
-}  # fmt: skip
+    "FILE…": '"my recordings"/*',
+    "FOLDER": '"my recordings"',
+    "model=FILE": "model=NEW.yaml",
+    "[a,b]": "[linear_damping,quadratic_damping]",
+    "effect.parameter": "quadratic_damping.surge",
+}
 COPIES = ("paper.yaml", "mine.yaml", "model.yaml", "repaired.yaml")
 LEFT_OUT = {  # begins with: why it is not run
     "make": "has a test or a page of its own",
@@ -38,13 +41,13 @@ LEFT_OUT = {  # begins with: why it is not run
     "snakemake -s workflow/blind.smk": "takes hours; tests/workflow/test_blind_workflow.py",
     "snakemake --profile workflow/profiles/slurm": "needs Slurm; make test-slurm",
     "rovsim train -m campaign=DIR residual=gp control=3dof,6dof hydra": "needs Slurm",
-    "snakemake --cores 2 --config overrides=\"+experiment=kth": "needs the thesis' recordings",
+    'snakemake --cores 2 --config overrides="+experiment=kth': "needs the thesis' recordings",
     "pip install psycopg2": "needs a package index",
     "createdb": "needs PostgreSQL",
     "mlflow server": "needs PostgreSQL",
     "rovsim add 'effects": "names an option alone",
     "rovsim completion fish": "tests/contracts/test_completion.py",
-}  # fmt: skip
+}
 TESTED = {  # pages whose files a test writes
     "docs/tutorial_equation.md": "tests/workflow/test_tutorial_equation.py",
 }
@@ -104,18 +107,27 @@ def run(line: str, folder: Path) -> str:
     if line.startswith(("rovsim ui", "mlflow ui")):
         return serve(words, folder, known, 8501 if line.startswith("rovsim") else 5000)
     done = subprocess.run(
-        words, cwd=folder, env=known, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT, text=True,
-    )  # fmt: skip
+        words,
+        cwd=folder,
+        env=known,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
     return done.stdout if done.returncode else ""
 
 
 def serve(words: list[str], folder: Path, known: dict[str, str], port: int) -> str:
     """Start what serves, and end it once it answers."""
     process = subprocess.Popen(
-        words, cwd=folder, env={**known, "BROWSER": "true"}, start_new_session=True,
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-    )  # fmt: skip
+        words,
+        cwd=folder,
+        env={**known, "BROWSER": "true"},
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     try:
         begun = time.monotonic()
         while time.monotonic() - begun < PATIENCE:

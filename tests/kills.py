@@ -28,18 +28,32 @@ ASKED = 3  # of its cases; the others are said to have been answered, which save
 ROVSIM = [sys.executable, "-m", "rovsim"]
 WORKS = {
     "study": [
-        sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"),
-        "--workflow-profile", str(ROOT / "profiles/default"), "--quiet", "all",
-        "--config", f"overrides={SMALL}",
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--snakefile",
+        str(ROOT / "Snakefile"),
+        "--workflow-profile",
+        str(ROOT / "profiles/default"),
+        "--quiet",
+        "all",
+        "--config",
+        f"overrides={SMALL}",
     ],
     "diagnose": [*ROVSIM, "diagnose", "campaign=raw", "out=results"],
     "compare": [*ROVSIM, "compare", "campaign=raw", "out=results"],
     "train": [*ROVSIM, "train", "campaign=raw", "residual=knn", "out=results"],
-    "sweep": [*ROVSIM, "train", "-m", "campaign=raw", "residual=knn", "residual.k=5,9,15",
+    "sweep": [
+        *ROVSIM,
+        "train",
+        "-m",
+        "campaign=raw",
+        "residual=knn",
+        "residual.k=5,9,15",
         "hydra.sweep.dir=results/sweep",
     ],
     "blind": [*ROVSIM, "blind", *SUITE, "blind.page=results/page.md", "out=results"],
-}  # fmt: skip
+}
 
 
 TOOK = re.compile(rb'"(cpu_)?seconds(_95)?": [0-9.e+-]+')  # how long an answer of `blind` took
@@ -48,8 +62,10 @@ TOOK = re.compile(rb'"(cpu_)?seconds(_95)?": [0-9.e+-]+')  # how long an answer 
 def start(command: list[str], folder: Path, log: str = "log.txt") -> subprocess.Popen:
     """A command in a process group of its own, so that all it started can be killed with it."""
     environment = os.environ | {
-        "PYTHONPATH": str(ROOT / "src"), "PYTHONHASHSEED": "0", "SOURCE_DATE_EPOCH": "0"
-    }  # fmt: skip
+        "PYTHONPATH": str(ROOT / "src"),
+        "PYTHONHASHSEED": "0",
+        "SOURCE_DATE_EPOCH": "0",
+    }
     with (folder / log).open("ab") as said:
         return subprocess.Popen(
             command, cwd=folder, env=environment, stdout=said, stderr=said, start_new_session=True
@@ -87,9 +103,16 @@ def answer_most(out: Path) -> None:
     for job in asked[ASKED:]:
         for method, path, mark in job.methods:
             KeptAnswer(
-                digest=mark, method=method.name, case=job.case, redrawn=False, seconds=0.0,
-                cpu_seconds=0.0, diagnosis=None, bands=None, error="left out here",
-            ).write(path)  # fmt: skip
+                digest=mark,
+                method=method.name,
+                case=job.case,
+                redrawn=False,
+                seconds=0.0,
+                cpu_seconds=0.0,
+                diagnosis=None,
+                bands=None,
+                error="left out here",
+            ).write(path)
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -140,8 +163,10 @@ def main() -> None:
     scratch = Path(tempfile.mkdtemp(prefix="kills-"))
     subprocess.run(
         [*ROVSIM, "tank", "tank=tiny", f"out={scratch / 'raw'}"],
-        check=True, stdout=subprocess.DEVNULL, env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-    )  # fmt: skip
+        check=True,
+        stdout=subprocess.DEVNULL,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
+    )
     wrong = sum(disturb(work, kills, scratch)[1] for work in works)
     shutil.rmtree(scratch) if not wrong else print(f"left in {scratch}")
     sys.exit(bool(wrong))

@@ -24,8 +24,9 @@ class Dataflash:
         kind = kind or len(self.kinds) + 1
         length = 89 if kind == 128 else 3 + struct.calcsize("<" + "".join(CODES[c] for c in codes))
         self.kinds[name] = kind, codes
-        row = struct.pack("<BB4s16s64s", kind, length, name.encode(), codes.encode(),
-                          ",".join(columns).encode())  # fmt: skip
+        row = struct.pack(
+            "<BB4s16s64s", kind, length, name.encode(), codes.encode(), ",".join(columns).encode()
+        )
         self.raw += b"\xa3\x95\x80" + row
 
     def add(self, name, *values):

@@ -55,10 +55,18 @@ def _elementwise(operator):
 
 
 for _name, _operator in {
-    "__add__": np.add, "__radd__": np.add, "__sub__": np.subtract, "__matmul__": np.multiply,
-    "__rsub__": lambda a, b: b - a, "__mod__": np.divide, "__truediv__": np.divide,
-    "__pow__": np.power, "__gt__": np.greater, "__lt__": np.less, "__ge__": np.greater_equal,
-}.items():  # fmt: skip
+    "__add__": np.add,
+    "__radd__": np.add,
+    "__sub__": np.subtract,
+    "__matmul__": np.multiply,
+    "__rsub__": lambda a, b: b - a,
+    "__mod__": np.divide,
+    "__truediv__": np.divide,
+    "__pow__": np.power,
+    "__gt__": np.greater,
+    "__lt__": np.less,
+    "__ge__": np.greater_equal,
+}.items():
     setattr(Matrix, _name, _elementwise(_operator))
 
 END = object()
@@ -89,13 +97,21 @@ def diag(value):
 
 
 KNOWN = {
-    "built": built, "span": slice, "END": END, "diag": diag,
-    "eye": lambda n: Matrix(np.eye(int(n))), "zeros": lambda *n: Matrix(np.zeros(n)),
-    "inv": lambda m: Matrix(np.linalg.inv(m.a)), "norm": lambda m: float(np.linalg.norm(m.a)),
-    "length": lambda m: max(m.a.shape), "atan2": each(np.arctan2), "min": min, "max": max,
+    "built": built,
+    "span": slice,
+    "END": END,
+    "diag": diag,
+    "eye": lambda n: Matrix(np.eye(int(n))),
+    "zeros": lambda *n: Matrix(np.zeros(n)),
+    "inv": lambda m: Matrix(np.linalg.inv(m.a)),
+    "norm": lambda m: float(np.linalg.norm(m.a)),
+    "length": lambda m: max(m.a.shape),
+    "atan2": each(np.arctan2),
+    "min": min,
+    "max": max,
     "interp1": lambda x, y, c: float(np.interp(c, x.a[0], y.a[0])),
     **{name: each(getattr(np, name)) for name in ("abs", "cos", "sin", "tanh", "sign")},
-}  # fmt: skip
+}
 
 
 def functions(text):

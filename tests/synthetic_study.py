@@ -32,9 +32,11 @@ RUNS = {"3dof-1": "train", "6dof-1": "train", "3dof-2": "test", "6dof-2": "test"
 
 
 def study(
-    models: tuple[str, ...] = MODELS, runs: dict[str, str] = RUNS, duration: float = 40.0,
+    models: tuple[str, ...] = MODELS,
+    runs: dict[str, str] = RUNS,
+    duration: float = 40.0,
     seed: int = 0,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Everything a figure may ask for by argument name; the caller's own to change."""
     return deepcopy(_study(models, tuple(runs.items()), duration, seed))
 
@@ -80,8 +82,10 @@ def published_errors(comparison: dict[str, Any], runs: list[str], seed: int) -> 
 
     theirs = [
         Published(run, "12 features", model, axis, errors())
-        for run in runs for model in ("zero_shot", "knn", "svgp") for axis in AXES
-    ]  # fmt: skip
+        for run in runs
+        for model in ("zero_shot", "knn", "svgp")
+        for axis in AXES
+    ]
     moved = {run: dict.fromkeys(AXES, True) | {"roll": False} for run in runs}
     return compare_published(theirs, dict.fromkeys(runs, comparison), moved)
 
@@ -162,9 +166,12 @@ def metrics(level: float, rng: np.random.Generator) -> dict[str, Any]:
         return {a: float(scale * level * rng.uniform(0.7, 1.3)) for a in AXES}
 
     return {
-        "acceleration_rmse": axes(0.12), "velocity_mae": axes(0.04), "velocity_rmse": axes(0.06),
-        "position_rmse_m": 0.1 * level, "attitude_rmse_rad": 0.05 * level,
-    }  # fmt: skip
+        "acceleration_rmse": axes(0.12),
+        "velocity_mae": axes(0.04),
+        "velocity_rmse": axes(0.06),
+        "position_rmse_m": 0.1 * level,
+        "attitude_rmse_rad": 0.05 * level,
+    }
 
 
 def _comparison(models: tuple[str, ...], runs: dict[str, str], rng: Any) -> dict[str, Any]:
@@ -205,10 +212,16 @@ def stats(median: float) -> dict[str, Any]:
     """STATS of one predictor."""
     worst = 9 * median
     return {
-        "points": 2000, "features": 14, "outputs": 6, "calls": 99,
-        "median_us": median, "p99_us": 2 * median, "p999_us": 4 * median, "max_us": worst,
+        "points": 2000,
+        "features": 14,
+        "outputs": 6,
+        "calls": 99,
+        "median_us": median,
+        "p99_us": 2 * median,
+        "p999_us": 4 * median,
+        "max_us": worst,
         "misses": {str(r): int(4 * median > 1e6 / r) * 12 for r in (50, 100, 250, 1000)},
-    }  # fmt: skip
+    }
 
 
 def _timing(models: tuple[str, ...], rng: Any) -> dict[str, Any]:
@@ -241,10 +254,18 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
         "schema": "rovsim.diagnosis/1",
         "verdict": "unexplained",
         "selected": [
-            {"effect": "thruster_lag", "parameters": lag, "error_reduction": 0.42,
-             "probability": 0.97},
-            {"effect": "quadratic_damping", "parameters": drag, "error_reduction": 0.36,
-             "probability": 1.0},
+            {
+                "effect": "thruster_lag",
+                "parameters": lag,
+                "error_reduction": 0.42,
+                "probability": 0.97,
+            },
+            {
+                "effect": "quadratic_damping",
+                "parameters": drag,
+                "error_reduction": 0.36,
+                "probability": 1.0,
+            },
         ],
         "ranking": [
             {"effect": name, "error_reduction": share, "probability": 0.1, "parameters": {}}
@@ -253,7 +274,9 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
         "indistinguishable": [["input_delay", "thruster_lag"]],
         "where": [{"axis": "surge", "condition": "surge speed", "share_of_error": 0.9}],
         "unexplained": {
-            "fraction": 0.2, "significant": True, "hint": "Sway: a push at 24 s.",
+            "fraction": 0.2,
+            "significant": True,
+            "hint": "Sway: a push at 24 s.",
             "disturbance": disturbance(),
         },
         "next_experiment": "Drive steps.",
@@ -266,7 +289,7 @@ def diagnosis(ladder: dict[str, Any]) -> dict[str, Any]:
         "noise": {},
         "base": {"schema": "rovsim.model/1", "vehicle": "bluerov2_heavy", "effects": []},
         "ladder": ladder,
-    }  # fmt: skip
+    }
 
 
 def several_effects() -> Diagnosis:
@@ -278,10 +301,12 @@ def several_effects() -> Diagnosis:
     values = {
         "thruster_lag": lag,
         "thrust_asymmetry": {"ratio": {"value": 0.9, "std": 0.01, "unit": "1"}},
-        "voltage_sag": {"fraction": {"value": 0.1, "std": 0.01, "unit": "1"},
-                        "rate": {"value": 0.002, "std": 0.0001, "unit": "1/s"}},
+        "voltage_sag": {
+            "fraction": {"value": 0.1, "std": 0.01, "unit": "1"},
+            "rate": {"value": 0.002, "std": 0.0001, "unit": "1/s"},
+        },
         "net_buoyancy": {"force": {"value": -3.0, "std": 0.1, "unit": "N"}},
-    }  # fmt: skip
+    }
     selected = [
         {"effect": name, "parameters": given, "error_reduction": 0.2, "probability": 1.0}
         for name, given in values.items()
@@ -294,10 +319,14 @@ def several_effects() -> Diagnosis:
         "thrust_asymmetry": (0.02, 0.97), "input_delay": (0.0, 0.0),
     }  # fmt: skip
     ranking = [
-        {"effect": name, "error_reduction": share, "probability": sure,
-         "parameters": values.get(name, {})}
+        {
+            "effect": name,
+            "error_reduction": share,
+            "probability": sure,
+            "parameters": values.get(name, {}),
+        }
         for name, (share, sure) in alone.items()
-    ]  # fmt: skip
+    ]
     found = diagnosis({"steps": []}) | {"verdict": "missing_effects", "selected": selected}
     return Diagnosis.model_validate(found | {"ranking": ranking, "indistinguishable": []})
 
@@ -322,33 +351,51 @@ def disturbance() -> dict[str, Any]:
         "place_m": [5.1, 1.5, 0.0],
     }
     return {
-        "axes": ["sway"], "rms": {"sway": 0.9}, "band_hz": [0.02, 0.4], "strongest": [push],
+        "axes": ["sway"],
+        "rms": {"sway": 0.9},
+        "band_hz": [0.02, 0.4],
+        "strongest": [push],
         "runs": [run],
         "spectrum": {
-            "frequency_hz": found.frequency.tolist(), "density": found.density.tolist(),
+            "frequency_hz": found.frequency.tolist(),
+            "density": found.density.tolist(),
         },
-    }  # fmt: skip
+    }
 
 
 def _quality(run: str, split: str, rng: Any) -> dict[str, Any]:
     std = 0.5 * rng.uniform(0.0, 1.0, 6)
     gaps = [{"start_s": 12.0, "duration_s": 0.31}, {"start_s": 30.0, "duration_s": 2.5}]
     return {
-        "schema": "rovsim.quality/1", "run": run, "split": split, "control": run[:4],
-        "rate_hz": {"nominal": 100.0, "median": 99.98}, "duration_s": 59.99, "frames": 6000,
-        "not_found": 281, "longest_gap_s": 2.5, "gaps": gaps, "outliers": 7,
+        "schema": "rovsim.quality/1",
+        "run": run,
+        "split": split,
+        "control": run[:4],
+        "rate_hz": {"nominal": 100.0, "median": 99.98},
+        "duration_s": 59.99,
+        "frames": 6000,
+        "not_found": 281,
+        "longest_gap_s": 2.5,
+        "gaps": gaps,
+        "outliers": 7,
         "repairs": {"duplicates": 3, "unsorted": 2, "command_duplicates": 1},
         "commands": {
-            "kind": "thruster", "lines": 3000, "start_s": 0.0, "end_s": 59.98,
-            "median_step_s": 0.02, "longest_step_s": 0.04, "varies": True,
+            "kind": "thruster",
+            "lines": 3000,
+            "start_s": 0.0,
+            "end_s": 59.98,
+            "median_step_s": 0.02,
+            "longest_step_s": 0.04,
+            "varies": True,
         },
         "excitation": {
             a: {"std": float(s), "unit": "m/s" if k < 3 else "rad/s", "excited": bool(s > 0.1)}
             for k, (a, s) in enumerate(zip(AXES, std, strict=True))
         },
-        "noise": {"position_m": 0.0012, "attitude_rad": 0.004}, "unusable": None,
+        "noise": {"position_m": 0.0012, "attitude_rad": 0.004},
+        "unusable": None,
         "remarks": ["The longest gap is 2.50 s; motion across it is not rebuilt."],
-    }  # fmt: skip
+    }
 
 
 def a_lag():

@@ -55,9 +55,13 @@ class Walk:
     def _run(self, line: str, where: Path) -> None:
         prompt = "source .venv/bin/activate && " if (self.clone / ".venv").exists() else ""
         done = subprocess.run(
-            ["bash", "-c", prompt + line], cwd=where, env=self.surroundings,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        )  # fmt: skip
+            ["bash", "-c", prompt + line],
+            cwd=where,
+            env=self.surroundings,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         if done.returncode:
             sys.exit(f"{line}\n{done.stdout}")
 
@@ -139,8 +143,15 @@ def write_own(folder: Path, raw: Path) -> None:
         seen = recording.found
         roll, pitch, yaw = np.degrees(to_euler(recording.attitude[seen])).T
         x, y, z = recording.position[seen].T
-        columns = {"Yaw (deg)": yaw, "Z (m)": z, "Time (s)": recording.time[seen], "X (m)": x,
-                   "Roll (deg)": roll, "Y (m)": y, "Pitch (deg)": pitch}  # fmt: skip
+        columns = {
+            "Yaw (deg)": yaw,
+            "Z (m)": z,
+            "Time (s)": recording.time[seen],
+            "X (m)": x,
+            "Roll (deg)": roll,
+            "Y (m)": y,
+            "Pitch (deg)": pitch,
+        }
         write_csv(folder / f"{run.id} motion.csv", list(columns), np.stack([*columns.values()], 1))
         log = campaign.commands_path(run)
         names = log.read_text(encoding="utf-8").splitlines()[0].split(",")

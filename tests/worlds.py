@@ -59,18 +59,30 @@ def some(cls: type[Effect]) -> Effect:
 
 
 def motion(
-    value: np.ndarray, kind: str = "thruster", seconds: float = 2.0,
-    start: np.ndarray | None = None, site: Site | None = None,
-) -> Motion:  # fmt: skip
+    value: np.ndarray,
+    kind: str = "thruster",
+    seconds: float = 2.0,
+    start: np.ndarray | None = None,
+    site: Site | None = None,
+) -> Motion:
     """A run whose commands (m, c) are spread evenly over its length; measured as standing still."""
     time = np.round(np.arange(0.0, seconds + 1e-9, 0.01), 6)
     state = at_rest() if start is None else start
     rows = np.repeat(state[None], len(time), axis=0)
     commands = Commands(np.linspace(0, seconds, len(value), endpoint=False), value, kind)
     return Motion(
-        RunInfo("r", "6dof", "test"), site or Site.unknown(), time, rows[:, :7], rows[:, 7:],
-        0 * rows[:, 7:], rows[:, 7:], np.ones(len(time), bool), commands, False, float(time[-1]),
-    )  # fmt: skip
+        RunInfo("r", "6dof", "test"),
+        site or Site.unknown(),
+        time,
+        rows[:, :7],
+        rows[:, 7:],
+        0 * rows[:, 7:],
+        rows[:, 7:],
+        np.ones(len(time), bool),
+        commands,
+        False,
+        float(time[-1]),
+    )
 
 
 def tank() -> Site:

@@ -88,12 +88,22 @@ def flight() -> Designed:
     expected = {"odds": {RIVALS[0]: odds}, "std": {f"{RIVALS[0]}.time_constant": std}}
     usual = UsualManoeuvre(**expected, amplitude=(0.5, 0.2), designed_is_better=4.0)
     known = Experiment(
-        seconds=20.0, model="nominal", between=RIVALS, start=Start(x_m=5, y_m=2, z_m=1, yaw_rad=0),
-        manoeuvre="designed", expects=expected, baselines={"zigzag": usual},
+        seconds=20.0,
+        model="nominal",
+        between=RIVALS,
+        start=Start(x_m=5, y_m=2, z_m=1, yaw_rad=0),
+        manoeuvre="designed",
+        expects=expected,
+        baselines={"zigzag": usual},
         keeps=Keeps(nearest_wall_m=0.8, speed_m_s=0.5, turn_rate_rad_s=0.4, tilt_rad=0.1),
-        instructions=("Put the vehicle where it starts.", "Send experiment.csv.",
-                      "By hand, instead of step 2:", "Surge: swing it.", "Leave alone: sway."),
-    )  # fmt: skip
+        instructions=(
+            "Put the vehicle where it starts.",
+            "Send experiment.csv.",
+            "By hand, instead of step 2:",
+            "Surge: swing it.",
+            "Leave alone: sway.",
+        ),
+    )
     time = np.linspace(0.0, 20.0, 101)
     turn = 0.2 * np.pi * time
     path = np.stack(

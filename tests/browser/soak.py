@@ -33,9 +33,10 @@ def workers(pid: int) -> list[int]:
     """Processes that a process started; Python's own tracker of resources is none."""
     found = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     return [
-        int(child) for child in found
+        int(child)
+        for child in found
         if b"resource_tracker" not in Path(f"/proc/{child}/cmdline").read_bytes()
-    ]  # fmt: skip
+    ]
 
 
 def campaigns(folder: Path, count: int) -> list[Path]:

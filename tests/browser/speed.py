@@ -94,10 +94,13 @@ def run(folder: Path) -> dict:
         process.terminate()
         process.wait(20)
     return {
-        "schema": "rovsim.bench_ui/1", "machine": describe_machine(),
-        "first_page_s": summary(pages), "first_curves_s": summary(curves),
-        "slider_to_drawn_ms": summary(moves), "horizon_to_drawn_ms": summary(jumps),
-    }  # fmt: skip
+        "schema": "rovsim.bench_ui/1",
+        "machine": describe_machine(),
+        "first_page_s": summary(pages),
+        "first_curves_s": summary(curves),
+        "slider_to_drawn_ms": summary(moves),
+        "horizon_to_drawn_ms": summary(jumps),
+    }
 
 
 if __name__ == "__main__":

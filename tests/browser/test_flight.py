@@ -23,8 +23,10 @@ def test_a_planned_flight_is_shown_with_what_it_promises_and_what_to_do(tab, pho
         one.page.get_by_role("heading", name="A flight of 20 s").wait_for()
         picture = one.page.get_by_role("img", name="The predicted path")
         assert picture.evaluate("e => e.decode().then(() => e.naturalWidth)") > 500
-        assert one.numbers() == {"thruster_lag.time_constant/now": 0.02,
-                                 "thruster_lag.time_constant/then": 0.005}  # fmt: skip
+        assert one.numbers() == {
+            "thruster_lag.time_constant/now": 0.02,
+            "thruster_lag.time_constant/then": 0.005,
+        }
         assert one.page.get_by_text("over a million").count() == 1
         steps = one.page.locator(".text > div > ol > li, .text > ol > li")
         assert steps.nth(1).inner_text() == "Send experiment.csv."

@@ -77,9 +77,11 @@ def slurm():
     daemons = [
         subprocess.Popen(command)
         for command in (
-            _munge(folder / "munge"), ["slurmctld", "-D"], ["slurmd", "-D"],
+            _munge(folder / "munge"),
+            ["slurmctld", "-D"],
+            ["slurmd", "-D"],
         )
-    ]  # fmt: skip
+    ]
     try:
         _wait(_idle, 300)  # on a machine that may be busy
         yield folder / "completed.txt"
@@ -139,11 +141,25 @@ def preempted(completed: Path) -> bool:
 def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Popen:
     """A workflow over the cluster, which is asked more often than a large one would be."""
     return call(
-        folder, sys.executable, "-m", "snakemake", "--profile", "workflow/profiles/slurm",
-        "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "3",
-        "--seconds-between-status-checks", "3", "--default-resources", "mem_mb=1500", "runtime=60",
-        *words, "--config", f"overrides={overrides}",
-    )  # fmt: skip
+        folder,
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--profile",
+        "workflow/profiles/slurm",
+        "--slurm-status-command",
+        "squeue",
+        "--slurm-init-seconds-before-status-checks",
+        "3",
+        "--seconds-between-status-checks",
+        "3",
+        "--default-resources",
+        "mem_mb=1500",
+        "runtime=60",
+        *words,
+        "--config",
+        f"overrides={overrides}",
+    )
 
 
 @pytest.fixture(scope="module")
@@ -193,11 +209,15 @@ def test_every_run_is_held_out_once(slurm, clone):
 WHOLE = os.environ.get("ROVSIM_SLURM") == "whole"
 RUNS = ("114603", "120945")
 EXPERIMENT = "+experiment=kth_tank_2025"
-CHAPTER = EXPERIMENT if WHOLE else (
-    f"{EXPERIMENT} search.most_seconds=60 search.most_effects=1 search.trials=1 "
-    "folds.residuals=[knn] folds.controls=[all] study.residuals=[knn] study.controls=[6dof] "
-    "study.on_effects=[] timing.calls=50"
-)  # fmt: skip
+CHAPTER = (
+    EXPERIMENT
+    if WHOLE
+    else (
+        f"{EXPERIMENT} search.most_seconds=60 search.most_effects=1 search.trials=1 "
+        "folds.residuals=[knn] folds.controls=[all] study.residuals=[knn] study.controls=[6dof] "
+        "study.on_effects=[] timing.calls=50"
+    )
+)
 
 
 def test_the_thesis_chapter_runs_and_a_preempted_job_is_queued_again(slurm, clone):
@@ -242,10 +262,18 @@ def test_a_sweep_runs_over_submitit(slurm, tmp_path):
     assert call(tmp_path, *rovsim, "tank", "tank=tiny", "out=raw").wait(600) == 0
     before = jobs(slurm, "COMPLETED")
     sweep = call(
-        tmp_path, *rovsim, "train", "-m", "hydra/launcher=submitit_slurm",
-        "hydra.launcher.partition=main", "hydra.launcher.mem_gb=2", "hydra.launcher.timeout_min=20",
-        "campaign=raw", "residual=knn", "residual.k=5,9",
-    )  # fmt: skip
+        tmp_path,
+        *rovsim,
+        "train",
+        "-m",
+        "hydra/launcher=submitit_slurm",
+        "hydra.launcher.partition=main",
+        "hydra.launcher.mem_gb=2",
+        "hydra.launcher.timeout_min=20",
+        "campaign=raw",
+        "residual=knn",
+        "residual.k=5,9",
+    )
     assert sweep.wait(1800) == 0, (tmp_path / "log.txt").read_text()[-3000:]
     _wait(lambda: jobs(slurm, "COMPLETED") >= before + 2)
     assert len(list((tmp_path / "results" / "multirun").rglob("model.yaml"))) == 2

@@ -43,69 +43,95 @@ def unseen(lines):
 QTM = {
     "empty": (lambda lines: [], ["the file is empty", "Export"]),
     "header only": (lambda lines: lines[: COLUMNS + 1], ["no frames", "Export the run again"]),
-    "no column line": (lambda lines: lines[:COLUMNS] + lines[COLUMNS + 1 :],
-                       ["no line of column names", "column header included"]),
-    "wrong body": (replaced("BlueROV2", "BlueROV"),
-                   ["line 9", "no rigid body 'BlueROV2'", "'BlueROV'"]),
+    "no column line": (
+        lambda lines: lines[:COLUMNS] + lines[COLUMNS + 1 :],
+        ["no line of column names", "column header included"],
+    ),
+    "wrong body": (
+        replaced("BlueROV2", "BlueROV"),
+        ["line 9", "no rigid body 'BlueROV2'", "'BlueROV'"],
+    ),
     "missing column": (replaced("Rot[4]", "Extra"), ["line 9", "no column Rot[4]", "BlueROV2"]),
     "no X": (replaced("BlueROV2 X", "BlueROV2"), ["line 9", "no column X", "6D"]),
     "missing rotation": (replaced("Rot[", "Q["), ["no line of column names", "Rot[0]", "6D"]),
-    "3D export": (replaced("DATA_INCLUDED\t6D", "DATA_INCLUDED\t3D"),
-                  ["DATA_INCLUDED", "3D data", "data type 6D"]),
-    "decimal comma": (cell(20, 2, "4737,035"),
-                      ["line 21", "'BlueROV2 X'", "decimal comma", "Export again"]),
+    "3D export": (
+        replaced("DATA_INCLUDED\t6D", "DATA_INCLUDED\t3D"),
+        ["DATA_INCLUDED", "3D data", "data type 6D"],
+    ),
+    "decimal comma": (
+        cell(20, 2, "4737,035"),
+        ["line 21", "'BlueROV2 X'", "decimal comma", "Export again"],
+    ),
     "word": (cell(20, 3, "far"), ["line 21", "column 'Y'", "'far'", "Correct or remove"]),
     "NaN time": (cell(20, 1, "nan"), ["line 21", "column 'Time'", "'nan'", "Correct or remove"]),
     "word as time": (cell(20, 1, "soon"), ["line 21", "column 'Time'", "'soon'", "Correct"]),
     "empty time": (cell(20, 1, ""), ["line 21", "column 'Time'", "cell is empty", "Correct"]),
-    "cut in the middle": (lambda lines: [*lines[:20], lines[20][:40], *lines[21:]],
-                          ["line 21", "stops before", "Export the run again"]),
+    "cut in the middle": (
+        lambda lines: [*lines[:20], lines[20][:40], *lines[21:]],
+        ["line 21", "stops before", "Export the run again"],
+    ),
     "never found": (unseen, ["no frame in which the body was found", "'runs'"]),
     "one time": (lambda lines: [*lines[:10], lines[9]], ["no frames", "Export the run again"]),
     "frequency": (replaced("FREQUENCY\t100", "FREQUENCY\tfast"), ["'fast'", "Correct"]),
-}  # fmt: skip
+}
 CSV = {
     "empty": (lambda lines: [], ["the file is empty", "Export"]),
     "header only": (lambda lines: lines[:1], ["no frames", "Export the run again"]),
-    "no time": (replaced("time_s", "stamp"),
-                ["column names: no column 'time_s'", "Did you mean 'stamp'?", "name it time_s"]),
+    "no time": (
+        replaced("time_s", "stamp"),
+        ["column names: no column 'time_s'", "Did you mean 'stamp'?", "name it time_s"],
+    ),
     "time of pandas": (replaced("time_s", "Unnamed: 0"), ["Did you mean 'Unnamed: 0'?"]),
     "time with a unit": (replaced("time_s", "t [s]"), ["Did you mean 't [s]'?", "name it time_s"]),
     "time without a name": (replaced("time_s", ""), ["Did you mean one without a name (the 1.)?"]),
     "nothing like a time": (replaced("time_s", "when"), ["'when'", "of the times the name time_s"]),
-    "no channel": (lambda lines: ["time_s,t1", "0,1500"],
-                   ["no column of a measured channel", "t1", "Name the columns"]),
-    "some of a quaternion": (replaced("roll_rad,pitch_rad,yaw_rad", "qw,qx,qy"),
-                             ["no column 'qz'", "qw"]),
+    "no channel": (
+        lambda lines: ["time_s,t1", "0,1500"],
+        ["no column of a measured channel", "t1", "Name the columns"],
+    ),
+    "some of a quaternion": (
+        replaced("roll_rad,pitch_rad,yaw_rad", "qw,qx,qy"),
+        ["no column 'qz'", "qw"],
+    ),
     "no unit quaternion": (
-        lambda lines: ["time_s,x_m,y_m,z_m,qw,qx,qy,qz", "0,1,1,1,0,0,0,0", "0.1,1,1,1,1.3,0,0,0",
-                       "0.2,1,1,1,1.3,0,0,0"],
-        ["line 3, columns qw, qx, qy, qz", "length 1.3 (2 of 2 have not length 1)", "divide"]),
+        lambda lines: [
+            "time_s,x_m,y_m,z_m,qw,qx,qy,qz",
+            "0,1,1,1,0,0,0,0",
+            "0.1,1,1,1,1.3,0,0,0",
+            "0.2,1,1,1,1.3,0,0,0",
+        ],
+        ["line 3, columns qw, qx, qy, qz", "length 1.3 (2 of 2 have not length 1)", "divide"],
+    ),
     "nothing measured": (lambda lines: [lines[0], "0,,,,,,", "1,,,,,,"], ["no frame", "'runs'"]),
     "twice": (replaced("y_m", "x_m"), ["two columns are named 'x_m'", "Rename"]),
     "word": (cell(7, 2, "far", ","), ["line 8", "column 'y_m'", "'far'", "Correct"]),
     "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
     "infinite time": (cell(7, 0, "inf", ","), ["line 8", "column 'time_s'", "'inf'", "Correct"]),
-}  # fmt: skip
+}
 MOTIVE = {
     "empty": (lambda lines: [], ["the file is empty", "Export Tracking Data"]),
     "no header": (lambda lines: lines[2:], ["line 1", "Format Version", "header information"]),
     "header only": (lambda lines: lines[:8], ["no frames", "Export the run again"]),
     "no columns": (lambda lines: lines[:3], ["no columns of a rigid body", "version 1.23"]),
     "only markers": (replaced("Rigid Body", "Marker"), ["no columns of a rigid body"]),
-    "an old version": (lambda lines: ["Format Version,1.1,Take Name,x", "", "frameindex,1"],
-                       ["no columns of a rigid body (format version 1.1)"]),
+    "an old version": (
+        lambda lines: ["Format Version,1.1,Take Name,x", "", "frameindex,1"],
+        ["no columns of a rigid body (format version 1.1)"],
+    ),
     "no unit quaternion": (
-        lambda lines: [*lines[:8], *(",".join([*line.split(",")[:2], "0,0,1.3,0", "1,1,1,0"])
-                                     for line in lines[8:])],
-        ["line 9", "a quaternion of length 1.3", "divide"]),
+        lambda lines: [
+            *lines[:8],
+            *(",".join([*line.split(",")[:2], "0,0,1.3,0", "1,1,1,0"]) for line in lines[8:]),
+        ],
+        ["line 9", "a quaternion of length 1.3", "divide"],
+    ),
     "local": (replaced("Global", "Local"), ["line 1", "'Local'", "Global"]),
     "wrong body": (replaced("BlueROV2", "BlueROV"), ["no rigid body 'BlueROV2'", "'BlueROV'"]),
     "inches": (replaced("Millimeters", "Inches"), ["'Inches'", "millimeters"]),
     "another order": (replaced("Quaternion", "XYZ"), ["'XYZ' with 4 columns", "Euler angles"]),
     "no time": (replaced("Time (Seconds)", "Clock"), ["line 8", "no column 'Time (Seconds)'"]),
     "word": (cell(20, 3, "far", ","), ["line 21", "'far'", "Correct"]),
-}  # fmt: skip
+}
 COMMANDS = {
     "empty": (lambda lines: [], ["the file is empty", "Export"]),
     "header only": (lambda lines: lines[:1], ["no commands", "Export the commands again"]),
@@ -113,20 +139,32 @@ COMMANDS = {
     "word": (cell(7, 2, "stop", ","), ["line 8", "column 't2'", "'stop'", "Correct"]),
     "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
     "no time": (cell(0, 0, "stamp", ","), ["no column 'time_s'", "Did you mean 'stamp'?"]),
-    "out of range": (cell(7, 1, "0.3", ","),
-                     ["line 8", "column 't1'", "0.3", "pwm", "commands.kind"]),
-    "percent": (lambda lines: [lines[0], "0,-30,0", "1,100,0"],
-                ["line 2", "(-30 to 100) they may be percent", "divide them by 100"]),
-    "pulses less 1500": (lambda lines: [lines[0], "0,-300,0", "1,220,0"],
-                         ["line 2", "(-300 to 220)", "pulses less 1500 us: add 1500"]),
-    "revolutions": (lambda lines: [lines[0], "0,-900,0", "1,950,0"],
-                    ["(-900 to 950) they may be revolutions per minute", "convert"]),
+    "out of range": (
+        cell(7, 1, "0.3", ","),
+        ["line 8", "column 't1'", "0.3", "pwm", "commands.kind"],
+    ),
+    "percent": (
+        lambda lines: [lines[0], "0,-30,0", "1,100,0"],
+        ["line 2", "(-30 to 100) they may be percent", "divide them by 100"],
+    ),
+    "pulses less 1500": (
+        lambda lines: [lines[0], "0,-300,0", "1,220,0"],
+        ["line 2", "(-300 to 220)", "pulses less 1500 us: add 1500"],
+    ),
+    "revolutions": (
+        lambda lines: [lines[0], "0,-900,0", "1,950,0"],
+        ["(-900 to 950) they may be revolutions per minute", "convert"],
+    ),
     "infinite": (cell(7, 1, "inf", ","), ["line 8", "column 't1'", "inf", "commands.kind"]),
-    "other clock": (lambda lines: [lines[0], "1000.0,1500,1500", "1001.0,1500,1500"],
-                    ["1000 to 1001 s", "clock of the motion capture", "Shift"]),
-    "all empty": (lambda lines: [lines[0], "0,,", "1,,"],
-                  ["no commands (2 lines without a value)", "Export the commands again"]),
-}  # fmt: skip
+    "other clock": (
+        lambda lines: [lines[0], "1000.0,1500,1500", "1001.0,1500,1500"],
+        ["1000 to 1001 s", "clock of the motion capture", "Shift"],
+    ),
+    "all empty": (
+        lambda lines: [lines[0], "0,,", "1,,"],
+        ["no commands (2 lines without a value)", "Export the commands again"],
+    ),
+}
 CASES = [("qtm_tsv", "poses.tsv", case, *QTM[case]) for case in QTM]
 CASES += [("csv", "poses.csv", case, *CSV[case]) for case in CSV]
 CASES += [("motive_csv", "take.csv", case, *MOTIVE[case]) for case in MOTIVE]

@@ -18,9 +18,13 @@ def pairs(rows=150, asked=20):
     X, queries = rng.normal(size=(rows, 12)), rng.normal(size=(asked, 12))
     kinds = np.array(["3dof", "6dof"])
     return Pairs(
-        X, np.tanh(X[:, :6]), kinds[np.arange(rows) % 2], queries, np.tanh(queries[:, :6]),
+        X,
+        np.tanh(X[:, :6]),
+        kinds[np.arange(rows) % 2],
+        queries,
+        np.tanh(queries[:, :6]),
         kinds[np.arange(asked) % 2],
-    )  # fmt: skip
+    )
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +52,12 @@ def test_the_page_shows_the_results(found, tmp_path):
     row = {"points": 5, "median_us": 2.0, "seen": {"mean": 0.5, "worst": 0.6}}
     row |= {"unseen": {"mean": 0.9, "worst": 1.1}}
     bench = Bench(
-        machine="M", scheduling="S", replay={"single_steps_per_s": 2e6}, inference=found,
+        machine="M",
+        scheduling="S",
+        replay={"single_steps_per_s": 2e6},
+        inference=found,
         accuracy=[row | {"name": "gp", "fades": fades} for fades in (False, True)],
-    )  # fmt: skip
+    )
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BEGIN}\n{END}\nafter\n", encoding="utf-8")
     write_page(page, bench)

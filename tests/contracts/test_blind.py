@@ -396,9 +396,13 @@ def test_the_page_gets_its_tables_between_the_marks(tmp_path):
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BEGIN}\nlast year's\n{END}\nafter\n")
     answer = KeptAnswer(
-        digest="", method="diagnosis", case=case(LAG), redrawn=False, seconds=1.5,
+        digest="",
+        method="diagnosis",
+        case=case(LAG),
+        redrawn=False,
+        seconds=1.5,
         diagnosis=diagnosis("thruster_lag"),
-    )  # fmt: skip
+    )
     methods = {"diagnosis": summarize([answer])}
     results = BlindSummary(suite="quick", seeds="reporting", methods=methods)
     for _ in range(2):

@@ -22,8 +22,9 @@ def kept(answer, *hidden, **fields):
     one = Case(id="pair/x/0", kind="pair", seed=3, hidden=hidden)
     return KeptAnswer(
         **{"digest": "", "method": "diagnosis", "case": one, "redrawn": False, "seconds": 2.0}
-        | fields, diagnosis=answer,
-    )  # fmt: skip
+        | fields,
+        diagnosis=answer,
+    )
 
 
 def answers(confidence=1.0, offset=0.0, count=400):
@@ -98,9 +99,10 @@ def test_too_few_values_are_not_judged():
 
 
 def test_false_names_have_no_truth_and_crashes_claim_nothing():
-    wrong = Answer(verdict="missing_effects", selected=[
-        {"effect": "lift", "parameters": {"coefficient": {"value": 3.0, "std": 1.0}}}
-    ])  # fmt: skip
+    wrong = Answer(
+        verdict="missing_effects",
+        selected=[{"effect": "lift", "parameters": {"coefficient": {"value": 3.0, "std": 1.0}}}],
+    )
     assert calibrate([kept(wrong), kept(None, error="ValueError")]).ranks.values == 0
 
 
@@ -113,8 +115,9 @@ def test_a_probability_is_held_against_the_share_of_right_names():
     said = [named(0.99, k < 30) for k in range(40)] + [named(1.0, True) for _ in range(7)]
     found = calibrate([*said, named(None, False), named(None, True)])
     assert [(c.low, c.high, c.names, c.right) for c in found.probability] == [
-        (0.99, 0.999, 40, 30), (0.999, 1.0, 7, 7),
-    ]  # fmt: skip
+        (0.99, 0.999, 40, 30),
+        (0.999, 1.0, 7, 7),
+    ]
     assert found.probability[0].claimed == pytest.approx(0.99)
     nothing = found.without_probability
     assert (nothing.low, nothing.names, nothing.right, nothing.claimed) == (None, 2, 1, None)

@@ -61,9 +61,14 @@ def test_lists_of_models_keep_commas_that_belong_to_files(tmp_path):
 
 @pytest.mark.parametrize(
     ("command", "extra"),
-    [("train", "learn,tracking"), ("ui", "workbench"), ("fmu", "fmi"), ("bench", "benchmark,learn"),
-     ("blind", "benchmark")],
-)  # fmt: skip
+    [
+        ("train", "learn,tracking"),
+        ("ui", "workbench"),
+        ("fmu", "fmi"),
+        ("bench", "benchmark,learn"),
+        ("blind", "benchmark"),
+    ],
+)
 def test_a_command_without_its_extra_says_what_to_install(command, extra, capsys, monkeypatch):
     monkeypatch.setattr(extras, "find_spec", lambda name: None)
     text = failing(capsys, command)
@@ -215,8 +220,12 @@ def test_compare_writes_the_contract(campaign, tmp_path, capsys):
     assert set(run) == {"split", "control", "open_loop", "windows"}
     assert set(run["windows"]) == {"0.5", "2", "5"}
     assert set(run["open_loop"]) == {
-        "acceleration_rmse", "velocity_mae", "velocity_rmse", "position_rmse_m", "attitude_rmse_rad"
-    }  # fmt: skip
+        "acceleration_rmse",
+        "velocity_mae",
+        "velocity_rmse",
+        "position_rmse_m",
+        "attitude_rmse_rad",
+    }
     assert "http" not in (tmp_path / "report.html").read_text().split("<body")[0]
     zero = found["models"]["zero_acceleration"]["runs"]["6dof-2"]["windows"]["2"]
     assert run["windows"]["2"]["velocity_rmse"]["surge"] < zero["velocity_rmse"]["surge"]

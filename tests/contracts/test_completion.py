@@ -120,9 +120,12 @@ _rovsim; printf '<%s>' "${COMPREPLY[@]}"; complete -p rovsim"""
     )
     path = f"{tmp_path}:{os.environ['PATH']}"
     told = subprocess.run(
-        ["bash", "-c", script], capture_output=True, text=True, check=True,
+        ["bash", "-c", script],
+        capture_output=True,
+        text=True,
+        check=True,
         env={**os.environ, "PATH": path},
-    )  # fmt: skip
+    )
     assert told.stdout == "<butterworth >complete -o nospace -F _rovsim rovsim\n"
 
 

@@ -97,12 +97,16 @@ def test_it_takes_any_models(name, models):
 
 
 EMPTY = {
-    "comparison": Comparison(models={}), "growth": Growth(models={}), "ladder": Ladder(steps=()),
-    "timing": Timing(inference={}), "quality": {}, "where": ErrorConditions(models={}),
+    "comparison": Comparison(models={}),
+    "growth": Growth(models={}),
+    "ladder": Ladder(steps=()),
+    "timing": Timing(inference={}),
+    "quality": {},
+    "where": ErrorConditions(models={}),
     "disturbance": None,
     "published_errors": PublishedErrors(runs=(), without_published=(), models={}, cells=()),
     "diagnosis": study()["diagnosis"].model_copy(update={"selected": (), "ranking": ()}),
-}  # fmt: skip
+}
 
 
 @EVERY
@@ -329,12 +333,16 @@ def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects(
     names = ["nominal", "effects", "knn_6dof", "gp_3dof", "effects+knn_6dof", "effects+gp_3dof"]
     known = study()["published_errors"]
     cells = [
-        known.cells[0].model_copy(update={
-            "run": run, "metric": metric,
-            "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"},
-        })
-        for run in "ab" for metric in ("acceleration_rmse", "velocity_mae")
-    ]  # fmt: skip
+        known.cells[0].model_copy(
+            update={
+                "run": run,
+                "metric": metric,
+                "ratios": {n: 1.0 for n in names if "3dof" not in n or run == "b"},
+            }
+        )
+        for run in "ab"
+        for metric in ("acceleration_rmse", "velocity_mae")
+    ]
     models = dict.fromkeys(names, known.models["nominal"])
     found = known.model_copy(update={"models": models, "cells": tuple(cells)})
     figure = drawn("against_published", {"published_errors": found})

@@ -23,9 +23,13 @@ def test_the_unit_moves_as_the_model_does(tmp_path):
     command = sticks(4)[0]
     starts = {f"command_{i + 1}": c for i, c in enumerate(command)} | {"start_z": 1.5}
     found = simulate_fmu(
-        str(unit), stop_time=0.5, step_size=0.01, output_interval=0.01, start_values=starts,
+        str(unit),
+        stop_time=0.5,
+        step_size=0.01,
+        output_interval=0.01,
+        start_values=starts,
         output=["z", "u", "r"],
-    )  # fmt: skip
+    )
     stepper, state = Stepper(world), at_rest()
     state[2] = 1.5
     for row in found[1:]:

@@ -31,8 +31,9 @@ def test_a_folder_is_listed_by_name_and_campaigns_are_known(tmp_path):
     (place / "run.tsv").write_text("x")
     found = look(place)
     assert [(one.path.name, one.campaign) for one in found.inside] == [
-        ("april", False), ("may", True),
-    ]  # fmt: skip
+        ("april", False),
+        ("may", True),
+    ]
     assert (found.files, found.more, found.campaign, found.problem) == (1, 0, False, "")
     assert found.parents[-1] == tmp_path
     assert look(place / "may").campaign

@@ -161,14 +161,20 @@ def test_recordings_elsewhere_stay_there(tmp_path):
         ("run.lvm", b"LabVIEW Measurement\t\nSeparator\tTab\n", "***End_of_Header***"),
         ("bare.csv", b"0.0,1500,1500\n0.1,1510,1500\n", "no line of column names"),
         ("table.csv", b"time_s,colour\n0,red\n1,blue\n", "no measured channel"),
-        ("timeless.csv", b"Unnamed: 0,t1,t2\n0,1500,1500\n1,1510,1600\n",
-         "Did you mean 'Unnamed: 0'? If it holds the times, name it time_s"),
+        (
+            "timeless.csv",
+            b"Unnamed: 0,t1,t2\n0,1500,1500\n1,1510,1600\n",
+            "Did you mean 'Unnamed: 0'? If it holds the times, name it time_s",
+        ),
         ("pwm.csv", "\n".join(command_lines()).encode(), "commands alone (pwm.csv)"),
-        ("euler.csv", b"t,x,y,z,roll,pitch,yaw\n" + b"".join(
-            b"%g,0.1,0.2,%g,0.01,0.02,0.1\n" % (0.1 * k, 0.01 * k) for k in range(40)),
-         "rad or degrees?"),
+        (
+            "euler.csv",
+            b"t,x,y,z,roll,pitch,yaw\n"
+            + b"".join(b"%g,0.1,0.2,%g,0.01,0.02,0.1\n" % (0.1 * k, 0.01 * k) for k in range(40)),
+            "rad or degrees?",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_used_is_one_message_and_nothing_is_written(
     tmp_path, capsys, name, content, said
 ):
@@ -284,9 +290,11 @@ def test_files_whose_names_differ_in_the_sensor_are_one_run(tmp_path, name):
 
 def test_clocks_that_go_on_tell_which_files_are_one_run(tmp_path):
     files = {
-        "a.csv": sensor_lines("depth_m", 1e3), "b.csv": sensor_lines("depth_m", 2e3),
-        "c.csv": sensor_lines("p_rad_s", 2e3), "d.csv": sensor_lines("p_rad_s", 1e3),
-    }  # fmt: skip
+        "a.csv": sensor_lines("depth_m", 1e3),
+        "b.csv": sensor_lines("depth_m", 2e3),
+        "c.csv": sensor_lines("p_rad_s", 2e3),
+        "d.csv": sensor_lines("p_rad_s", 1e3),
+    }
     assert taken_for_runs(tmp_path, files) == [["a.csv", "d.csv"], ["b.csv", "c.csv"]]
 
 
@@ -298,8 +306,9 @@ def test_where_nothing_tells_which_files_are_one_run_init_says_so(tmp_path):
 
 def test_one_name_and_two_clocks_are_told(tmp_path):
     files = {
-        "run1_depth.csv": sensor_lines("depth_m"), "run1_imu.csv": sensor_lines("p_rad_s", 1.7e9),
-    }  # fmt: skip
+        "run1_depth.csv": sensor_lines("depth_m"),
+        "run1_imu.csv": sensor_lines("p_rad_s", 1.7e9),
+    }
     assert taken_for_runs(tmp_path, files) == [[name] for name in files]
     assert "look like one run by their names, but runs from 1700000000" in told(tmp_path)
 
@@ -312,11 +321,14 @@ def told(folder: Path) -> str:
 @pytest.mark.parametrize(
     ("names", "columns", "axes"),
     [
-        (["chan3_raw", "chan4_raw", "chan5_raw"], ["chan5_raw", "-chan3_raw", "chan4_raw"],
-         ["surge", "heave", "yaw"]),
+        (
+            ["chan3_raw", "chan4_raw", "chan5_raw"],
+            ["chan5_raw", "-chan3_raw", "chan4_raw"],
+            ["surge", "heave", "yaw"],
+        ),
         (["surge", "heave", "yaw"], ["surge", "heave", "yaw"], None),
     ],
-)  # fmt: skip
+)
 def test_pulses_of_a_radio_are_demands(tmp_path, names, columns, axes):
     write_poses(tmp_path, "csv", Swim.ned(frames=1200))
     time = np.arange(0.0, 12.0, 0.1)
@@ -370,8 +382,10 @@ def test_percent_beside_poses_and_of_axes_are_told(tmp_path):
 def test_columns_that_nothing_uses_are_named(tmp_path, capsys):
     write_poses(tmp_path, "csv", Swim.ned(frames=1200))
     lines = (tmp_path / "poses.csv").read_text().splitlines()
-    own = [f"{line},{k % 7 if k else 'altitude'},{0.1 * k if k else 'gyro_x'}"
-           for k, line in enumerate(lines)]  # fmt: skip
+    own = [
+        f"{line},{k % 7 if k else 'altitude'},{0.1 * k if k else 'gyro_x'}"
+        for k, line in enumerate(lines)
+    ]
     write_lines(tmp_path / "poses.csv", own)
     write_lines(tmp_path / "poses_commands.csv", command_lines(12.0))
     main(["init", str(tmp_path)])

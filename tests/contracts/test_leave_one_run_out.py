@@ -69,8 +69,12 @@ def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder)
     physics = ["refitted", "effects"]
     assert found.models("one") == [*physics, "knn_6dof", "effects+knn_6dof"]
     assert found.models("two") == [
-        *physics, "knn_3dof", "knn_6dof", "effects+knn_3dof", "effects+knn_6dof"
-    ]  # fmt: skip
+        *physics,
+        "knn_3dof",
+        "knn_6dof",
+        "effects+knn_3dof",
+        "effects+knn_6dof",
+    ]
     assert found.published == folder / "published.csv"
     assert kind("against_published") in found.figures
 
@@ -151,9 +155,12 @@ def snakemake(folder, overrides, **environment):
         (folder / name).symlink_to(ROOT / name)
     command = [sys.executable, "-m", "snakemake", "-n", "--cores", "1", "--config"]
     return subprocess.run(
-        [*command, f"overrides={overrides}"], cwd=folder, capture_output=True, text=True,
+        [*command, f"overrides={overrides}"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
         env=os.environ | {"PYTHONPATH": str(ROOT / "src")} | environment,
-    )  # fmt: skip
+    )
 
 
 def test_the_workflow_says_it_too(tmp_path):

@@ -49,6 +49,8 @@ def test_provenance_has_a_row_for_each_section():
     settings = {"seed": 0, "search": {"draws": 9, "trials": 3}, "signals": {"filter": {"order": 3}}}
     rows = report.list_rows({"code": "abc", "settings": settings})
     assert rows == [
-        ("code", "abc"), ("settings", "seed 0"), ("settings.search", "draws 9; trials 3"),
+        ("code", "abc"),
+        ("settings", "seed 0"),
+        ("settings.search", "draws 9; trials 3"),
         ("settings.signals.filter", "order 3"),
-    ]  # fmt: skip
+    ]

@@ -35,9 +35,10 @@ def modules(package: Path) -> set[str]:
 
 PACKAGES = {str(p.parent.relative_to(SOURCE)): p.parent for p in SOURCE.rglob("__init__.py")}
 MAPS = {
-    name: package for name, package in PACKAGES.items()
+    name: package
+    for name, package in PACKAGES.items()
     if name not in ALIKE and (mapped(package) or len(modules(package)) >= FEW)
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("package", MAPS.values(), ids=MAPS)

@@ -71,9 +71,16 @@ def test_a_proposed_law_is_added_where_its_file_is_named():
         "height": {"value": 0.7, "unit": "m"},
     }
     proposal = Proposal(
-        axis="heave", equation="", file="floor_cushion.py", parameters=own, error_reduction=0.5,
-        effect="floor_cushion", meaning="", terms=(), beside=found.selected[1:],
-    )  # fmt: skip
+        axis="heave",
+        equation="",
+        file="floor_cushion.py",
+        parameters=own,
+        error_reduction=0.5,
+        effect="floor_cushion",
+        meaning="",
+        terms=(),
+        beside=found.selected[1:],
+    )
     left = found.unexplained.model_copy(update={"proposal": proposal})
     found = found.model_copy(update={"unexplained": left})
     source, named = Path("diagnosis.json"), load_catalogue([Path("floor_cushion.py")])

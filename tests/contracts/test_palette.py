@@ -17,15 +17,27 @@ DARK = "#121212"  # --paper of style.css
 SEEN = {
     "all": np.eye(3),
     "no red": np.array(
-        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216],
-         [-0.003882, -0.048116, 1.051998]]),
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
+    ),
     "no green": np.array(
-        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413],
-         [-0.011820, 0.042940, 0.968881]]),
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
+    ),
     "no blue": np.array(
-        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602],
-         [0.004733, 0.691367, 0.303900]]),
-}  # fmt: skip
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
+    ),
+}
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 
 
@@ -58,9 +70,12 @@ def test_a_curve_can_be_seen_on_white_and_on_the_dark_page(name):
 
 @pytest.mark.parametrize(
     "color",
-    [*(one.color for one in (*budget.KNOWN.values(), *budget.ADDED)), *plots.COLORS.values(),
-     *(color for names in plots.SIZES.values() for color in names.values())],
-)  # fmt: skip
+    [
+        *(one.color for one in (*budget.KNOWN.values(), *budget.ADDED)),
+        *plots.COLORS.values(),
+        *(color for names in plots.SIZES.values() for color in names.values()),
+    ],
+)
 def test_other_curves_can_be_seen_too(color):
     assert contrast(color) >= LEAST
 
@@ -76,8 +91,11 @@ def test_parts_and_libraries_of_one_panel_are_told_apart():
 
 
 def test_members_of_a_family_differ_by_dashes_whatever_the_base():
-    for names in (("repaired", "new", "third", "fourth"), ("nominal", "refitted"),
-                  ("knn_6dof", "knn_3dof", "effects+knn_6dof")):  # fmt: skip
+    for names in (
+        ("repaired", "new", "third", "fourth"),
+        ("nominal", "refitted"),
+        ("knn_6dof", "knn_3dof", "effects+knn_6dof"),
+    ):
         dashes = [look.dash for look in looks(names).values()]
         assert len(set(dashes)) == len(names)
 

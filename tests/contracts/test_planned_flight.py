@@ -48,9 +48,13 @@ def test_what_is_done_by_hand_stands_under_the_step_that_it_replaces():
 
 def test_places_and_angles_below_zero_have_a_minus_sign():
     flight = CandidateFlight(
-        np.zeros((1, 6)), 0.0, Commands(np.zeros(1), np.zeros((1, 2)), "demand"), 0.0, None,
+        np.zeros((1, 6)),
+        0.0,
+        Commands(np.zeros(1), np.zeros((1, 2)), "demand"),
+        0.0,
+        None,
         numbers=np.zeros(11),
-    )  # fmt: skip
+    )
     start = Start(x_m=-1.25, y_m=0.5, z_m=-0.001, yaw_rad=np.radians(-112.0))
     where = instruct(flight, np.array([0, 5]), start, FlightLimits())[0]
     assert where.startswith("Put the vehicle to x −1.25 m, y 0.50 m, z 0.00 m in the ")
@@ -63,10 +67,15 @@ def test_units_of_what_it_tells_are_written_as_everywhere():
         "lift.factor": Surer(now=0.5, then=None, unit="1"),
     }
     found = Experiment(
-        seconds=60.0, model="nominal", manoeuvre="designed", expects=Expected(std=std),
-        baselines={}, start=Start(x_m=0.0, y_m=0.0, z_m=1.0, yaw_rad=0.0), instructions=(),
+        seconds=60.0,
+        model="nominal",
+        manoeuvre="designed",
+        expects=Expected(std=std),
+        baselines={},
+        start=Start(x_m=0.0, y_m=0.0, z_m=1.0, yaw_rad=0.0),
+        instructions=(),
         keeps=Keeps(nearest_wall_m=None, speed_m_s=1.0, turn_rate_rad_s=1.0, tilt_rad=0.1),
-    )  # fmt: skip
+    )
     said = tell_experiment(found)
     assert "linear_damping.yaw: ± 0.10 N m s²/rad² (now ± 0.50 N m s²/rad²)" in said
     assert "lift.factor: ± – (now ± 0.50)" in said

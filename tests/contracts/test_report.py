@@ -75,10 +75,15 @@ def _rude(found):
 @pytest.mark.parametrize(
     "latex",
     [
-        r"\text{<img src=x onerror=alert(1)>}", r"\href{javascript:alert(1)}{x}", r"\style{x:y}{z}",
-        r"\frac{a}", "}{", "", r"\color{a\" onload=\"x}{y}",
+        r"\text{<img src=x onerror=alert(1)>}",
+        r"\href{javascript:alert(1)}{x}",
+        r"\style{x:y}{z}",
+        r"\frac{a}",
+        "}{",
+        "",
+        r"\color{a\" onload=\"x}{y}",
     ],
-)  # fmt: skip
+)
 def test_an_equation_is_shown_and_never_run(latex):
     parser = Tags()
     parser.feed(mathml(latex))
@@ -163,9 +168,11 @@ def test_what_nobody_would_argue_about_is_said_once(content):
     rivals = tuple(
         RivalEffect(effect=name, instead_of=instead, deficit=deficit)
         for name, instead, deficit in (
-            ("lift", first, 90.0), ("current", first, 300.0), ("payload", second, 100.0),
+            ("lift", first, 90.0),
+            ("current", first, 300.0),
+            ("payload", second, 100.0),
         )
-    )  # fmt: skip
+    )
     said = apart_sentences(found.model_copy(update={"rivals": rivals, "indistinguishable": ()}))
     told = [sentence for sentence in said if "next best" in sentence]
     assert told == [
@@ -209,10 +216,14 @@ def test_sections_without_content_are_left_out(content):
 def test_too_little_data_is_a_verdict_without_an_error(content):
     nothing = {"fraction": 0.0, "significant": False, "hint": "Nothing is left but noise."}
     found = {
-        "verdict": "insufficient_data", "selected": (), "ranking": (), "indistinguishable": (),
-        "unexplained": Unexplained(**nothing), "next_experiment": "Record more.",
+        "verdict": "insufficient_data",
+        "selected": (),
+        "ranking": (),
+        "indistinguishable": (),
+        "unexplained": Unexplained(**nothing),
+        "next_experiment": "Record more.",
         "error": DiagnosisErrors(nominal=None, with_effects=None, noise_floor=None),
-    }  # fmt: skip
+    }
     said = explain(content["diagnosis"].model_copy(update=found), built_in())
     assert said.error.startswith("No test run could be used")
     assert not any("noise" in remark for remark in said.remarks)
@@ -259,8 +270,9 @@ def test_theirs_and_ours_are_set_against_one_simulator(content):
     assert rows["published zero_shot"] == "| published zero_shot | 1.00 | 1.00 | 1.00 |"
     ratios = [
         cell.errors["gp_6dof"] / cell.errors["published zero_shot"]
-        for cell in found.cells if cell.metric == "velocity_mae"
-    ]  # fmt: skip
+        for cell in found.cells
+        if cell.metric == "velocity_mae"
+    ]
     assert rows["gp_6dof"].split(" | ")[2] == significant(geometric_mean(ratios))
     ours = {name: one for name, one in found.models.items() if "zero_shot" not in name}
     alone = against_published.write_markdown(found.model_copy(update={"models": ours}))
@@ -273,8 +285,10 @@ def test_a_fitted_number_is_known_where_its_interval_leaves_zero_out(content):
         selected = (FittedEffect(effect="current", parameters=fitted),)
         return content["diagnosis"].model_copy(update={"selected": selected})
 
-    folds = {"a": fold(north=(-0.2, 0.1), east=(0.1, 0.1), down=(0.3, None)),
-             "b": fold(north=(0.2, 0.1), east=(0.1, 0.01))}  # fmt: skip
+    folds = {
+        "a": fold(north=(-0.2, 0.1), east=(0.1, 0.1), down=(0.3, None)),
+        "b": fold(north=(0.2, 0.1), east=(0.1, 0.01)),
+    }
     said = leave_one_run_out.tell_known(folds)
     assert "leaves zero out: 1 of 3 without a, 2 of 2 without b;" in said
     assert "in every fold current north." in said
@@ -406,9 +420,11 @@ def test_a_model_is_called_and_explained(model, said, meaning):
 def test_of_many_runs_it_says_which_are_drawn(content):
     many = dict.fromkeys(map(str, range(200)))
     data = ReportData(
-        **{k: content[k] for k in ("comparison", "ladder")}, motions=many,
-        replays={"nominal": {}, "better": {}}, drawn=("3", "4"),
-    )  # fmt: skip
+        **{k: content[k] for k in ("comparison", "ladder")},
+        motions=many,
+        replays={"nominal": {}, "better": {}},
+        drawn=("3", "4"),
+    )
     said = (
         "Of 200 runs, 3 and 4 have figures of their own: of many, those on which better errs most. "
         "The workbench shows each."
@@ -443,9 +459,11 @@ def test_what_was_not_looked_at_is_said():
 
 def test_what_wanders_is_said_to_be_unforeseeable_and_not_worth_nothing(content):
     drift = FittedEffect(
-        effect="current_drift", parameters={"rate": FittedValue(value=0.012, std=0.001)},
-        error_reduction=0.0, probability=0.9999,
-    )  # fmt: skip
+        effect="current_drift",
+        parameters={"rate": FittedValue(value=0.012, std=0.001)},
+        error_reduction=0.0,
+        probability=0.9999,
+    )
     found = content["diagnosis"].model_copy(update={"selected": (drift,)})
     (said,) = explain(found, built_in()).missing
     assert said.worth == "cannot be foreseen, probability above 0.999"

@@ -372,7 +372,7 @@ def test_an_altered_file_is_refused(saved, tmp_path):
     "change",
     [{"features": ["velocity"]}, {"extra": 1}, {"file": "absent.npz"}, {"control": "9dof"}],
     ids=lambda change: next(iter(change)),
-)  # fmt: skip
+)
 def test_unusable_descriptions_are_refused(saved, change):
     description, folder = saved
     with pytest.raises(BadInput):

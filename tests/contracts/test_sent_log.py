@@ -29,10 +29,15 @@ def lines(time, first=1500) -> str:
 def planned(x: float, log: str) -> Designed:
     """What a design would write."""
     found = Experiment(
-        seconds=10.0, model="nominal", manoeuvre="designed", expects=Expected(), baselines={},
-        start=Start(x_m=x, y_m=0.0, z_m=1.0, yaw_rad=0.5), instructions=(f"begin at {x}",),
+        seconds=10.0,
+        model="nominal",
+        manoeuvre="designed",
+        expects=Expected(),
+        baselines={},
+        start=Start(x_m=x, y_m=0.0, z_m=1.0, yaw_rad=0.5),
+        instructions=(f"begin at {x}",),
         keeps=Keeps(nearest_wall_m=None, speed_m_s=1.0, turn_rate_rad_s=1.0, tilt_rad=0.1),
-    )  # fmt: skip
+    )
     return Designed(found, log, None)
 
 

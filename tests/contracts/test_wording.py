@@ -70,10 +70,13 @@ def test_thrusters_are_called_as_in_the_vehicle_file(content):
         FittedEffect(effect="thruster_gain", parameters=gain),
         FittedEffect(effect="thruster_order", parameters=swapped),
     )
-    found = content["diagnosis"].model_copy(update={
-        "selected": selected, "thrusters": ("port", "starboard", "bow"),
-        "known_together": (("thruster_gain.t1", "added_mass.surge"),),
-    })  # fmt: skip
+    found = content["diagnosis"].model_copy(
+        update={
+            "selected": selected,
+            "thrusters": ("port", "starboard", "bow"),
+            "known_together": (("thruster_gain.t1", "added_mass.surge"),),
+        }
+    )
     told = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     assert "bow (t3) 0.500 ± 0.020 all 0.9" in told
     assert "first 1 (port) second 3 (bow)" in told
@@ -143,9 +146,14 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
 
 @pytest.mark.parametrize(
     ("probability", "told"),
-    [(0.0, "below 0.001"), (1.84e-128, "below 0.001"), (0.03, "0.030"), (0.9995, "above 0.999"),
-     (None, "–")],
-)  # fmt: skip
+    [
+        (0.0, "below 0.001"),
+        (1.84e-128, "below 0.001"),
+        (0.03, "0.030"),
+        (0.9995, "above 0.999"),
+        (None, "–"),
+    ],
+)
 def test_a_probability_is_told_as_people_write_it(probability, told):
     assert tell_probability(probability) == told
 
@@ -229,9 +237,16 @@ def test_why_a_name_has_no_probability_is_said(content, effect, values, beside, 
     one = FittedEffect(effect=effect, parameters=given)
     others = tuple(FittedEffect(effect=name, parameters={}) for name in beside or ())
     law = Proposal(
-        axis="sway", equation="", file="", parameters={}, error_reduction=0.5, effect="",
-        meaning="", terms=(), beside=others,
-    )  # fmt: skip
+        axis="sway",
+        equation="",
+        file="",
+        parameters={},
+        error_reduction=0.5,
+        effect="",
+        meaning="",
+        terms=(),
+        beside=others,
+    )
     left = content["diagnosis"].unexplained
     left = left.model_copy(update={"proposal": None if beside is None else law})
     found = {"selected": (camera, one), "unexplained": left, "rivals": ()}

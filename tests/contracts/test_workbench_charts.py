@@ -54,8 +54,9 @@ def test_under_each_axis_is_what_the_commands_push_along_it(bench):
     assert thrust.shape == (len(motion.time), 6)
     shown = panels(motion, {}, ["sway", "yaw"], "nu", thrust)
     assert [(panel.title, panel.unit) for panel in shown[2::3]] == [
-        ("sway: thrust by the commands", "N"), ("yaw: thrust by the commands", "N m"),
-    ]  # fmt: skip
+        ("sway: thrust by the commands", "N"),
+        ("yaw: thrust by the commands", "N m"),
+    ]
     np.testing.assert_array_equal(shown[5].curves["commanded"], thrust[:, 5])
 
 
@@ -76,8 +77,9 @@ def test_a_band_lies_about_its_curve_and_about_the_difference(bench):
         np.testing.assert_allclose(high - low, np.where(known, 0.4, np.nan), atol=1e-9)
     low, wide = charts.series_data(motion.time, shown[:1], ("measured", "m"))
     assert (low["id"], wide["id"]) == (
-        "0/m/low end of the band", "0/m/width of the band",
-    )  # fmt: skip
+        "0/m/low end of the band",
+        "0/m/width of the band",
+    )
     options = charts.time_series(motion.time, shown, charts.styles(["measured", "m"]))
     drawn = {one["id"]: one for one in options["series"]}
     assert drawn[low["id"]]["stack"] == drawn[wide["id"]]["stack"] != drawn["0/m"].get("stack")

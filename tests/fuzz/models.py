@@ -127,12 +127,16 @@ class UncertainModel(Text):
         between = [f"linear_damping.{name}" for name in names]
         self.uncertainty = {
             "noise": {
-                "disturbance": [0.1] * 6, "memory_s": [1.0] * 6, "reading": [1e-3] * 6,
-                "period_s": 0.05, "colour": [1e-3] * 6, "colour_memory_s": [0.5] * 6,
+                "disturbance": [0.1] * 6,
+                "memory_s": [1.0] * 6,
+                "reading": [1e-3] * 6,
+                "period_s": 0.05,
+                "colour": [1e-3] * 6,
+                "colour_memory_s": [0.5] * 6,
             },
             "correlation": {"between": between, "rows": [[1.0], [0.3, 1.0]]},
             "instead": [{"probability": 0.2, "effects": [lift]}],
-        }  # fmt: skip
+        }
         effects = [{"effect": "linear_damping", "parameters": drag}]
         for each in ([lift], effects):  # either may be drawn: compiled here, where time is no fault
             self.model = {"vehicle": "bluerov2_heavy", "effects": each}

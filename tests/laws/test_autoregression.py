@@ -17,10 +17,11 @@ def stretches(shown=None):
     stops = np.cumsum(LENGTHS)
     n = stops[-1]
     run = SimpleNamespace(
-        innovation_segments=np.column_stack([stops - LENGTHS, stops]), time=np.arange(n),
+        innovation_segments=np.column_stack([stops - LENGTHS, stops]),
+        time=np.arange(n),
         settled=np.ones(n, bool),
         innovation_mask=np.ones((n, 6), bool) if shown is None else shown,
-    )  # fmt: skip
+    )
     return Stretches.of([run])
 
 

@@ -28,9 +28,11 @@ from worlds import at_rest, model, motion, sticks
 
 SIGNALS, REPLAY = SignalSettings(), ReplaySettings()
 NOISE = FittedNoise(
-    disturbance=(0.02,) * 3 + (0.05,) * 3, memory_s=(0.8,) * 6,
-    reading=(3e-4,) * 3 + (1e-3,) * 3, period_s=0.05,
-)  # fmt: skip
+    disturbance=(0.02,) * 3 + (0.05,) * 3,
+    memory_s=(0.8,) * 6,
+    reading=(3e-4,) * 3 + (1e-3,) * 3,
+    period_s=0.05,
+)
 SILENT = FittedNoise(disturbance=(0.0,) * 6, memory_s=(1.0,) * 6, reading=(0.0,) * 6, period_s=0.05)
 DRAG, LAG = QuadraticDamping(surge=40.0), ThrusterLag(time_constant=0.2)
 BETWEEN = ("quadratic_damping.surge", "thruster_lag.time_constant")
@@ -206,8 +208,10 @@ def test_where_nobody_knows_it_says_why():
     wanders = known()
     wanders = replace(wanders, effects=(*wanders.effects, CurrentDrift(rate=0.01)))
     for world, why in [
-        (model(), "rovsim add"), (known(FittedNoise()), "what noise"), (wanders, "wanders"),
-    ]:  # fmt: skip
+        (model(), "rovsim add"),
+        (known(FittedNoise()), "what noise"),
+        (wanders, "wanders"),
+    ]:
         assert why in why_without_bands(world, run)
         assert predict_band(world, run, spans, SIGNALS, REPLAY) is None
     assert why_without_bands(known(), run) is None

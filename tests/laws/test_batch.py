@@ -86,9 +86,12 @@ def by_windows():
 def of_start(count):
     rows = np.repeat(START[None], count, axis=0)
     return {
-        "eta": rows[:, :7], "nu": rows[:, 7:], "nu_dot": 0 * rows[:, 7:], "state_nu": rows[:, 7:],
+        "eta": rows[:, :7],
+        "nu": rows[:, 7:],
+        "nu_dot": 0 * rows[:, 7:],
+        "state_nu": rows[:, 7:],
         "usable": np.ones(count, bool),
-    }  # fmt: skip
+    }
 
 
 def observed():

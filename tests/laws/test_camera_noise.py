@@ -32,18 +32,28 @@ def told(poses):
 
 @settings(max_examples=10)
 @given(
-    st.floats(0.0, 6.0), st.floats(0.02, 3.0), st.floats(0.0, 0.004), st.floats(0.0, 0.2),
+    st.floats(0.0, 6.0),
+    st.floats(0.02, 3.0),
+    st.floats(0.0, 0.004),
+    st.floats(0.0, 0.2),
     st.integers(0, 99),
-)  # fmt: skip
+)
 def test_no_filter_is_seen_where_there_is_none(ratio, memory, uneven, lost, seed):
     assert told(draw(np.random.default_rng(seed), ratio, memory, uneven, lost)) is None
 
 
 @pytest.mark.parametrize(
     ("cutoff", "ratio", "uneven"),
-    [(4.0, 0.0, 0.0), (8.0, 0.0, 0.0), (16.0, 0.0, 0.0), (8.0, 0.0, 0.002), (16.0, 0.0, 0.002),
-     (8.0, 3.0, 0.0), (16.0, 3.0, 0.0)],
-)  # fmt: skip
+    [
+        (4.0, 0.0, 0.0),
+        (8.0, 0.0, 0.0),
+        (16.0, 0.0, 0.0),
+        (8.0, 0.0, 0.002),
+        (16.0, 0.0, 0.002),
+        (8.0, 3.0, 0.0),
+        (16.0, 3.0, 0.0),
+    ],
+)
 def test_a_filter_is_seen_and_its_cutoff_left_open(cutoff, ratio, uneven):
     smooth = LowPass(PoseFilter(cutoff=cutoff).time_constants())
     poses = draw(np.random.default_rng(5), ratio, 1.0, uneven)

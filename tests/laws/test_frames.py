@@ -78,9 +78,12 @@ def test_body_rates_are_the_turning_speed(omega, q):
 def read(position, q, world_axes, body_axes, nu=None):
     """One pose (repeated) through the conversion of the readers."""
     twice = Export(
-        np.array([0.0, 1.0]), np.tile(position, (2, 1)), np.tile(q, (2, 1)), np.ones(2, bool),
+        np.array([0.0, 1.0]),
+        np.tile(position, (2, 1)),
+        np.tile(q, (2, 1)),
+        np.ones(2, bool),
         nu=None if nu is None else np.tile(nu, (2, 1)),
-    )  # fmt: skip
+    )
     mocap = Mocap(format="csv", world_axes=world_axes, body_axes=body_axes)
     commands = Commands(np.zeros(1), np.zeros((1, 1)), "thruster")
     return to_ned(twice, mocap, RunInfo("a", "6dof", "train"), Site.unknown(), commands)
@@ -96,8 +99,13 @@ def test_conversion_keeps_right_handedness_and_undoes_itself(p, q, world, body):
     np.testing.assert_allclose(rotations.matrix(again.attitude[0]), rotations.matrix(q), atol=1e-12)
 
 
-@given(vectors, vectors, quaternions(), st.sampled_from(["z_up", "ned"]),
-       st.sampled_from(["flu", "frd"]))  # fmt: skip
+@given(
+    vectors,
+    vectors,
+    quaternions(),
+    st.sampled_from(["z_up", "ned"]),
+    st.sampled_from(["flu", "frd"]),
+)
 def test_a_point_on_the_body_lands_in_the_same_place(p, point, q, world, body):
     in_file = rotations.axes_signs(world) * (p + rotations.rotate(q, point))
     once = read(p, q, world, body)

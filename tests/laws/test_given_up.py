@@ -28,9 +28,12 @@ def start(bank, name, *free):
 
 @pytest.mark.parametrize(
     ("name", "free"),
-    [("quadratic_damping", ("surge", "sway")), ("added_mass", ("surge", "sway")),
-     ("input_delay", ("delay",))],
-)  # fmt: skip
+    [
+        ("quadratic_damping", ("surge", "sway")),
+        ("added_mass", ("surge", "sway")),
+        ("input_delay", ("delay",)),
+    ],
+)
 def test_it_ends_where_it_would_or_is_given_up(bank, name, free):
     whole = fit(start(bank, name, *free), bank, FIRST_NOISE)
     first = bank.linearise(start(bank, name, *free))

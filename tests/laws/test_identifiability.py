@@ -127,9 +127,11 @@ def test_a_value_that_no_vehicle_file_is_off_by_asks_for_the_units(effect, told)
     base = nominal(load_vehicle("bluerov2_heavy"))
     term = Term(effect, tuple(effect.given()))
     found = TrainDiagnosis(
-        base, UsableRuns((), (), (), (), 60.0), fit(alike()),
+        base,
+        UsableRuns((), (), (), (), 60.0),
+        fit(alike()),
         selected=(Selected(term, {}, 1.0, 0.5),),
-    )  # fmt: skip
+    )
     advice = advise(found, [], [], built_in())
     assert advice.startswith(told)
     assert ("check the units" in advice) == bool(told)
@@ -214,9 +216,11 @@ def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(del
     assert (named.probability is None) == doubted
     selected = [Selected(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
     found = TrainDiagnosis(
-        fit(alike()).hypothesis.base, UsableRuns((), (), (), (), 60.0), fit(alike()),
+        fit(alike()).hypothesis.base,
+        UsableRuns((), (), (), (), 60.0),
+        fit(alike()),
         selected=selected,
-    )  # fmt: skip
+    )
     assert (LOOKS_AHEAD in advise(found, [], [], built_in())) == doubted
 
 

@@ -25,9 +25,12 @@ from rovsim.diagnosis.observer.noise_fit import fit_noise
 
 H = 0.01
 noises = st.tuples(
-    st.booleans(), st.floats(0.0, 5.0), st.floats(0.003, 0.3), st.floats(0.2, 3.0),
+    st.booleans(),
+    st.floats(0.0, 5.0),
+    st.floats(0.003, 0.3),
+    st.floats(0.2, 3.0),
     st.floats(1e-4, 1e-2),
-)  # fmt: skip
+)
 
 
 def rung(f, h, disturbance_std, correlation_time, measurement_std, n, seed):
@@ -162,9 +165,17 @@ def test_a_noise_that_cannot_be_ends_no_search(disturbance_std, measurement_std)
 
     def cost(noise):
         squares, log, count = misfit(
-            np.array(noise), POSE, H, motion.over(H, POSE), f.denominator, f.noise_denominator, e,
-            np.array([[0, 500]]), every, every,
-        )  # fmt: skip
+            np.array(noise),
+            POSE,
+            H,
+            motion.over(H, POSE),
+            f.denominator,
+            f.noise_denominator,
+            e,
+            np.array([[0, 500]]),
+            every,
+            every,
+        )
         return squares + count * log
 
     other = usual._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)

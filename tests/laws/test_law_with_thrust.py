@@ -22,10 +22,15 @@ from rovsim.simulation.drive import Drive
 from worlds import model, tank, write_and_read
 
 TERMS = [
-    ThrustTerm(4, 0), ThrustTerm(2, 0, True), ThrustTerm(0, 2, True, 0), ThrustTerm(5, 0, True, 1),
-    ThrustTerm(1, 1, False, 9), ThrustTerm(4, 0, False, OTHER, 2), ThrustTerm(1, 5, True, OTHER, 1),
+    ThrustTerm(4, 0),
+    ThrustTerm(2, 0, True),
+    ThrustTerm(0, 2, True, 0),
+    ThrustTerm(5, 0, True, 1),
+    ThrustTerm(1, 1, False, 9),
+    ThrustTerm(4, 0, False, OTHER, 2),
+    ThrustTerm(1, 5, True, OTHER, 1),
     ThrustTerm(2, 2, False, OTHER, 2),
-]  # fmt: skip
+]
 EVERY = pytest.mark.parametrize("term", TERMS, ids=lambda term: WithThrust(term).equation)
 RNG = np.random.default_rng(3)
 NU, FORCE = RNG.uniform(-0.5, 0.5, (5, 6)), RNG.uniform(-20.0, 20.0, (5, 8))  # m/s, rad/s; N
@@ -98,10 +103,14 @@ def test_what_does_not_move_has_no_terms_and_other_thrusters_neither():
 @pytest.mark.parametrize(
     ("term", "unit"),
     [
-        (ThrustTerm(4, 0), "m"), (ThrustTerm(2, 0, True), "1"), (ThrustTerm(0, 2, True, 0), "s/m"),
-        (ThrustTerm(5, 0, True, 1), "s"), (ThrustTerm(1, 1, False, 9), "s/rad"),
-        (ThrustTerm(4, 0, False, OTHER, 2), "m/N"), (ThrustTerm(1, 5, False, 5), "s/(m rad)"),
+        (ThrustTerm(4, 0), "m"),
+        (ThrustTerm(2, 0, True), "1"),
+        (ThrustTerm(0, 2, True, 0), "s/m"),
+        (ThrustTerm(5, 0, True, 1), "s"),
+        (ThrustTerm(1, 1, False, 9), "s/rad"),
+        (ThrustTerm(4, 0, False, OTHER, 2), "m/N"),
+        (ThrustTerm(1, 5, False, 5), "s/(m rad)"),
     ],
-)  # fmt: skip
+)
 def test_units_make_newtons(term, unit):
     assert WithThrust(term).unit == unit

@@ -53,12 +53,15 @@ def test_without_a_declaration_the_axis_and_condition_at_which_most_is_gone():
         ("thrust_asymmetry", {"surge": BY_NAME["surge speed"]}, ("surge", "surge thrust")),
         ("thrust_asymmetry", {"sway": np.abs(BY_NAME["sway thrust"])}, ("sway", "sway thrust")),
         ("quadratic_damping", {"surge": BY_NAME["surge thrust"]}, ("surge", "surge speed")),
-        ("coupled_damping", {"yaw": BY_NAME["yaw rate"] + BY_NAME["sway speed"]},
-         ("yaw", "sway speed")),
+        (
+            "coupled_damping",
+            {"yaw": BY_NAME["yaw rate"] + BY_NAME["sway speed"]},
+            ("yaw", "sway speed"),
+        ),
         ("current", {"surge": BY_NAME["surge speed"]}, ("surge", "heading")),
         ("voltage_sag", {"sway": TIME * BY_NAME["sway thrust"]}, ("sway", "time in the run")),
     ],
-)  # fmt: skip
+)
 def test_an_effect_is_shown_over_its_own_condition(effect, before, shown):
     """Though more is gone from the bins of another one."""
     found = find_most_lowered(blocks(**before), NONE, declared(effect))

@@ -73,8 +73,13 @@ def test_the_measured_memory_is_the_integrated_one_and_windows_start_from_it():
     unseen = np.where(gap[:, None], run.state_nu, np.nan)
     bridged = measured_memory(world, replace(run, usable=gap, state_nu=unseen), run.time)
     assert 0 < np.abs(m - bridged).max() < 0.02
-    fine = replace(run, time=run.time[::3], eta=run.eta[::3], state_nu=run.state_nu[::3],
-                   usable=run.usable[::3])  # fmt: skip
+    fine = replace(
+        run,
+        time=run.time[::3],
+        eta=run.eta[::3],
+        state_nu=run.state_nu[::3],
+        usable=run.usable[::3],
+    )
     np.testing.assert_allclose(measured_memory(world, fine, run.time[::3]), m[::3], atol=5e-3)
 
 
@@ -84,8 +89,10 @@ def test_training_sees_the_remembered_water():
     rate = np.gradient(steady.nu, 0.01, axis=0)
     run = replace(steady, nu_dot=rate)
     clear = slice(50, -50)
-    left = [np.abs(sample_run(w, run, OPEN, ReplaySettings()).a_res[clear]).max()
-            for w in (world, model(WATER))]  # fmt: skip
+    left = [
+        np.abs(sample_run(w, run, OPEN, ReplaySettings()).a_res[clear]).max()
+        for w in (world, model(WATER))
+    ]
     assert left[0] < 0.05 * left[1]
 
 

@@ -13,8 +13,10 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings
 
 QUICK = {"max_points": 300, "tuning_points": 100, "iterations": 15}
-LEARNERS = {kind: learner_settings({"kind": kind} | more)
-            for kind, more in (("knn", {"k": 5}), ("gp", QUICK))}  # fmt: skip
+LEARNERS = {
+    kind: learner_settings({"kind": kind} | more)
+    for kind, more in (("knn", {"k": 5}), ("gp", QUICK))
+}
 HIDDEN = (
     EffectEntry(effect="quadratic_damping", parameters={"surge": 150.0, "sway": 150.0}),
     EffectEntry(effect="linear_damping", parameters={"yaw": 3.0}),
@@ -54,11 +56,17 @@ def test_the_wrong_clock_moves_bins_and_commands_alike(flown):
     edges = np.cumsum(np.tile([0.1, 0.2, 0.15], 20))
     n = len(edges) - 1
     binned = replace(
-        motion, time=edges[:-1], end=float(edges[-1]), binned=True,
-        eta=motion.eta[:n], nu=motion.nu[:n], nu_dot=motion.nu_dot[:n],
-        state_nu=motion.nu[:n], usable=np.ones(n, bool),
+        motion,
+        time=edges[:-1],
+        end=float(edges[-1]),
+        binned=True,
+        eta=motion.eta[:n],
+        nu=motion.nu[:n],
+        nu_dot=motion.nu_dot[:n],
+        state_nu=motion.nu[:n],
+        usable=np.ones(n, bool),
         commands=replace(motion.commands, time=edges[:-1] + 0.05, value=motion.commands.value[:n]),
-    )  # fmt: skip
+    )
     wrong = on_wrong_clock(binned)
     assert np.allclose(np.diff(np.append(wrong.time, wrong.end)), SAID)
     assert wrong.time[0] == binned.time[0]

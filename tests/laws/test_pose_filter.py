@@ -181,10 +181,16 @@ def test_binned_recordings_are_turned_back_too():
     time = run.time[:-1:10]
     means = np.add.reduceat(run.state_nu[:-1], np.arange(0, 600, 10)) / 10
     bins = replace(
-        run, time=time, eta=run.eta[:-1:10], nu=means, nu_dot=backward_difference(means, time),
-        usable=run.usable[:-1:10], state_nu=run.state_nu[:-1:10], binned=True,
+        run,
+        time=time,
+        eta=run.eta[:-1:10],
+        nu=means,
+        nu_dot=backward_difference(means, time),
+        usable=run.usable[:-1:10],
+        state_nu=run.state_nu[:-1:10],
+        binned=True,
         end=float(run.time[-1]),
-    )  # fmt: skip
+    )
     errors = []
     for world in (FILTERED, CLEAR):
         found = replay(world, bins, OPEN, ReplaySettings()).horizons["2"]
@@ -200,11 +206,25 @@ def test_binned_recordings_are_turned_back_too():
 
 @pytest.mark.parametrize(
     ("delay", "likelihood", "absorbed"),
-    [(0.001, 10.0, True), (-0.007, 10.0, True), (0.009, 10.0, True), (0.001, -np.inf, False),
-     (0.03, 10.0, False), (-0.02, 10.0, False), (-0.08, 10.0, False)],
-    ids=["late", "early", "a frame late", "nothing is observed", "too late", "too early",
-         "before the filter"],
-)  # fmt: skip
+    [
+        (0.001, 10.0, True),
+        (-0.007, 10.0, True),
+        (0.009, 10.0, True),
+        (0.001, -np.inf, False),
+        (0.03, 10.0, False),
+        (-0.02, 10.0, False),
+        (-0.08, 10.0, False),
+    ],
+    ids=[
+        "late",
+        "early",
+        "a frame late",
+        "nothing is observed",
+        "too late",
+        "too early",
+        "before the filter",
+    ],
+)
 def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood, absorbed):
     smoothing, base = (
         Smoothing(6.0, std=0.3, lr_statistic=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01),

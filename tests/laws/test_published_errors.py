@@ -37,8 +37,9 @@ def table(*models):
     """Published errors (6,) of models on run r."""
     return [
         Published("r", "", str(k), axis, dict.fromkeys(METRICS, value))
-        for k, values in enumerate(models) for axis, value in zip(AXES, values, strict=True)
-    ]  # fmt: skip
+        for k, values in enumerate(models)
+        for axis, value in zip(AXES, values, strict=True)
+    ]
 
 
 @given(six, six, six, six, st.lists(st.booleans(), min_size=6, max_size=6))

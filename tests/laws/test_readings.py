@@ -52,9 +52,16 @@ def test_steps_end_where_bins_end():
     still = worlds.motion(worlds.sticks())
     rows = np.repeat(still.state[:1], len(time), axis=0)
     bins = replace(
-        still, time=time, eta=rows[:, :7], nu=rows[:, 7:], nu_dot=rows[:, 7:],
-        state_nu=rows[:, 7:], usable=np.ones(len(time), bool), binned=True, end=time[-1] + 0.1,
-    )  # fmt: skip
+        still,
+        time=time,
+        eta=rows[:, :7],
+        nu=rows[:, 7:],
+        nu_dot=rows[:, 7:],
+        state_nu=rows[:, 7:],
+        usable=np.ones(len(time), bool),
+        binned=True,
+        end=time[-1] + 0.1,
+    )
     run = prepare_run(bins, bins, ReplaySettings(), built_in(), np.ones(6, bool))
     np.testing.assert_allclose(run.edges[run.reading_steps], time, atol=0.005)
     fine = np.round((run.edges - time[0]) / 0.01)[run.reading_steps]
@@ -71,8 +78,9 @@ def test_lines_that_were_lost_while_commands_changed_are_known_to_be(tmp_path):
     def find(kept, late=0.0):
         commands = Commands(time[kept] + late, value[kept], "thruster")
         motion = replace(run.motion, commands=commands)
-        return find_lost_commands(replace(run, motion=motion, edges=run.edges + late),
-                                  base.thrust_path)  # fmt: skip
+        return find_lost_commands(
+            replace(run, motion=motion, edges=run.edges + late), base.thrust_path
+        )
 
     kept = np.isin(np.arange(400), (100, 300, 390), invert=True)
     found = find(kept)

@@ -56,13 +56,19 @@ def arrange(bodies, states, steps):
     count, jobs = len(bodies), len(bodies) * len(states)
     member, whole = np.repeat(np.arange(count), len(states)), np.zeros(jobs, np.int64)
     inputs = Inputs(
-        np.zeros((1, steps, 6)), np.zeros((1, steps, 0)), np.full((steps, 6), np.nan),
-        np.zeros(count, np.int64), np.ones(steps),
-    )  # fmt: skip
+        np.zeros((1, steps, 6)),
+        np.zeros((1, steps, 0)),
+        np.full((steps, 6), np.nan),
+        np.zeros(count, np.int64),
+        np.ones(steps),
+    )
     return Jobs(
-        np.tile(states, (count, 1)), whole, whole + steps, member,
+        np.tile(states, (count, 1)),
+        whole,
+        whole + steps,
+        member,
         np.arange(jobs) * steps,
-    ), inputs  # fmt: skip
+    ), inputs
 
 
 def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
@@ -70,11 +76,17 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     jobs, inputs = arrange(bodies, states, steps)
     out = np.empty((len(jobs.first) * steps, 13))
     how(
-        engine([]).integrate, jobs, h * np.arange(steps + 1), 1,
-        Constants.stacked([packed(body) for body in bodies]), inputs,
-        WrenchParameters(np.empty((len(bodies), 0))), None,
-        SiteArrays(np.full((3, 2), np.nan), np.ones(3)), out,
-    )  # fmt: skip
+        engine([]).integrate,
+        jobs,
+        h * np.arange(steps + 1),
+        1,
+        Constants.stacked([packed(body) for body in bodies]),
+        inputs,
+        WrenchParameters(np.empty((len(bodies), 0))),
+        None,
+        SiteArrays(np.full((3, 2), np.nan), np.ones(3)),
+        out,
+    )
     return out.reshape(-1, steps, 13)
 
 
@@ -126,10 +138,12 @@ def test_impulse_is_kept_without_forces(seed, nu):
 def test_energy_drift_falls_with_the_fourth_power_of_the_step():
     body, start = some_body(3), state(np.array([0.8, -0.6, 0.5, 0.9, -0.7, 0.8]))
     errors = [
-        abs(total_energy(body, drift([body], start[None], h, round(4 / h))[0, -1])
-            - total_energy(body, start))
+        abs(
+            total_energy(body, drift([body], start[None], h, round(4 / h))[0, -1])
+            - total_energy(body, start)
+        )
         for h in (0.08, 0.04, 0.02)
-    ]  # fmt: skip
+    ]
     assert errors[0] / errors[1] > 14
     assert errors[1] / errors[2] > 14
 
@@ -292,8 +306,10 @@ def test_a_replay_comes_back_from_its_file(tmp_path):
     found.write(tmp_path / "r.npz")
     again = Replay.read(tmp_path / "r.npz")
     assert (again.model, again.run, list(again.horizons)) == (
-        found.model, found.run, list(found.horizons),
-    )  # fmt: skip
+        found.model,
+        found.run,
+        list(found.horizons),
+    )
     for horizon, prediction in found.horizons.items():
         for name in ("eta", "nu", "nu_dot"):
             one, two = getattr(prediction, name), getattr(again.horizons[horizon], name)

@@ -89,10 +89,13 @@ def test_a_plan_has_no_threads_for_small_matrices():
 @pytest.mark.parametrize(
     "asked",
     [
-        {"seconds": LONGEST + 1}, {"seconds": SHORTEST - 1}, {"seconds": float("inf")},
-        {"design": {"population": 10**9}}, {"design": {"rounds": 10**9}},
+        {"seconds": LONGEST + 1},
+        {"seconds": SHORTEST - 1},
+        {"seconds": float("inf")},
+        {"design": {"population": 10**9}},
+        {"design": {"rounds": 10**9}},
     ],
-)  # fmt: skip
+)
 def test_what_no_machine_can_plan_is_refused(asked):
     with pytest.raises(BadInput, match=r"Expected .* (equal to|finite)"):
         checked(Question, asked, "command line")

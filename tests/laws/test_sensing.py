@@ -98,8 +98,9 @@ def test_a_residual_learns_in_true_axes():
     true, run = driven(BAD)
     found = sample_run(BAD, run, OPEN, ReplaySettings())
     blind = sample_run(model(), run, OPEN, ReplaySettings())
-    np.testing.assert_allclose(log(multiply(
-        found.attitude * [1, -1, -1, -1], true[found.index, 3:7])), 0, atol=1e-9)  # fmt: skip
+    np.testing.assert_allclose(
+        log(multiply(found.attitude * [1, -1, -1, -1], true[found.index, 3:7])), 0, atol=1e-9
+    )
     assert np.sqrt(np.mean((found.nu - true[found.index, 7:]) ** 2)) < 5e-4
     inner = (found.index > 100) & (found.index < 300)  # clear of the filter's ends
     assert np.sqrt(np.mean(found.a_res[inner] ** 2)) < 0.1 * np.sqrt(np.mean(blind.a_res**2))
@@ -110,9 +111,16 @@ def test_binned_recordings_are_turned_back_too():
     time = run.time[:-1:10]
     means = np.add.reduceat(run.state_nu[:-1], np.arange(0, 400, 10)) / 10
     bins = replace(
-        run, time=time, eta=run.eta[:-1:10], nu=means, nu_dot=0 * means, usable=run.usable[:-1:10],
-        state_nu=run.state_nu[:-1:10], binned=True, end=float(run.time[-1]),
-    )  # fmt: skip
+        run,
+        time=time,
+        eta=run.eta[:-1:10],
+        nu=means,
+        nu_dot=0 * means,
+        usable=run.usable[:-1:10],
+        state_nu=run.state_nu[:-1:10],
+        binned=True,
+        end=float(run.time[-1]),
+    )
     found = replay(BAD, bins, OPEN, ReplaySettings()).horizons["2"]
     known = bins.usable & np.isfinite(found.nu[:, 0])
     assert known.sum() > 10

@@ -167,8 +167,13 @@ def _runs(**motions):
 
 def test_of_too_much_data_the_parts_are_chosen_that_tell_something(flown):
     moving = flown.motion
-    still = replace(moving, nu=0 * moving.nu, nu_dot=0 * moving.nu_dot, state_nu=0 * moving.nu,
-                    commands=replace(moving.commands, value=0 * moving.commands.value))  # fmt: skip
+    still = replace(
+        moving,
+        nu=0 * moving.nu,
+        nu_dot=0 * moving.nu_dot,
+        state_nu=0 * moving.nu,
+        commands=replace(moving.commands, value=0 * moving.commands.value),
+    )
     runs = _runs(still=still, moving=moving, again=still)
     all_of_it = prepare_train(runs, ReplaySettings(), built_in(), np.ones(6, bool))
     assert [r.motion for r in all_of_it.runs] == list(runs.motions.values())

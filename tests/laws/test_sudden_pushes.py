@@ -28,9 +28,12 @@ def residual_of(white, f, undecided, unlogged):
     """Innovations of an axis, as its filter left them."""
     time = PERIOD * np.arange(COUNT)
     run = SimpleNamespace(
-        period=PERIOD, time=time, edges=time, settled=np.ones(COUNT, bool),
+        period=PERIOD,
+        time=time,
+        edges=time,
+        settled=np.ones(COUNT, bool),
         motion=SimpleNamespace(run=SimpleNamespace(id="a"), measured=None),
-    )  # fmt: skip
+    )
     nothing = np.empty((0, COUNT))
     return AxisResidual("surge", (white,), nothing, (run,), (f,), 0.02, (undecided,), (unlogged,))
 

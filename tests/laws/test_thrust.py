@@ -19,7 +19,7 @@ from rovsim.dynamics.effects.thrusters import (
     ThrusterGain,
     ThrusterLag,
     VoltageSag,
-)  # fmt: skip
+)
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from worlds import model, sticks
@@ -169,9 +169,11 @@ def test_a_curve_of_unequal_ends_is_bent_about_each_of_them():
 
 def test_the_order_of_stages_is_fixed():
     effects = [
-        ForceCurve(exponent=1.3), ThrusterGain(all=-0.8), ThrustAsymmetry(ratio=0.6),
+        ForceCurve(exponent=1.3),
+        ThrusterGain(all=-0.8),
+        ThrustAsymmetry(ratio=0.6),
         VoltageSag(fraction=0.1),
-    ]  # fmt: skip
+    ]
     np.testing.assert_allclose(force(*effects), force(*reversed(effects)))
 
 

@@ -51,10 +51,11 @@ def fit(cost, *names):
 def workspace_of(without=0.0):
     """`without`: what is left beside a loose file if a term is taken away."""
     return SimpleNamespace(
-        penalty=PENALTY, columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
+        penalty=PENALTY,
+        columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
         products_without=lambda found, term: np.array([[without]]),
         sensitivities=SimpleNamespace(base_model=None, blocks=()),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(
@@ -103,11 +104,13 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
     assert all(one.net_decrease < 0.0 for one in alone)
     base = nominal(load_vehicle(default_vehicle()))
     workspace = SimpleNamespace(
-        penalty=400.0, columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
+        penalty=400.0,
+        columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
-    )  # fmt: skip
+    )
     both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))
     assert [(one.id, one.free) for one in both.terms] == [
-        ("linear_damping", ("heave",)), ("quadratic_damping", ("heave",)),
-    ]  # fmt: skip
+        ("linear_damping", ("heave",)),
+        ("quadratic_damping", ("heave",)),
+    ]
     assert both.x == pytest.approx([50.0, -50.0])

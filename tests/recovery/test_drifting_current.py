@@ -57,11 +57,19 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
         (),
         (hide("current", north=0.1),),
         (hide("constant_wrench", surge=4.0),),
-        (hide("tether_tension", stiffness=6.0, slack_length=0.5, anchor_x=5.0, anchor_y=2.0,
-              anchor_z=3.0),),
+        (
+            hide(
+                "tether_tension",
+                stiffness=6.0,
+                slack_length=0.5,
+                anchor_x=5.0,
+                anchor_y=2.0,
+                anchor_z=3.0,
+            ),
+        ),
     ],
     ids=["nothing", "current", "wrench", "tether"],
-)  # fmt: skip
+)
 def test_nothing_else_is_taken_for_it(tmp_path, hidden):
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
     found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())

@@ -10,9 +10,10 @@ from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 from worlds import model
 
 RUNS = (
-    TankRun(id="a", control="6dof", split="train"), TankRun(id="b", control="6dof", split="train"),
+    TankRun(id="a", control="6dof", split="train"),
+    TankRun(id="b", control="6dof", split="train"),
     TankRun(id="c", control="6dof", split="test"),
-)  # fmt: skip
+)
 TERM, SIZE = ThrustTerm(5, 2, True, 1), 0.3  # s
 
 

@@ -56,13 +56,24 @@ def tank_in_bins(folder):
     rows = [[a, *found[rows].mean(axis=0)] for a, rows in zip(begin, inside, strict=False)]
     head = ",".join(("time_s", *NAMES, *RATES, *AXES))
     write_lines(folder / "a.csv", [head, *(",".join(f"{x:.9g}" for x in row) for row in rows)])
-    return write_campaign(folder, {
-        "name": "bins", "vehicle": "bluerov2_heavy",
-        "mocap": {"format": "csv", "world_axes": "ned", "body_axes": "frd"},
-        "commands": {"format": "csv", "kind": "demand", "columns": list(AXES)},
-        "runs": [{"id": "a", "control": "3dof", "split": "test", "mocap": "a.csv",
-                  "commands": "a.csv"}],
-    })  # fmt: skip
+    return write_campaign(
+        folder,
+        {
+            "name": "bins",
+            "vehicle": "bluerov2_heavy",
+            "mocap": {"format": "csv", "world_axes": "ned", "body_axes": "frd"},
+            "commands": {"format": "csv", "kind": "demand", "columns": list(AXES)},
+            "runs": [
+                {
+                    "id": "a",
+                    "control": "3dof",
+                    "split": "test",
+                    "mocap": "a.csv",
+                    "commands": "a.csv",
+                }
+            ],
+        },
+    )
 
 
 @pytest.fixture(params=["recorded", "tank"])

@@ -227,11 +227,14 @@ def test_frames_and_commands_come_at_their_rates(tmp_path, rate, log, step):
     assert np.diff(recording.commands.time) == pytest.approx(1.0 / log, abs=2e-4)
 
 
-@pytest.mark.parametrize(("change", "said"), [
-    ({"camera": {"rate": 29.97}}, "small common multiple"),
-    ({"runs": [RUN.model_dump(), RUN.model_dump()]}, "different id"),
-    ({"runs": [RUN.model_dump() | {"id": "../x"}]}, "file name"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"camera": {"rate": 29.97}}, "small common multiple"),
+        ({"runs": [RUN.model_dump(), RUN.model_dump()]}, "different id"),
+        ({"runs": [RUN.model_dump() | {"id": "../x"}]}, "file name"),
+    ],
+)
 def test_what_no_campaign_can_hold_is_refused_before_a_flight(tmp_path, change, said, monkeypatch):
     monkeypatch.setattr("rovsim.simulation.synthetic_tank.campaign.fly_run", None)
     with pytest.raises(BadInput, match=said):

@@ -103,8 +103,10 @@ def test_a_constant_error_is_told_as_the_push_that_it_stands_for():
     found = explain(planted(lambda u, t: 0.2 + 0 * u, size=-1.0), inertia=M)
     assert found.findings[0].push == pytest.approx(-3.0, rel=0.05)
     assert found.findings[0].share().push == pytest.approx(-3.0, rel=0.05)
-    assert re.search(r"more backward than the model, as a push of (2\.9|3\.0|3\.1) N would make it",
-                     summarize(found)[0])  # fmt: skip
+    assert re.search(
+        r"more backward than the model, as a push of (2\.9|3\.0|3\.1) N would make it",
+        summarize(found)[0],
+    )
     found = explain(planted(lambda u, t: 0.2 + 0 * u, axis="yaw"), inertia=M)
     assert re.search(r"as a push of 0\.(39|4|40|41) N m would", summarize(found)[0])
     beside = explain(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)), inertia=M)

@@ -61,10 +61,14 @@ def g(roll, pitch):
     x, y, z = W * RG - B * RB
     return np.array(
         [
-            (W - B) * st_, -(W - B) * ct * sf, -(W - B) * ct * cf,
-            -y * ct * cf + z * ct * sf, z * st_ + x * ct * cf, -x * ct * sf - y * st_,
+            (W - B) * st_,
+            -(W - B) * ct * sf,
+            -(W - B) * ct * cf,
+            -y * ct * cf + z * ct * sf,
+            z * st_ + x * ct * cf,
+            -x * ct * sf - y * st_,
         ]
-    )  # fmt: skip
+    )
 
 
 def wrench(command):
@@ -125,8 +129,9 @@ def test_held_random_commands_are_followed_within_a_micrometre(seed):
     x = np.concatenate([start[:3], matrix(start[3:7]).ravel(), start[7:]])
     for command in value:  # one line every 0.1 s
         tau = wrench(command)
-        arc = solve_ivp(lambda t, x, tau=tau: slope(x, tau), (0, 0.1), x, "DOP853",
-                        rtol=1e-10, atol=1e-12)  # fmt: skip
+        arc = solve_ivp(
+            lambda t, x, tau=tau: slope(x, tau), (0, 0.1), x, "DOP853", rtol=1e-10, atol=1e-12
+        )
         x = arc.y[:, -1]
     for step, bound in ((0.01, 1e-6), (0.001, 1e-9)):
         end = simulate(model(), run, [(0, 200, start)], ReplaySettings(step=step))[0][-1]

@@ -122,8 +122,10 @@ def test_full_poses_keep_their_place_and_the_rest_goes_beside_them(tmp_path):
 
 def with_velocities(lines, every=1):
     names = ",u_m_s,v_m_s,w_m_s,p_rad_s,q_rad_s,r_rad_s"
-    given = [f"{line}{',1,2,3,4,5,6' if k % every == 0 else ',,,,,,'}" for k, line in
-             enumerate(lines[1:])]  # fmt: skip
+    given = [
+        f"{line}{',1,2,3,4,5,6' if k % every == 0 else ',,,,,,'}"
+        for k, line in enumerate(lines[1:])
+    ]
     return [lines[0] + names, *given]
 
 
@@ -175,8 +177,11 @@ def test_poses_of_zeros_are_no_measurement_unless_the_run_starts_there(tmp_path)
 turns = st.floats(-3.0, 3.0)
 
 
-@given(st.tuples(turns, st.floats(-1.5, 1.5), turns), st.sampled_from(["z_up", "ned"]),
-       st.sampled_from(["flu", "frd"]))  # fmt: skip
+@given(
+    st.tuples(turns, st.floats(-1.5, 1.5), turns),
+    st.sampled_from(["z_up", "ned"]),
+    st.sampled_from(["flu", "frd"]),
+)
 def test_angles_turn_into_other_axes_as_attitudes_do(angles, world, body):
     mocap = Mocap(format="csv", world_axes=world, body_axes=body)
     value = np.array([angles])

@@ -110,9 +110,15 @@ def test_a_taut_tether_pulls_towards_its_anchor_with_a_moment(tilted):
     R, r = matrix(tilted[3:7]), np.array([-0.2, 0.05, -0.1])
     anchor = np.array([3.0, 4.0, 2.5])  # MoCap, z up
     tether = TetherTension(
-        stiffness=7.0, slack_length=0.5, attachment_x=r[0], attachment_y=r[1], attachment_z=r[2],
-        anchor_x=anchor[0], anchor_y=anchor[1], anchor_z=anchor[2],
-    )  # fmt: skip
+        stiffness=7.0,
+        slack_length=0.5,
+        attachment_x=r[0],
+        attachment_y=r[1],
+        attachment_z=r[2],
+        anchor_x=anchor[0],
+        anchor_y=anchor[1],
+        anchor_z=anchor[2],
+    )
     line = anchor * [1, -1, -1] - (tilted[:3] + R @ r)  # in NED, from the attachment
     F = R.T @ (7.0 * (np.linalg.norm(line) - 0.5) * line / np.linalg.norm(line))
     found = push(model(tether), tilted) - push(model(), tilted)
@@ -208,9 +214,11 @@ def test_walls_multiply_all_diagonal_damping_and_gains_add(tilted):
     """At NED (1, -2, -1): 2 m and 1 m from the nearer walls, 0.6 m below the surface."""
     extra = LinearDamping(sway=4.0)
     both = model(
-        extra, WallProximity(gain=0.8, length_scale=0.7), SurfaceProximity(gain=0.5),
+        extra,
+        WallProximity(gain=0.8, length_scale=0.7),
+        SurfaceProximity(gain=0.5),
         CoupledDamping(yaw_from_sway=3.0),
-    )  # fmt: skip
+    )
     bare = model(extra, CoupledDamping(yaw_from_sway=3.0))
     body, nu = bare.body, tilted[7:]
     drag = -(body.linear + body.quadratic * np.abs(nu)) * nu

@@ -55,26 +55,33 @@ WRITTEN = {
     "names again": [*LINES[:200], HEAD, *LINES[200:]],
     "units below": [FREE, "s,m,m,m,rad,rad,rad", *ROWS],
     "other units below": [
-        FREE, "[s],[mm],[mm],[mm],[deg],[deg],[deg]", *scaled(1, *[1e3] * 3, *[180 / np.pi] * 3)
+        FREE,
+        "[s],[mm],[mm],[mm],[deg],[deg],[deg]",
+        *scaled(1, *[1e3] * 3, *[180 / np.pi] * 3),
     ],
     "ns in time_s": [HEAD, *stamped(10**9)],
-    "ms since 1970": [HEAD.replace("time_s", "stamp_ms").replace("stamp", "timestamp"),
-                      *stamped(1000)],
+    "ms since 1970": [
+        HEAD.replace("time_s", "stamp_ms").replace("stamp", "timestamp"),
+        *stamped(1000),
+    ],
     "ms in time_s": [HEAD, *scaled(1e3, *[1] * 6)],
     "dates": [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")],
     "dates of pandas": [FREE.replace("time", "datetime"), *dated("%Y-%m-%d %H:%M:%S.%f")],
     "dates in quotes": [HEAD, *dated('"%Y-%m-%d %H:%M:%S.%f"')],
     "dates in UTC": [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f", "Z")],
-    "dates in Sweden": [FREE.replace("time", "timestamp"),
-                        *dated("%Y-%m-%d %H:%M:%S.%f", "+02:00")],
+    "dates in Sweden": [
+        FREE.replace("time", "timestamp"),
+        *dated("%Y-%m-%d %H:%M:%S.%f", "+02:00"),
+    ],
     "dates below names in a remark": [f"# {HEAD}", *dated("%Y-%m-%dT%H:%M:%S.%f")],
-    "dates and decimal commas": [line.replace(",", ";").replace(".", ",")
-                                 for line in [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")]],
+    "dates and decimal commas": [
+        line.replace(",", ";").replace(".", ",") for line in [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")]
+    ],
     "times of day": [HEAD, *dated("%H:%M:%S.%f")],
     "no pose is -999": [HEAD, *every_50th("-999")],
     "no pose is NA": [HEAD, *every_50th("NA")],
     "no pose is null": [HEAD, *every_50th("null")],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", WRITTEN)

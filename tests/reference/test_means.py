@@ -39,9 +39,16 @@ def doubts(edges, poses, velocities, noise=1e-3):
     q = rotations.from_euler(0 * pose[:, 3], 0 * pose[:, 3], pose[:, 3])
     found = np.ones(len(at), bool)
     recording = Recording(
-        RunInfo("one", "6dof", "train"), Site.unknown(), t[at], pose[:, :3], q, found,
-        Commands(t[:1], np.zeros((1, 8)), "thruster"), 10.0, nu,
-    )  # fmt: skip
+        RunInfo("one", "6dof", "train"),
+        Site.unknown(),
+        t[at],
+        pose[:, :3],
+        q,
+        found,
+        Commands(t[:1], np.zeros((1, 8)), "thruster"),
+        10.0,
+        nu,
+    )
     return [x for x in assess(recording, Anomalies()).doubts if "velocity: instant" in x]
 
 

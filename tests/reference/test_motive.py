@@ -82,8 +82,11 @@ def test_frames_without_the_body_have_empty_cells(tmp_path):
 def test_versions_with_other_lines_of_names_are_read(tmp_path):
     lines = motive_lines(SWIM)
     # 1.21 has neither words at the left nor parents; 1.24 may have a column of time code
-    old = [line.replace(",Type,", ",,").replace(",Name,", ",,").replace(",ID,", ",,")
-           for k, line in enumerate(lines) if k != 5]  # fmt: skip
+    old = [
+        line.replace(",Type,", ",,").replace(",Name,", ",,").replace(",ID,", ",,")
+        for k, line in enumerate(lines)
+        if k != 5
+    ]
     assert read_motive(write_lines(tmp_path / "old.csv", old), MOCAP).found.all()
     new = lines[:2]
     for k, line in enumerate(lines[2:]):

@@ -63,8 +63,10 @@ def test_the_mark_is_the_smallest_of_any_model_and_variant(published):
     surge = [cells["surge", m] for m in ("acceleration_rmse", "velocity_mae", "velocity_rmse")]
     assert [c["mark"] for c in surge] == [0.2, 0.1, 0.3]
     assert [(c["best"]["model"], c["best"]["variant"]) for c in surge] == [
-        ("knn", "small"), ("knn", "large"), ("zero_shot", "small")
-    ]  # fmt: skip
+        ("knn", "small"),
+        ("knn", "large"),
+        ("zero_shot", "small"),
+    ]
     assert surge[1]["errors"]["published knn"] == 0.1
     assert surge[1]["ratios"]["published zero_shot"] == pytest.approx(2.0)
     assert found["runs"] == ["one"]

@@ -50,16 +50,16 @@ def series(kind, fields, count=20, step=0.1, stamped=True):
 
 
 @pytest.mark.parametrize("storage", ["SQLITE3", "MCAP"])
-@pytest.mark.parametrize("kind", ["geometry_msgs/msg/PoseStamped", ODOMETRY,
-                                  "geometry_msgs/msg/PoseWithCovarianceStamped"])  # fmt: skip
+@pytest.mark.parametrize(
+    "kind",
+    ["geometry_msgs/msg/PoseStamped", ODOMETRY, "geometry_msgs/msg/PoseWithCovarianceStamped"],
+)
 def test_the_only_topic_of_poses_is_read(tmp_path, storage, kind):
     given = poses(SWIM, ODOMETRY)[1] if kind != "geometry_msgs/msg/PoseStamped" else None
     if given is None:
         topic = poses(SWIM)
     else:
-        topic = kind, [
-            (t, message(kind, t, pose__pose=m.pose.pose)) for t, m in given
-        ]  # fmt: skip
+        topic = kind, [(t, message(kind, t, pose__pose=m.pose.pose)) for t, m in given]
     bag = write_bag(tmp_path / "bag", {BODY: topic}, storage)
     for path in (bag, next(bag.glob("bag.*"))):
         export = read_bag(path, mocap())
@@ -128,13 +128,15 @@ def sensors():
     return {
         "/imu": series(imu, lambda k: {"angular_velocity__z": 0.1 * k, **level}, step=0.01),
         "/raw": series(imu, lambda k: {"orientation_covariance": unknown}),
-        "/pressure": series("sensor_msgs/msg/FluidPressure",
-                            lambda k: {"fluid_pressure": 101325.0 + 9806.65 * k}),
+        "/pressure": series(
+            "sensor_msgs/msg/FluidPressure", lambda k: {"fluid_pressure": 101325.0 + 9806.65 * k}
+        ),
         "/depth": series("std_msgs/msg/Float64", lambda k: {"data": 2.0 + k}, stamped=False),
-        "/dvl": series("geometry_msgs/msg/TwistStamped", lambda k: {"twist__linear__y": 0.5},
-                       step=0.2),
+        "/dvl": series(
+            "geometry_msgs/msg/TwistStamped", lambda k: {"twist__linear__y": 0.5}, step=0.2
+        ),
         "/battery": series("sensor_msgs/msg/BatteryState", lambda k: {"voltage": 16.5}),
-    }  # fmt: skip
+    }
 
 
 def test_topics_become_channels_without_any_pose(tmp_path):
@@ -143,8 +145,13 @@ def test_topics_become_channels_without_any_pose(tmp_path):
     export = read_bag(bag, mocap(topics=topics))
     assert not len(export.time)
     assert set(export.channels) == {
-        "attitude", "rates", "specific_force", "depth", "velocity", "voltage"
-    }  # fmt: skip
+        "attitude",
+        "rates",
+        "specific_force",
+        "depth",
+        "velocity",
+        "voltage",
+    }
     np.testing.assert_allclose(export.channels["depth"].value[:, 0], np.arange(20))
     np.testing.assert_allclose(export.channels["rates"].value[:, 2], 0.1 * np.arange(20))
     np.testing.assert_array_equal(export.channels["specific_force"].value[0], [0, 0, 9.8])
@@ -160,11 +167,14 @@ def test_an_attitude_by_itself_is_a_quaternion_or_three_angles(tmp_path):
     vector = dict(zip("xyz", angles, strict=True))
     w, x, y, z = from_euler(*np.array(angles))
     quaternion = {f"quaternion__{n}": float(v) for n, v in zip("wxyz", (w, x, y, z), strict=True)}
-    bag = write_bag(tmp_path / "bag", {
-        "/euler": series("geometry_msgs/msg/Vector3", lambda k: vector, stamped=False),
-        "/turn": series("geometry_msgs/msg/QuaternionStamped", lambda k: quaternion),
-        **sensors(),
-    })  # fmt: skip
+    bag = write_bag(
+        tmp_path / "bag",
+        {
+            "/euler": series("geometry_msgs/msg/Vector3", lambda k: vector, stamped=False),
+            "/turn": series("geometry_msgs/msg/QuaternionStamped", lambda k: quaternion),
+            **sensors(),
+        },
+    )
     for topic in ("/euler", "/turn"):
         export = read_bag(bag, mocap(topics={"attitude": topic, "imu": "/imu"}))
         np.testing.assert_allclose(export.channels["attitude"].value, [[w, x, y, z]] * 20)
@@ -209,24 +219,35 @@ def test_commands_in_arrays_by_number_place_and_order(tmp_path):
 
 
 def channels(kind, rows):
-    return series(kind, lambda k: {"channels": np.array(rows[k], np.uint16)}, count=len(rows),
-                  stamped=kind.endswith(("Out", "RCIn")) and "Override" not in kind)  # fmt: skip
+    return series(
+        kind,
+        lambda k: {"channels": np.array(rows[k], np.uint16)},
+        count=len(rows),
+        stamped=kind.endswith(("Out", "RCIn")) and "Override" not in kind,
+    )
 
 
 def test_pulses_of_mavros(tmp_path):
-    bag = write_bag(tmp_path / "bag", {
-        "/mavros/rc/out": channels("mavros_msgs/msg/RCOut", [[1500, 1900, 0], [1100, 1700, 1500]]),
-        "/mavros/rc/override": channels(
-            "mavros_msgs/msg/OverrideRCIn",
-            [[1500, 65535, *[0] * 16], [1600, 1500, *[0] * 16], [1700, 1700, *[0] * 16]]),
-    })  # fmt: skip
+    bag = write_bag(
+        tmp_path / "bag",
+        {
+            "/mavros/rc/out": channels(
+                "mavros_msgs/msg/RCOut", [[1500, 1900, 0], [1100, 1700, 1500]]
+            ),
+            "/mavros/rc/override": channels(
+                "mavros_msgs/msg/OverrideRCIn",
+                [[1500, 65535, *[0] * 16], [1600, 1500, *[0] * 16], [1700, 1700, *[0] * 16]],
+            ),
+        },
+    )
     with pytest.raises(BadInput, match=r"2 topics that look like commands"):
         read_commands(bag, log(columns=["t1"]))
     out = read_commands(bag, log(columns=["t1", "t2", "t3"], topic="/mavros/rc/out"))
     np.testing.assert_allclose(out.value, [[0, 1, 0], [-1, 0.5, 0]])
     assert "1 outputs without a pulse" in out.notes[0]
-    demand = log(kind="demand", columns=["RC1", "RC2"], axes=["surge", "yaw"],
-                 topic="/mavros/rc/override")  # fmt: skip
+    demand = log(
+        kind="demand", columns=["RC1", "RC2"], axes=["surge", "yaw"], topic="/mavros/rc/override"
+    )
     given = read_commands(bag, demand)
     np.testing.assert_allclose(given.value[:, [0, 5]], [[0.25, 0.0], [0.5, 0.5]])
     assert given.counts["dropped"] == 1  # its second channel was not overridden
@@ -237,10 +258,15 @@ def test_pulses_of_mavros(tmp_path):
 def test_joysticks_and_wrenches(tmp_path):
     manual = "mavros_msgs/msg/ManualControl"
     wrench = "geometry_msgs/msg/WrenchStamped"
-    bag = write_bag(tmp_path / "bag", {
-        "/stick": series(manual, lambda k: {"x": 500.0, "y": -100.0, "z": 250.0, "r": 1000.0}),
-        "/force": series(wrench, lambda k: {"wrench__force__x": 12.0, "wrench__torque__z": -3.0}),
-    })  # fmt: skip
+    bag = write_bag(
+        tmp_path / "bag",
+        {
+            "/stick": series(manual, lambda k: {"x": 500.0, "y": -100.0, "z": 250.0, "r": 1000.0}),
+            "/force": series(
+                wrench, lambda k: {"wrench__force__x": 12.0, "wrench__torque__z": -3.0}
+            ),
+        },
+    )
     axes = ["surge", "sway", "heave", "yaw"]
     stick = read_commands(bag, log(kind="demand", columns=axes, topic="/stick"))
     np.testing.assert_allclose(stick.value[0], [0.5, -0.1, 0.5, 0, 0, 1.0])
@@ -318,8 +344,12 @@ def test_a_damaged_mcap_of_many_topics_is_read_or_refused(tmp_path):
     content = campaign_content("rosbag2")
     topics = {"pose": BODY, "imu": "/imu", "depth": "/pressure", "velocity": "/dvl"}
     content["mocap"]["topics"] = topics
-    content["commands"] = {"format": "rosbag2", "kind": "pwm", "columns": ["t1", "t2"],
-                           "topic": "/out"}  # fmt: skip
+    content["commands"] = {
+        "format": "rosbag2",
+        "kind": "pwm",
+        "columns": ["t1", "t2"],
+        "topic": "/out",
+    }
     content["runs"][0] |= {"mocap": "bag/bag.mcap", "commands": "bag/bag.mcap"}
     read_damaged(write_campaign(tmp_path, content), [bag / "bag.mcap"], seed="mcap")
 
@@ -344,8 +374,11 @@ def test_the_bag_of_another_vehicle():
     export = read_bag(OTHER, mocap(body="/mocap/sam_mocap/odom", topics=topics))
     assert len(export.time) == 1775
     assert {kind: len(channel.time) for kind, channel in export.channels.items()} == {
-        "rates": 259, "specific_force": 259, "depth": 53, "voltage": 78
-    }  # fmt: skip
+        "rates": 259,
+        "specific_force": 259,
+        "depth": 53,
+        "voltage": 78,
+    }
     assert export.channels["specific_force"].value[:, 2].mean() == pytest.approx(9.81, abs=0.05)
     assert any("sam_mocap" in note and "bag's times hold" in note for note in export.notes)
     assert len(read_commands(OTHER, log(columns=["t1"], topic="/mavros/rc/out")).time) == 52

@@ -56,9 +56,11 @@ def wrench(described, nu, eta=(0.0, 0.0, 0.0), depth=0.0, angle=(), force=()):
     world, state = nominal(described), at_rest()
     state[2], state[3:7], state[7:] = LEVEL + depth, from_euler(*eta), nu
     thrust = Thrust(
-        np.array([force], float), np.zeros((1, 6)), np.full((1, 6), np.nan),
+        np.array([force], float),
+        np.zeros((1, 6)),
+        np.full((1, 6), np.nan),
         angle=np.array([angle], float),
-    )  # fmt: skip
+    )
     drive = Drive.by(world, thrust, 1.0)
     batch = Batch([world], Site(np.full((3, 2), np.nan), np.ones(3), LEVEL))
     return world.body.M @ batch.accelerations(drive, np.zeros(1), state[None], NO_MEMORY)[0]
@@ -72,9 +74,17 @@ def change(more, nu, **at):
 
 @given(velocities)
 def test_whole_matrices_of_mass_and_damping(nu):
-    body, drag = nominal(vehicle()).body, PLAIN | {"hydrodynamics": {
-        **PLAIN["hydrodynamics"], "linear_damping": [0.0] * 6, "quadratic_damping": [0.0] * 6,
-    }}  # fmt: skip
+    body, drag = (
+        nominal(vehicle()).body,
+        PLAIN
+        | {
+            "hydrodynamics": {
+                **PLAIN["hydrodynamics"],
+                "linear_damping": [0.0] * 6,
+                "quadratic_damping": [0.0] * 6,
+            }
+        },
+    )
     np.testing.assert_allclose(body.M_A, SYMMETRIC)
     found = wrench(vehicle(), nu) - wrench(build_vehicle(drag, "here"), nu)
     expected = -LINEAR @ nu - QUADRATIC @ (np.abs(nu) * nu)
@@ -94,9 +104,13 @@ def test_products_of_velocities_push_as_their_names_say(nu):
     names = {"Yuv": -28.6, "Yv|v|": -1310.0, "Nrr": -94.0, "Zuw": -28.0, "Muq": -2.0,
              "X|q||q|": -1.9, "Xuuu": -5.9, "K|r|v": 0.7, "Nvvr": 0.3}  # fmt: skip
     expected = [
-        -1.9 * q**2 - 5.9 * u**3, -28.6 * u * v - 1310.0 * v * abs(v), -28.0 * u * w,
-        0.7 * abs(r) * v, -2.0 * u * q, -94.0 * abs(r) * r + 0.3 * v * v * r,
-    ]  # fmt: skip
+        -1.9 * q**2 - 5.9 * u**3,
+        -28.6 * u * v - 1310.0 * v * abs(v),
+        -28.0 * u * w,
+        0.7 * abs(r) * v,
+        -2.0 * u * q,
+        -94.0 * abs(r) * r + 0.3 * v * v * r,
+    ]
     found = change({"cross_flow": names}, nu)
     np.testing.assert_allclose(found, expected, atol=1e-8)
     inside = {"hydrodynamics": PLAIN["hydrodynamics"] | {"cross_flow": names}}
@@ -146,9 +160,10 @@ def surface(nu, angle, place, normal, thrust, disc):
 STERN = {"name": "stern", "position": [-0.6, 0.0, 0.1], "normal": [0.0, 0.0, -1.0], "area": 0.02,
          "lift_slope": 3.0, "drag": 0.02, "stall": 0.3}  # fmt: skip
 RUDDER = STERN | {"name": "rudder", "normal": [0.0, 1.0, 0.0], "in_wake_of": "t1"}
-SCREW = {"force_curve": {"quadratic": {"forward": 9.0, "reverse": 5.0}}, "units": [
-    {"name": "t1", "position": [-0.5, 0, 0], "direction": [1, 0, 0], "diameter": 0.14}
-]}  # fmt: skip
+SCREW = {
+    "force_curve": {"quadratic": {"forward": 9.0, "reverse": 5.0}},
+    "units": [{"name": "t1", "position": [-0.5, 0, 0], "direction": [1, 0, 0], "diameter": 0.14}],
+}
 
 
 @given(velocities, st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(-5.0, 9.0))
@@ -164,8 +179,12 @@ def test_surfaces_lift_and_drag_in_the_flow_and_in_the_wake(nu, first, second, t
 
 def test_a_rudder_at_a_positive_angle_turns_the_bow_to_port():
     """It lifts along its normal, to starboard, behind CO."""
-    found = change({"surfaces": [STERN, STERN | RUDDER]}  | {"thrusters": SCREW},
-                   np.array([1.0, 0, 0, 0, 0, 0]), angle=(0.0, 0.1), force=(0.0,))  # fmt: skip
+    found = change(
+        {"surfaces": [STERN, STERN | RUDDER]} | {"thrusters": SCREW},
+        np.array([1.0, 0, 0, 0, 0, 0]),
+        angle=(0.0, 0.1),
+        force=(0.0,),
+    )
     assert found[1] > 0 > found[5]
 
 
@@ -254,10 +273,22 @@ def test_a_thruster_that_turns_pushes_along_its_angle():
 BAD = {
     "matrix": ({"hydrodynamics": PLAIN["hydrodynamics"] | {"added_mass": [1.0] * 5}}, "six rows"),
     "asymmetric": (
-        {"hydrodynamics": PLAIN["hydrodynamics"] | {"added_mass": LINEAR.tolist()}}, "symmetric"),
+        {"hydrodynamics": PLAIN["hydrodynamics"] | {"added_mass": LINEAR.tolist()}},
+        "symmetric",
+    ),
     "drive": ({"hydrodynamics": PLAIN["hydrodynamics"] | {"linear_damping": [-1.0] * 6}}, "least"),
-    "two curves": ({"thrusters": SCREW | {"force_curve": {
-        "odd_polynomial": [1.0], "table": {"command": [0, 1], "force": [0, 1]}}}}, "one of"),
+    "two curves": (
+        {
+            "thrusters": SCREW
+            | {
+                "force_curve": {
+                    "odd_polynomial": [1.0],
+                    "table": {"command": [0, 1], "force": [0, 1]},
+                }
+            }
+        },
+        "one of",
+    ),
     "no curve": ({"thrusters": {"units": SCREW["units"]}}, "no force_curve"),
     "wake": ({"surfaces": [RUDDER]}, "in the wake of 't1'"),
     "normal": ({"surfaces": [STERN | {"normal": [1.0, 0, 0]}]}, "across the x axis"),
@@ -266,13 +297,20 @@ BAD = {
     "moment": ({"rigid_body": PLANAR["rigid_body"]}, "Ixx"),
     "buoyancy": (
         {"rigid_body": {k: v for k, v in PLAIN["rigid_body"].items() if "buoy" not in k}},
-        "what floats has a 'waterplane'"),
+        "what floats has a 'waterplane'",
+    ),
     "centre": (
         {"rigid_body": {k: v for k, v in PLAIN["rigid_body"].items() if "gravity" not in k}},
-        r"'rigid_body\.center_of_gravity' is missing.*docs/vehicles\.md"),
-    "both": ({"cross_flow": {"Yuv": 1.0},
-              "hydrodynamics": PLAIN["hydrodynamics"] | {"cross_flow": {"Yuv": 1.0}}}, "stands in"),
-}  # fmt: skip
+        r"'rigid_body\.center_of_gravity' is missing.*docs/vehicles\.md",
+    ),
+    "both": (
+        {
+            "cross_flow": {"Yuv": 1.0},
+            "hydrodynamics": PLAIN["hydrodynamics"] | {"cross_flow": {"Yuv": 1.0}},
+        },
+        "stands in",
+    ),
+}
 
 
 @pytest.mark.parametrize("name", BAD)
@@ -299,10 +337,15 @@ def test_a_wrench_drives_a_vehicle_without_thrusters():
 def test_a_model_file_keeps_such_a_vehicle(tmp_path):
     table = {"tables": {"volts": {12: {"command": [-1, 1], "force": [-5, 5]}}}}
     screw = SCREW | {"units": [SCREW["units"][0] | {"force_curve": table}]}
-    world = nominal(vehicle(
-        surfaces=[STERN, RUDDER], thrusters=screw, waterplane={"heave": 3.0},
-        cross_flow={"Yuv": -1.0}, degrees_of_freedom=["surge", "sway", "heave", "roll", "pitch"],
-    ))  # fmt: skip
+    world = nominal(
+        vehicle(
+            surfaces=[STERN, RUDDER],
+            thrusters=screw,
+            waterplane={"heave": 3.0},
+            cross_flow={"Yuv": -1.0},
+            degrees_of_freedom=["surge", "sway", "heave", "roll", "pitch"],
+        )
+    )
     write_model(world, tmp_path / "m.yaml")
     again = build_model(read_yaml(tmp_path / "m.yaml"), tmp_path / "m.yaml", built_in())
     assert again.vehicle == world.vehicle

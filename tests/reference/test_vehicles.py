@@ -69,19 +69,58 @@ def prestero(nu, rudder, stern, thrust):
     """Acceleration (6,) of a level REMUS."""
     u, v, w, p, q, r = nu
     m, zg = MASS, ZG
-    X = (-1.62 * u * abs(u) + (-35.5 - m) * w * q - 1.93 * q**2 + (35.5 + m) * v * r
-         - 1.93 * r**2 - m * zg * p * r + thrust)  # fmt: skip
-    Y = (-1310 * v * abs(v) + 0.632 * r * abs(r) - 28.6 * u * v + (35.5 + m) * w * p
-         + (5.22 - m) * u * r - m * zg * q * r + 1.93 * p * q + 9.64 * u**2 * rudder)  # fmt: skip
-    Z = (W - B - 1310 * w * abs(w) - 0.632 * q * abs(q) - 28.6 * u * w + (-5.22 + m) * u * q
-         + (-35.5 - m) * v * p + m * zg * (p**2 + q**2) + 1.93 * r * p
-         - 9.64 * u**2 * stern)  # fmt: skip
+    X = (
+        -1.62 * u * abs(u)
+        + (-35.5 - m) * w * q
+        - 1.93 * q**2
+        + (35.5 + m) * v * r
+        - 1.93 * r**2
+        - m * zg * p * r
+        + thrust
+    )
+    Y = (
+        -1310 * v * abs(v)
+        + 0.632 * r * abs(r)
+        - 28.6 * u * v
+        + (35.5 + m) * w * p
+        + (5.22 - m) * u * r
+        - m * zg * q * r
+        + 1.93 * p * q
+        + 9.64 * u**2 * rudder
+    )
+    Z = (
+        W
+        - B
+        - 1310 * w * abs(w)
+        - 0.632 * q * abs(q)
+        - 28.6 * u * w
+        + (-5.22 + m) * u * q
+        + (-35.5 - m) * v * p
+        + m * zg * (p**2 + q**2)
+        + 1.93 * r * p
+        - 9.64 * u**2 * stern
+    )
     K = -0.13 * p * abs(p) - (IZZ - IYY) * q * r - m * zg * w * p + m * zg * u * r
-    M = (3.18 * w * abs(w) - 188 * q * abs(q) + (4.86 - (IXX - IZZ)) * r * p + m * zg * v * r
-         - m * zg * w * q - 2.0 * u * q + 24.0 * u * w - 1.93 * v * p
-         - 6.15 * u**2 * stern)  # fmt: skip
-    N = (-3.18 * v * abs(v) - 94 * r * abs(r) - 24.0 * u * v + (-4.86 - (IYY - IXX)) * p * q
-         - 1.93 * w * p - 2.0 * u * r - 6.15 * u**2 * rudder)  # fmt: skip
+    M = (
+        3.18 * w * abs(w)
+        - 188 * q * abs(q)
+        + (4.86 - (IXX - IZZ)) * r * p
+        + m * zg * v * r
+        - m * zg * w * q
+        - 2.0 * u * q
+        + 24.0 * u * w
+        - 1.93 * v * p
+        - 6.15 * u**2 * stern
+    )
+    N = (
+        -3.18 * v * abs(v)
+        - 94 * r * abs(r)
+        - 24.0 * u * v
+        + (-4.86 - (IYY - IXX)) * p * q
+        - 1.93 * w * p
+        - 2.0 * u * r
+        - 6.15 * u**2 * rudder
+    )
     A = np.diag([m + 0.93, m + 35.5, m + 35.5, IXX + 0.0704, IYY + 4.88, IZZ + 4.88])
     A[0, 4] = A[4, 0] = m * zg
     A[1, 3] = A[3, 1] = -m * zg
@@ -138,11 +177,13 @@ def skjetne(nu, force):
     c13, c23 = -(33.8 * v + 23.8 * 0.046 * r), 25.8 * u
     C = np.array([[0, 0, c13], [0, 0, c23], [-c13, -c23, 0]])
     a, b = abs(v), abs(r)
-    D = np.array([
-        [0.72253 + 1.32742 * abs(u) + 5.86643 * u * u, 0, 0],
-        [0, 0.88965 + 36.47287 * a + 0.805 * b, 7.250 + 0.845 * a + 3.450 * b],
-        [0, -0.03130 - 3.95645 * a - 0.130 * b, 1.900 - 0.080 * a + 0.750 * b],
-    ])  # fmt: skip
+    D = np.array(
+        [
+            [0.72253 + 1.32742 * abs(u) + 5.86643 * u * u, 0, 0],
+            [0, 0.88965 + 36.47287 * a + 0.805 * b, 7.250 + 0.845 * a + 3.450 * b],
+            [0, -0.03130 - 3.95645 * a - 0.130 * b, 1.900 - 0.080 * a + 0.750 * b],
+        ]
+    )
     tau = np.array([force[0] + force[1], 0.0, 0.078 * (force[0] - force[1])])
     return np.linalg.solve(M, tau - C @ nu - D @ nu)
 

@@ -20,9 +20,12 @@ def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.Completed
     command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "workflow/blind.smk")]
     return subprocess.run(
         [*command, "--cores", "1", *words, "--config", f"overrides={overrides}"],
-        cwd=folder, capture_output=True, text=True, timeout=500,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=500,
         env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.thorough

@@ -46,9 +46,14 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     ladder = json.loads((results / "ladder.json").read_text())
     steps = {step["model"]: step["windows_2s"] for step in ladder["steps"]}
     assert list(steps) == [
-        "zero_acceleration", "nominal", "refitted", "+thruster_lag", "knn_6dof",
-        "effects+knn_6dof", "noise_floor",
-    ]  # fmt: skip
+        "zero_acceleration",
+        "nominal",
+        "refitted",
+        "+thruster_lag",
+        "knn_6dof",
+        "effects+knn_6dof",
+        "noise_floor",
+    ]
     assert steps["+thruster_lag"] < 0.2 * steps["nominal"] < steps["zero_acceleration"]
     assert steps["+thruster_lag"] < steps["refitted"] < steps["nominal"]
     assert 0.5 < steps["+thruster_lag"] / steps["noise_floor"] < 1.5
@@ -61,8 +66,13 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert steps["+thruster_lag"] == pytest.approx(found["error"]["with_effects"], rel=1e-5)
     scored = json.loads((results / "comparison.json").read_text())["models"]
     assert set(scored) == {
-        "zero_acceleration", "nominal", "refitted", "effects", "knn_6dof", "effects+knn_6dof"
-    }  # fmt: skip
+        "zero_acceleration",
+        "nominal",
+        "refitted",
+        "effects",
+        "knn_6dof",
+        "effects+knn_6dof",
+    }
     assert set(tracked(study, results / "tracked.json")) == {*steps, "study", "diagnosis"} | set(
         scored
     )
@@ -136,9 +146,11 @@ def test_a_bad_campaign_is_one_message(tmp_path):
     folder = copy_of(ROOT, tmp_path)
     done = subprocess.run(
         [sys.executable, "-m", "snakemake", "--cores", "1", "--config", "campaign=nowhere"],
-        cwd=folder, capture_output=True, text=True,
+        cwd=folder,
+        capture_output=True,
+        text=True,
         env=os.environ | {"PYTHONPATH": str(folder / "src")},
-    )  # fmt: skip
+    )
     assert done.returncode == 2
     assert "nowhere" in done.stderr
     assert "Traceback" not in done.stderr

@@ -21,8 +21,11 @@ def test_snakemake_has_nothing_else_to_recommend():
     overrides = "folds.leave_one_run_out=true folds.pitfalls=true"
     command = [sys.executable, "-m", "snakemake", "--lint", "--config"]
     done = subprocess.run(
-        [*command, f"overrides={overrides}"], cwd=ROOT, capture_output=True, text=True,
+        [*command, f"overrides={overrides}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
         env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-    )  # fmt: skip
+    )
     titles = re.findall(r"^ +\* (.*):$", done.stderr, re.MULTILINE)
     assert set(titles) == {DECIDED}, done.stderr

@@ -208,8 +208,12 @@ def test_what_a_log_would_hold_is_read_back(log):
     value = np.round(400.0 * np.random.default_rng(0).uniform(-1, 1, shape)) / 400.0
     if log.per_axis:
         value[:, [k for k in range(6) if k not in log.axis_numbers]] = 0.0
-    kind = as_commands(np.arange(5.0), as_logged(Commands(np.arange(5.0), value, "thruster"), log),
-                       log, lambda line, column: "")  # fmt: skip
+    kind = as_commands(
+        np.arange(5.0),
+        as_logged(Commands(np.arange(5.0), value, "thruster"), log),
+        log,
+        lambda line, column: "",
+    )
     np.testing.assert_allclose(kind.value, value)
 
 

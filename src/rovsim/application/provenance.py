@@ -100,9 +100,11 @@ def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
     packages = {name: installed for name in PACKAGES if (installed := _version(name))}
     system = f"{platform.system()} {platform.machine()}"
     versions = {
-        "rovsim": rovsim.__version__, "python": platform.python_version(), "system": system,
+        "rovsim": rovsim.__version__,
+        "python": platform.python_version(),
+        "system": system,
         **packages,
-    }  # fmt: skip
+    }
     return {"code": own_digest("rovsim", catalogue.files), "versions": versions}
 
 

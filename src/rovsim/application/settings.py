@@ -176,9 +176,11 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
             known = _keys()
             if key not in known and key in message:
                 return BadInput(
-                    f"there is no key '{key}'", where=word,
-                    expected="a key of conf/config.yaml", remedy=nearest(key, known),
-                )  # fmt: skip
+                    f"there is no key '{key}'",
+                    where=word,
+                    expected="a key of conf/config.yaml",
+                    remedy=nearest(key, known),
+                )
     return BadInput(
         message.split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
         where=f"overrides {' '.join(overrides)}",

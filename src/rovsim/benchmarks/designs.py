@@ -82,9 +82,12 @@ def hide(case: str, seeds: Range) -> TankSettings:
         value = Value(value=float(f"{known.combine(neutral, neutral + change):.4g}"))
         entry = EffectEntry(effect=name, parameters={own: value})
     own_tank: dict[str, Any] = {
-        "name": "design", "seed": seed_of(case, seeds), "duration": SECONDS, "effects": (entry,),
+        "name": "design",
+        "seed": seed_of(case, seeds),
+        "duration": SECONDS,
+        "effects": (entry,),
         "runs": (TankRun(id="a", control="6dof", split="train"),),
-    }  # fmt: skip
+    }
     return TankSettings(**merged(ROUGH, RECIPES[name].tank, own_tank))
 
 
@@ -92,9 +95,13 @@ def ask(case: str, settings: Settings) -> Question:
     """The question of a case."""
     between = tuple(case.split("+")) if "+" in case else ()
     return Question(
-        seed=0, between=between, know=() if between else (case,), design=settings.design,
-        signals=settings.signals, replay=settings.replay,
-    )  # fmt: skip
+        seed=0,
+        between=between,
+        know=() if between else (case,),
+        design=settings.design,
+        signals=settings.signals,
+        replay=settings.replay,
+    )
 
 
 def run_case(case: str, seeds: Range, out: Path) -> dict[str, Any]:
@@ -111,14 +118,18 @@ def run_case(case: str, seeds: Range, out: Path) -> dict[str, Any]:
     usual = [own for own in found.baselines.values() if own]
     best = max(usual, key=lambda own: own[1].utility)[0] if usual else None
     result: dict[str, Any] = {
-        "case": case, "seconds": seconds, "cpu_seconds": cpu, "manoeuvre": found.flight.name,
+        "case": case,
+        "seconds": seconds,
+        "cpu_seconds": cpu,
+        "manoeuvre": found.flight.name,
         "hidden": [e.plain() for e in tank.effects],
         "promised": said.model_dump(mode="json")["expects"],
         "best_usual": best.name if best else None,
         "expected_ratio": min(
             (o.designed_is_better for o in said.baselines.values() if o.designed_is_better),
-            default=None),
-    }  # fmt: skip
+            default=None,
+        ),
+    }
     flights = {"designed": found.flight} | ({"usual": best} if best else {})
     for name, tried in flights.items():
         result[name] = _fly(name, tried, tank, folder, found, data, question, settings)
@@ -130,9 +141,15 @@ def _measure(folder: Path, settings: Settings) -> MeasuredCampaign:
 
 
 def _fly(
-    name: str, tried: CandidateFlight, tank: TankSettings, folder: Path, found: Plan,
-    data: MeasuredCampaign, question: Question, settings: Settings,
-) -> dict[str, Any]:  # fmt: skip
+    name: str,
+    tried: CandidateFlight,
+    tank: TankSettings,
+    folder: Path,
+    found: Plan,
+    data: MeasuredCampaign,
+    question: Question,
+    settings: Settings,
+) -> dict[str, Any]:
     """Fly a log in the same tank, and fit all that was asked to both runs."""
     log = data.campaign.commands
     assert log is not None
@@ -170,9 +187,11 @@ def _reached(before: PriorInformation, after: PriorInformation) -> dict[str, Any
     std, was = float(own.std()[0]), float(old.std()[0])
     value = float(own.hypothesis.x[own.of_interest[0]])
     return {
-        "std": std * scale, "std_before": was * scale, "gained": (was / std) ** 2 - 1.0,
+        "std": std * scale,
+        "std_before": was * scale,
+        "gained": (was / std) ** 2 - 1.0,
         "value": value * scale,
-    }  # fmt: skip
+    }
 
 
 def tabulate(results: Sequence[Mapping[str, Any]]) -> str:
@@ -195,9 +214,9 @@ def tabulate(results: Sequence[Mapping[str, Any]]) -> str:
         )
     better = _ratios(values, lambda r, k: r[k]["gained"])
     if len(better):
-        off = np.array([
-            r["designed"]["std"] / _promised(r) - 1.0 for r in values if "std" in r["designed"]
-        ])  # fmt: skip
+        off = np.array(
+            [r["designed"]["std"] / _promised(r) - 1.0 for r in values if "std" in r["designed"]]
+        )
         lines.append(
             f"Values: {np.sum(better >= 3.0)} of {len(better)} with three times the information, "
             f"median {np.median(better):.1f} times; the interval reached is off by "

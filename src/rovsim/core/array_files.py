@@ -41,9 +41,15 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
     except FileNotFoundError:
         found = "no such file"
     except (
-        ValueError, OSError, EOFError, KeyError, NotImplementedError, RuntimeError, zlib.error,
+        ValueError,
+        OSError,
+        EOFError,
+        KeyError,
+        NotImplementedError,
+        RuntimeError,
+        zlib.error,
         zipfile.BadZipFile,
-    ) as error:  # fmt: skip
+    ) as error:
         found = f"cannot be read ({error})"
     raise BadInput(
         found,

@@ -47,8 +47,12 @@ def _git(folder: Path, *words: str) -> str:
     with suppress(OSError, subprocess.SubprocessError):
         done = subprocess.run(
             ["git", "-C", str(folder), *words],
-            capture_output=True, text=True, check=True, timeout=PATIENCE, env=quiet,
-        )  # fmt: skip
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=PATIENCE,
+            env=quiet,
+        )
         return done.stdout.strip()
     return ""
 

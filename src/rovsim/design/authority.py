@@ -67,9 +67,12 @@ class Authority:
         turning = self.model.thrust_path.thrusters.turning
         force = np.where(turning, np.hypot(along, aside), along)
         command = np.stack(
-            [np.interp(f, own, c) for f, own, c in zip(force.T, self._forces[1].T,
-                                                       self._forces[0].T, strict=True)], axis=1
-        )  # fmt: skip
+            [
+                np.interp(f, own, c)
+                for f, own, c in zip(force.T, self._forces[1].T, self._forces[0].T, strict=True)
+            ],
+            axis=1,
+        )
         if self.kind == "demand":
             return self._demands(command, wrench)
         angle = np.arctan2(aside, along)[:, turning]

@@ -70,9 +70,12 @@ class ExpectedInformation:
 
 
 def expect_information(
-    paths: Array, commands: Commands, prior: PriorInformation, setup: RecordingSetup,
+    paths: Array,
+    commands: Commands,
+    prior: PriorInformation,
+    setup: RecordingSetup,
     exact: bool = False,
-) -> ExpectedInformation:  # fmt: skip
+) -> ExpectedInformation:
     """Of a flight whose path under each rival is (r, k+1, 13).
 
     `exact`: the train runs are observed anew, with filters that suit them and the flight together,
@@ -114,9 +117,12 @@ def _mix_error_dynamics(
 
 
 def _observe(
-    run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation,
-    error_dynamics: tuple[AxisErrorDynamics, ...], exact: bool,
-) -> FilterBank:  # fmt: skip
+    run: ObservedRun,
+    rival: FittedHypothesis,
+    prior: PriorInformation,
+    error_dynamics: tuple[AxisErrorDynamics, ...],
+    exact: bool,
+) -> FilterBank:
     """Filters for the flight, which is the last run, and where exact for the train runs."""
     runs = (*prior.runs, run) if exact else (run,)
     run_filters = tuple(design_filters(prior.noise.white, error_dynamics, w) for w in runs)
@@ -137,9 +143,12 @@ def measure_information(
 
 
 def _expect_log_odds(
-    bank: FilterBank, true: Linearised, other: FittedHypothesis, prior: PriorInformation,
+    bank: FilterBank,
+    true: Linearised,
+    other: FittedHypothesis,
+    prior: PriorInformation,
     exact: bool,
-) -> float:  # fmt: skip
+) -> float:
     """What the log odds against a rival, with all that it could free, gain where one is true.
 
     Its parameters stay within the reach that a fit gives them.

@@ -144,9 +144,12 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
 
 
 def _summarise(
-    found: Fit, bank: FilterBank, wanted: Sequence[str], penalty: float = 0.0,
+    found: Fit,
+    bank: FilterBank,
+    wanted: Sequence[str],
+    penalty: float = 0.0,
     widest: Hypothesis | None = None,
-) -> FittedHypothesis:  # fmt: skip
+) -> FittedHypothesis:
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = penalty * sum(term.choices for term in found.hypothesis.terms)
@@ -162,9 +165,11 @@ def _summarise(
 
 
 def _fit_rivals(
-    start: Hypothesis, runs: Sequence[ObservedRun], question: Question,
+    start: Hypothesis,
+    runs: Sequence[ObservedRun],
+    question: Question,
     candidates: Sequence[Candidate],
-) -> PriorInformation:  # fmt: skip
+) -> PriorInformation:
     """Each rival fitted in the other's absence, beside all else."""
     rest, fits, penalty = _without(start, *question.between), [], 0.0
     for name in question.between:

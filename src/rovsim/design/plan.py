@@ -72,9 +72,13 @@ class Plan:
 
 @threadpool_limits.wrap(limits=1, user_api="blas")  # matrices are too small for more to help
 def plan(
-    model: Model, runs: Runs, question: Question, columns: Sequence[int] | None,
-    catalogue: Catalogue, stage: Stage,
-) -> Plan:  # fmt: skip
+    model: Model,
+    runs: Runs,
+    question: Question,
+    columns: Sequence[int] | None,
+    catalogue: Catalogue,
+    stage: Stage,
+) -> Plan:
     """Find the flight of the largest utility.
 
     Args:
@@ -149,9 +153,12 @@ def _draw(
 
 
 def _choose(
-    problem: DesignProblem, baselines: Mapping[str, list[CandidateFlight]],
-    found: Sequence[Array], question: Question, random: np.random.Generator,
-) -> Plan:  # fmt: skip
+    problem: DesignProblem,
+    baselines: Mapping[str, list[CandidateFlight]],
+    found: Sequence[Array],
+    question: Question,
+    random: np.random.Generator,
+) -> Plan:
     """The best over what is not yet known, of those that surely stay within the limits.
 
     A usual manoeuvre is taken where none is better.
@@ -175,9 +182,18 @@ def _choose(
     start, envelope = problem.pilot.start, problem.envelope
     warnings = *warn_of_misfit(prior, question), *warn_of_walls(paths, start, envelope)
     return Plan(
-        flight, expected, {name: rated.get(name) for name in baselines}, prior, paths, setup.step,
-        envelope, start, problem.axes, setup.site, warnings,
-    )  # fmt: skip
+        flight,
+        expected,
+        {name: rated.get(name) for name in baselines},
+        prior,
+        paths,
+        setup.step,
+        envelope,
+        start,
+        problem.axes,
+        setup.site,
+        warnings,
+    )
 
 
 def _first_safe(
@@ -204,9 +220,12 @@ def _average(
     drives = setup.drives(one.commands)
     for models in zip(*some, strict=True):
         undisturbed = Scenarios(
-            models, np.zeros((len(models), len(setup.edges) - 1, 6)),
-            np.zeros((len(models), 3)), np.zeros(len(models)), setup,
-        )  # fmt: skip
+            models,
+            np.zeros((len(models), len(setup.edges) - 1, 6)),
+            np.zeros((len(models), 3)),
+            np.zeros(len(models)),
+            setup,
+        )
         paths = undisturbed.predict(drives, start)
         found.append(expect_information(paths, one.commands, prior, setup, exact=True))
     return ExpectedInformation(

@@ -36,9 +36,19 @@ def _samples(
     time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, setup: RecordingSetup
 ) -> Motion:
     return Motion(
-        INFO, setup.site, time, eta, nu, np.gradient(nu, time, axis=0), nu,
-        np.ones(len(time), bool), commands, False, float(time[-1]), setup.measured,
-    )  # fmt: skip
+        INFO,
+        setup.site,
+        time,
+        eta,
+        nu,
+        np.gradient(nu, time, axis=0),
+        nu,
+        np.ones(len(time), bool),
+        commands,
+        False,
+        float(time[-1]),
+        setup.measured,
+    )
 
 
 def _bins(
@@ -49,6 +59,16 @@ def _bins(
     mean = np.diff(way[:: setup.parts], axis=0) / np.diff(time)[:, None]
     change = np.vstack([np.full(6, np.nan), np.diff(mean, axis=0) / np.diff(time)[1:, None]])
     return Motion(
-        INFO, setup.site, time[:-1], eta[:-1], mean, change, nu[:-1],
-        np.ones(len(mean), bool), commands, True, float(time[-1]), setup.measured,
-    )  # fmt: skip
+        INFO,
+        setup.site,
+        time[:-1],
+        eta[:-1],
+        mean,
+        change,
+        nu[:-1],
+        np.ones(len(mean), bool),
+        commands,
+        True,
+        float(time[-1]),
+        setup.measured,
+    )

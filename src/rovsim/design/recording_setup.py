@@ -95,9 +95,12 @@ class RecordingSetup:
 
 
 def describe_setup(
-    runs: Sequence[ObservedRun], seconds: float, axes: Sequence[int] | None,
-    replay: ReplaySettings, catalogue: Catalogue,
-) -> RecordingSetup:  # fmt: skip
+    runs: Sequence[ObservedRun],
+    seconds: float,
+    axes: Sequence[int] | None,
+    replay: ReplaySettings,
+    catalogue: Catalogue,
+) -> RecordingSetup:
     """What flights have in common with the commanded run of most readings.
 
     Args:

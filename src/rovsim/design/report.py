@@ -108,17 +108,20 @@ def _round(value: float) -> float:
 
 
 def _compare(
-    prior: PriorInformation, designed: ExpectedInformation,
+    prior: PriorInformation,
+    designed: ExpectedInformation,
     baseline: tuple[CandidateFlight, ExpectedInformation] | None,
-) -> UsualManoeuvre:  # fmt: skip
+) -> UsualManoeuvre:
     if baseline is None:
         return UsualManoeuvre(amplitude=None, designed_is_better=None)
     flight, expected = baseline
     written = _expect(prior, expected)
     return UsualManoeuvre(
-        odds=written.odds, std=written.std, amplitude=flight.amplitude,
+        odds=written.odds,
+        std=written.std,
+        amplitude=flight.amplitude,
         designed_is_better=or_none(_round(designed.utility / max(expected.utility, NEGLIGIBLE))),
-    )  # fmt: skip
+    )
 
 
 def _keep(plan: Plan, site: Site) -> Keeps:
@@ -128,5 +131,7 @@ def _keep(plan: Plan, site: Site) -> Keeps:
     known = np.isfinite(away).any() and not np.isnan(away).all()
     return Keeps(
         nearest_wall_m=_round(float(np.nanmin(away))) if known else None,
-        speed_m_s=_round(speed), turn_rate_rad_s=_round(rate), tilt_rad=_round(tilt),
-    )  # fmt: skip
+        speed_m_s=_round(speed),
+        turn_rate_rad_s=_round(rate),
+        tilt_rad=_round(tilt),
+    )

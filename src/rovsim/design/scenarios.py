@@ -70,9 +70,11 @@ class Scenarios:
 
 
 def draw_scenarios(
-    each: Sequence[Sequence[Model]], prior: PriorInformation, setup: RecordingSetup,
+    each: Sequence[Sequence[Model]],
+    prior: PriorInformation,
+    setup: RecordingSetup,
     random: np.random.Generator,
-) -> Scenarios:  # fmt: skip
+) -> Scenarios:
     """Disturbances as the recordings show them, of models that could be true.
 
     Args:
@@ -93,9 +95,12 @@ def draw_scenarios(
 
 
 def _draw_of(
-    models: Sequence[Model], prior: PriorInformation, rival: int, setup: RecordingSetup,
+    models: Sequence[Model],
+    prior: PriorInformation,
+    rival: int,
+    setup: RecordingSetup,
     random: np.random.Generator,
-) -> Scenarios:  # fmt: skip
+) -> Scenarios:
     """Of the models of one rival: what passes by, and what lasts and it does not know of."""
     count, steps, h = len(models), len(setup.edges) - 1, setup.step
     noise, slow = prior.noise, prior.low_frequency[rival]

@@ -152,10 +152,17 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
     scipy.optimize.differential_evolution(
         cast(Any, rate),  # whole generations, which its types do not know
         scipy.optimize.Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
-        init=first, maxiter=settings.rounds, tol=0.0, atol=0.0,
-        mutation=(0.3, 0.9), recombination=0.6, polish=False, updating="deferred",
-        vectorized=True, rng=np.random.default_rng(seed),
-    )  # fmt: skip
+        init=first,
+        maxiter=settings.rounds,
+        tol=0.0,
+        atol=0.0,
+        mutation=(0.3, 0.9),
+        recombination=0.6,
+        polish=False,
+        updating="deferred",
+        vectorized=True,
+        rng=np.random.default_rng(seed),
+    )
     able = [one for one in archive if one.rank > BEYOND]
     return [one.numbers for one in sorted(able, key=lambda one: -one.rank)]
 

@@ -98,9 +98,13 @@ def was_diagnosed(base: Model, diagnosis: Diagnosis) -> bool:
 
 
 def add_uncertainty(
-    model: Model, names: Sequence[str], base: Model, diagnosis: Diagnosis, source: Path,
+    model: Model,
+    names: Sequence[str],
+    base: Model,
+    diagnosis: Diagnosis,
+    source: Path,
     catalogue: Catalogue,
-) -> Model:  # fmt: skip
+) -> Model:
     """The base with effects as they were fitted, and how sure a diagnosis is of them.
 
     Of a model that it did not end with nothing is known.
@@ -117,8 +121,10 @@ def add_uncertainty(
         for one in posterior.instead
     ]
     content = {
-        "noise": diagnosis.noise, "correlation": posterior.correlation, "instead": instead,
-    }  # fmt: skip
+        "noise": diagnosis.noise,
+        "correlation": posterior.correlation,
+        "instead": instead,
+    }
     entry = checked(UncertaintyEntry, content, source)
     return with_uncertainty(model, entry, catalogue, source)
 

@@ -90,9 +90,15 @@ def diagnose_campaign(
     shares = [finding.share() for one in searched for finding in one.explanation.findings]
     ladder, away = _climb(diagnosis, runs, settings, catalogue)
     told = report(
-        diagnosis, shares, ladder, describe_model(base), catalogue, train.looked_at, standstills,
+        diagnosis,
+        shares,
+        ladder,
+        describe_model(base),
+        catalogue,
+        train.looked_at,
+        standstills,
         away,
-    )  # fmt: skip
+    )
     return Diagnosed(told, where, diagnosis.proposed.source if diagnosis.proposed else None)
 
 
@@ -122,9 +128,12 @@ def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:
 
 
 def _floor(
-    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue,
+    diagnosis: TrainDiagnosis,
+    runs: Runs,
+    settings: DiagnosisSettings,
+    catalogue: Catalogue,
     reached: float | None,
-) -> float | None:  # fmt: skip
+) -> float | None:
     """What a perfect model would score; None where that cannot be estimated.
 
     Part of what is taken for noise may be structure: a floor above what was reached is none.

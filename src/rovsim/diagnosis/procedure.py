@@ -105,9 +105,14 @@ def diagnose_train_runs(
 
 
 def _diagnose(
-    base: Model, usable: UsableRuns, settings: SearchSettings, catalogue: Catalogue, seed: int,
-    stage: Stages, smooths: bool = True,
-) -> TrainDiagnosis:  # fmt: skip
+    base: Model,
+    usable: UsableRuns,
+    settings: SearchSettings,
+    catalogue: Catalogue,
+    seed: int,
+    stage: Stages,
+    smooths: bool = True,
+) -> TrainDiagnosis:
     """`smooths`: whether the cameras may smooth."""
     stage("observing")
     smoothing = find_smoothing(base, usable.runs) if smooths else None
@@ -153,16 +158,21 @@ def _diagnose(
     if answer.structures and not proposed:
         selected = doubt_small(selected, answer.structures[0].share)
     return TrainDiagnosis(
-        base, usable, answer.fit,
+        base,
+        usable,
+        answer.fit,
         _correlate(wider),
         selected,
         ranking=rank_alone(workspace, nothing, answer.fit),
-        rivals=rivals, structures=answer.structures,
-        refused=answer.refused or not answer.fit.is_finite, scale=scale,
+        rivals=rivals,
+        structures=answer.structures,
+        refused=answer.refused or not answer.fit.is_finite,
+        scale=scale,
         not_observable=list_not_observable(answer.selection, catalogue, base.vehicle),
-        proposed=proposed, stand_ins=tuple(sorted(stand_ins)),
+        proposed=proposed,
+        stand_ins=tuple(sorted(stand_ins)),
         disturbance=None if proposed else _trace(answer),
-    )  # fmt: skip
+    )
 
 
 def _unmask(answer: Answer) -> Answer:
@@ -174,9 +184,12 @@ def _unmask(answer: Answer) -> Answer:
 
 
 def _begin(
-    base: Model, smoothing: Smoothing | None, runs: Sequence[ObservedRun],
-    settings: SearchSettings, catalogue: Catalogue,
-) -> Iterator[SearchStart]:  # fmt: skip
+    base: Model,
+    smoothing: Smoothing | None,
+    runs: Sequence[ObservedRun],
+    settings: SearchSettings,
+    catalogue: Catalogue,
+) -> Iterator[SearchStart]:
     """From where to search, the last one where none before ends where it began; made when asked.
 
     Behind a filter what the motion tells of its delay is used before that is taken for something
@@ -232,9 +245,12 @@ def _observe(
 
 
 def _propose(
-    answer: Answer, base: Model, holdout: HoldoutValidation, usable: UsableRuns,
+    answer: Answer,
+    base: Model,
+    holdout: HoldoutValidation,
+    usable: UsableRuns,
     camera: Sequence[Named],
-) -> ProposedLaw | None:  # fmt: skip
+) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:

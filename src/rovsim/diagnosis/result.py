@@ -158,12 +158,13 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
         return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
     share = diagnosis.structures[0].share if diagnosis.structures else None
     return Unexplained(
-        fraction=rounded(share), significant=True,
+        fraction=rounded(share),
+        significant=True,
         hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED,
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
         stand_ins=diagnosis.stand_ins,
         disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
-    )  # fmt: skip
+    )
 
 
 def _hint(structures: Sequence[Structure]) -> str:

@@ -182,9 +182,12 @@ class ThrustPath:
         return force, after
 
     def over_steps(
-        self, commands: Commands, edges: Array, between: Between = "held",
+        self,
+        commands: Commands,
+        edges: Array,
+        between: Between = "held",
         cuts: StepCuts | None = None,
-    ) -> Thrust:  # fmt: skip
+    ) -> Thrust:
         """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
 
         Before the first line its command holds, after the last one too. The mean is exact for held
@@ -204,9 +207,14 @@ class ThrustPath:
         return replace(static, force=force)
 
     def arrived(
-        self, lines: Commands, edges: Array, start: float, duration: float, between: Between,
+        self,
+        lines: Commands,
+        edges: Array,
+        start: float,
+        duration: float,
+        between: Between,
         cuts: StepCuts | None = None,
-    ) -> Thrust:  # fmt: skip
+    ) -> Thrust:
         """Static mean thrust over each step, of lines by the time at which they take effect.
 
         `start` s and `duration` s are those of the recording; `cuts` as of `over_steps`.

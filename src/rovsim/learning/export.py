@@ -65,10 +65,16 @@ def export_neighbours(
     turned = Z @ axes.T
     tree = packed_tree(turned)
     parts = [
-        header, scaling.shift, scaling.scale, _sheet(axes, filled(len(axes), PASS), len(axes)),
-        tree.boxes, side_by_side(turned[tree.order]),
-        _row(tree.order, filled(len(Z), LANES)), Z[tree.order], Y[tree.order],
-    ]  # fmt: skip
+        header,
+        scaling.shift,
+        scaling.scale,
+        _sheet(axes, filled(len(axes), PASS), len(axes)),
+        tree.boxes,
+        side_by_side(turned[tree.order]),
+        _row(tree.order, filled(len(Z), LANES)),
+        Z[tree.order],
+        Y[tree.order],
+    ]
     return np.concatenate([part.ravel() for part in parts])
 
 
@@ -115,11 +121,15 @@ def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
     length, wide = sqrt(2.0) * kernel.lengthscale, filled(n, LANES)
     prior = np.zeros(share) if kernel.prior is None else kernel.prior
     pieces = [
-        np.array([variance.identity, variance.limit]), prior, scaling.shift, scaling.scale * length,
-        side_by_side(kernel.points / length), _row(variance.spectrum, filled(rank, PASS)),
+        np.array([variance.identity, variance.limit]),
+        prior,
+        scaling.shift,
+        scaling.scale * length,
+        side_by_side(kernel.points / length),
+        _row(variance.spectrum, filled(rank, PASS)),
         _sheet(kernel.weights.T, filled(share, PASS), wide),
         _sheet(variance.vectors, filled(rank, PASS), wide),
-    ]  # fmt: skip
+    ]
     return np.concatenate([piece.ravel() for piece in pieces])
 
 

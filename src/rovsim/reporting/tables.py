@@ -161,11 +161,13 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         ]
     rows = {
         step.model: [
-            or_nan(step.windows_2s), fit(or_nan(step.windows_2s)),
-            *step.acceleration_rmse.array(), *step.velocity_mae.array()
+            or_nan(step.windows_2s),
+            fit(or_nan(step.windows_2s)),
+            *step.acceleration_rmse.array(),
+            *step.velocity_mae.array(),
         ]
         for step in ladder.steps
-    }  # fmt: skip
+    }
     built_up = f" {LADDER}" if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
     bound = "; the noise floor is a bound, not a model" if ladder.noise_floor is not None else ""
     return Table(
@@ -184,11 +186,13 @@ def tabulate_published_errors(published_errors: PublishedErrors) -> Table:
     columns += [Column(f"{metric}_ratio", metric, "–", printed=False) for metric in METRICS]
     rows = {
         name: [
-            100 * (1 - or_nan(model.share_below)), or_nan(model.geometric_mean),
-            *model.by_axis.array(), *(or_nan(model.by_metric[k].geometric_mean) for k in METRICS),
+            100 * (1 - or_nan(model.share_below)),
+            or_nan(model.geometric_mean),
+            *model.by_axis.array(),
+            *(or_nan(model.by_metric[k].geometric_mean) for k in METRICS),
         ]
         for name, model in published_errors.models.items()
-    }  # fmt: skip
+    }
     return Table(
         caption="Held-out runs against the published numbers: cells (run, axis, metric) in which a "
         "model is not below the smallest published error, and the geometric mean of its error "

@@ -10,9 +10,11 @@ from rovsim.results.diagnosis import PROPOSED
 LONGEST = 40  # letters of a name before its middle is left out
 # The study's own models; a user's keep the name of their file.
 TITLES = {
-    "zero_acceleration": "constant velocity", "refitted": "nominal, refitted",
-    "effects": "nominal + effects", "noise_floor": "noise floor",
-}  # fmt: skip
+    "zero_acceleration": "constant velocity",
+    "refitted": "nominal, refitted",
+    "effects": "nominal + effects",
+    "noise_floor": "noise floor",
+}
 MEANINGS = {
     "zero_acceleration": "a vehicle that keeps its velocity; no model should be worse",
     "nominal": "the vehicle file as it is",

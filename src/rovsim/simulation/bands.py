@@ -46,8 +46,12 @@ def why_without_bands(model: Model, motion: Motion) -> str | None:
 
 
 def predict_band(
-    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings,
-) -> Band | None:  # fmt: skip
+    model: Model,
+    motion: Motion,
+    spans: Spans,
+    signals: SignalSettings,
+    settings: ReplaySettings,
+) -> Band | None:
     """The band of a model in some windows of a run; None where it cannot be known.
 
     Windows longer than `LONGEST` have none.
@@ -86,9 +90,13 @@ def _divide(spans: Spans, most: int) -> Iterator[list[tuple[int, int]]]:
 
 
 def _draw_band(
-    model: Model, motion: Motion, spans: Spans, noise: NoiseDraws, signals: SignalSettings,
+    model: Model,
+    motion: Motion,
+    spans: Spans,
+    noise: NoiseDraws,
+    signals: SignalSettings,
     settings: ReplaySettings,
-) -> Band:  # fmt: skip
+) -> Band:
     disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, settings.step).edges), DRAWS)
     again = noise.resample_measurement_noise(motion, model.mocap_view, signals, DRAWS)
     drawn = [model.draw(noise.random) for _ in range(DRAWS)]

@@ -48,9 +48,13 @@ class Starts:
         """What kernels work off; the output of each begins at the rows `out`."""
         models, count = self.state.shape[:2]
         return Jobs(
-            self.state.reshape(-1, 13), np.tile(self.first, models), np.tile(self.steps, models),
-            np.repeat(np.arange(models), count), out, self.memory.reshape(-1, 6),
-        )  # fmt: skip
+            self.state.reshape(-1, 13),
+            np.tile(self.first, models),
+            np.tile(self.steps, models),
+            np.repeat(np.arange(models), count),
+            out,
+            self.memory.reshape(-1, 6),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,9 +139,17 @@ class Batch:
         starts = replace(starts, state=starts.state * self.free)
         out[stops - rows] = starts.state.reshape(-1, 13)
         run_jobs(
-            self.engine.integrate, starts.jobs(stops - rows + 1), time, stride, self._constants,
-            self._inputs(drives), self._parameters, self._residual, self._place, out,
-        )  # fmt: skip
+            self.engine.integrate,
+            starts.jobs(stops - rows + 1),
+            time,
+            stride,
+            self._constants,
+            self._inputs(drives),
+            self._parameters,
+            self._residual,
+            self._place,
+            out,
+        )
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
         return [paths[k * count : (k + 1) * count] for k in range(models)]
 
@@ -154,11 +166,23 @@ class Batch:
         starts = replace(starts, state=starts.state * self.free)
         jobs = starts.jobs(stops - np.tile(starts.steps, models))
         run_jobs(
-            self.engine.observe, jobs, correction.time, correction.ends, self._constants,
-            self._inputs(drives), self._parameters, self._place, np.stack(own), row,
-            correction.seen, correction.known, correction.gains, correction.decay,
-            correction.by_velocity, out,
-        )  # fmt: skip
+            self.engine.observe,
+            jobs,
+            correction.time,
+            correction.ends,
+            self._constants,
+            self._inputs(drives),
+            self._parameters,
+            self._place,
+            np.stack(own),
+            row,
+            correction.seen,
+            correction.known,
+            correction.gains,
+            correction.decay,
+            correction.by_velocity,
+            out,
+        )
         return out.reshape(models, count, 6)
 
     def accelerations(self, drive: Drive, times: Array, states: Array, memory: Array) -> Array:
@@ -168,18 +192,32 @@ class Batch:
         """
         out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self.free)
         self.engine.accelerations(
-            times, states, memory, self._constants, self._inputs([drive]),
-            self._parameters, self._residual, self._place, out,
-        )  # fmt: skip
+            times,
+            states,
+            memory,
+            self._constants,
+            self._inputs([drive]),
+            self._parameters,
+            self._residual,
+            self._place,
+            out,
+        )
         return out
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
         """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
         state *= self.free
         self.engine.advance(
-            state, memory, t, h, self._constants, self._inputs([drive]), self._parameters,
-            self._residual, self._place,
-        )  # fmt: skip
+            state,
+            memory,
+            t,
+            h,
+            self._constants,
+            self._inputs([drive]),
+            self._parameters,
+            self._residual,
+            self._place,
+        )
 
     def advance_by_heun(
         self, drive: Drive, pushes: Array, state: Array, memory: Array, t: float, h: float
@@ -191,9 +229,18 @@ class Batch:
         """
         out = np.empty((len(pushes), 13))
         self.engine.heun(
-            state, memory, t, h, pushes, self._constants, self._inputs([drive]),
-            self._parameters, self._residual, self._place, out,
-        )  # fmt: skip
+            state,
+            memory,
+            t,
+            h,
+            pushes,
+            self._constants,
+            self._inputs([drive]),
+            self._parameters,
+            self._residual,
+            self._place,
+            out,
+        )
         return out
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:

@@ -47,6 +47,12 @@ def _correction() -> Correction:
     readings = np.zeros((2, 13))
     readings[:, 3] = 1.0
     return Correction(
-        [readings], np.ones((2, 6)), np.ones(5), np.array([0.0, 0.01]), np.array([0, 1]),
-        np.zeros((3, 6)), np.ones((1, 6)), False,
-    )  # fmt: skip
+        [readings],
+        np.ones((2, 6)),
+        np.ones(5),
+        np.array([0.0, 0.01]),
+        np.array([0, 1]),
+        np.zeros((3, 6)),
+        np.ones((1, 6)),
+        False,
+    )

@@ -60,9 +60,14 @@ class Actuation(NamedTuple):
     def drive(self, model: Model, duration: float) -> "Drive":
         """What drives a model, in a run of that many s."""
         return Drive(
-            self.push(model), self.force, self.demand, duration, angle=self.angle, read=self.read,
+            self.push(model),
+            self.force,
+            self.demand,
+            duration,
+            angle=self.angle,
+            read=self.read,
             channels=model.thrust_path.channels,
-        )  # fmt: skip
+        )
 
     def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
         """Means over steps as long as `count` (s,) of these, and what each grows by over them.

@@ -19,10 +19,17 @@ from rovsim.simulation.unfiltered_motion import sharpen
 def undo_mocap_view(model: Model, motion: Motion) -> Motion:
     """The motion behind the reported one, if the motion capture sees as the model says."""
     motion, back = sharpen(model, motion), model.mocap_view.inverse
-    return motion if back.identity else replace(
-        motion, eta=back.poses(motion.eta), nu=back.twists(motion.nu),
-        nu_dot=back.twists(motion.nu_dot), state_nu=back.twists(motion.state_nu),
-    )  # fmt: skip
+    return (
+        motion
+        if back.identity
+        else replace(
+            motion,
+            eta=back.poses(motion.eta),
+            nu=back.twists(motion.nu),
+            nu_dot=back.twists(motion.nu_dot),
+            state_nu=back.twists(motion.state_nu),
+        )
+    )
 
 
 def true_states(model: Model, motion: Motion, index: Array) -> Array:

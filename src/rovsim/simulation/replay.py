@@ -34,9 +34,12 @@ Spans = Sequence[tuple[int, int]]
 
 
 def replay(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings,
+    model: Model,
+    motion: Motion,
+    signals: SignalSettings,
+    settings: ReplaySettings,
     open_loop: bool = True,
-) -> Replay:  # fmt: skip
+) -> Replay:
     """Replay one run open loop, unless that is not wanted, and in windows.
 
     What comes back is what the motion capture would report of the model's motion. An unusable run
@@ -50,9 +53,12 @@ def replay(
 
 
 def by_horizon(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings,
+    model: Model,
+    motion: Motion,
+    signals: SignalSettings,
+    settings: ReplaySettings,
     open_loop: bool = True,
-) -> Iterator[tuple[str, Prediction]]:  # fmt: skip
+) -> Iterator[tuple[str, Prediction]]:
     """The predictions of a replay, one after the other, with the names of their horizons.
 
     Raises:

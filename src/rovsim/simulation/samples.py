@@ -76,9 +76,13 @@ def _of_samples(
     )
     index = np.concatenate([*kept, np.arange(0)])
     return Samples(
-        index, motion.nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim[index],
+        index,
+        motion.nu[index],
+        motion.eta[index, 3:],
+        drive.wrench[index],
+        a_sim[index],
         motion.nu_dot[index] - like,
-    )  # fmt: skip
+    )
 
 
 def _of_bins(
@@ -90,9 +94,13 @@ def _of_bins(
     a_sim = accelerate_as_measured(model, motion, drive)[index]
     a_real_like = _differences_of_bins(model, motion, settings, index)
     return Samples(
-        index, motion.state_nu[index], motion.eta[index, 3:], drive.wrench[index], a_sim,
+        index,
+        motion.state_nu[index],
+        motion.eta[index, 3:],
+        drive.wrench[index],
+        a_sim,
         motion.nu_dot[index] - a_real_like,
-    )  # fmt: skip
+    )
 
 
 def _differences_of_bins(

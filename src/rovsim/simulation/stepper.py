@@ -166,8 +166,9 @@ def rollouts(
     lines = Commands(edges[:-1], np.asarray(commands, np.float64), kind)
     starts = Starts(
         np.tile(np.asarray(states, np.float64), (len(models), 1, 1)),
-        np.zeros(len(states), np.int64), np.full(len(states), count),
-    )  # fmt: skip
+        np.zeros(len(states), np.int64),
+        np.full(len(states), count),
+    )
     batch = Batch(models, Site.unknown())
     drives = Drives(lines, edges, "held").of(models)
     return np.array(batch.trajectories(drives, starts, edges))

@@ -66,10 +66,14 @@ def typical_flight(model: Model) -> Motion:
     demands per axis where an effect acts on these.
     """
     demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in model.effects)
-    flown = replace(model, residual=None, effects=tuple(
-        e.neutral() if isinstance(e, FrameMisalignment | MeasurementFilter) else e
-        for e in model.effects
-    ))  # fmt: skip
+    flown = replace(
+        model,
+        residual=None,
+        effects=tuple(
+            e.neutral() if isinstance(e, FrameMisalignment | MeasurementFilter) else e
+            for e in model.effects
+        ),
+    )
     settings = _calm(model.vehicle, demands)
     try:
         return _fly(flown, settings)
@@ -93,10 +97,18 @@ def _fly(model: Model, settings: TankSettings) -> Motion:
     state, time = found.state[::STRIDE], np.round(found.time[::STRIDE], 9)
     site = Site(tank, HALF_TURN_X, float(tank[2, 0]))
     return Motion(
-        RunInfo("flight", "6dof", "train"), site, time, state[:, :7], state[:, 7:],
-        np.gradient(state[:, 7:], time, axis=0), state[:, 7:], np.ones(len(time), bool),
-        found.commands, False, float(time[-1]),
-    )  # fmt: skip
+        RunInfo("flight", "6dof", "train"),
+        site,
+        time,
+        state[:, :7],
+        state[:, 7:],
+        np.gradient(state[:, 7:], time, axis=0),
+        state[:, 7:],
+        np.ones(len(time), bool),
+        found.commands,
+        False,
+        float(time[-1]),
+    )
 
 
 def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:

@@ -34,9 +34,11 @@ def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
     """
     if model.inert:
         raise BadInput(
-            f"{model.name} keeps its velocity whatever pushes", where="model",
-            expected="a model that forces move", remedy="Name nominal, or a model file.",
-        )  # fmt: skip
+            f"{model.name} keeps its velocity whatever pushes",
+            where="model",
+            expected="a model that forces move",
+            remedy="Name nominal, or a model file.",
+        )
     left = list(leave_out(model, target.hold))
     held = left[-1].after if left else model
     if not held.possible:

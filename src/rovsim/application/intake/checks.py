@@ -27,10 +27,17 @@ def unusable(motion: MotionFile) -> str | None:
     export = motion.track.export
     commands = Commands(np.empty(0), np.empty((0, 6)), "wrench")
     recording = Recording(
-        RunInfo("", "", ""), Site.unknown(), export.time, export.position, export.attitude,
-        export.found, commands, export.rate or measured_rate(export.time), export.nu,
+        RunInfo("", "", ""),
+        Site.unknown(),
+        export.time,
+        export.position,
+        export.attitude,
+        export.found,
+        commands,
+        export.rate or measured_rate(export.time),
+        export.nu,
         export.channels,
-    )  # fmt: skip
+    )
     return usable_reason(recording)
 
 

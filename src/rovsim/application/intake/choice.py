@@ -43,8 +43,14 @@ def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
     scores = {name: _score(compared[name], turns[name]) for name in turns}
     ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
     first = _first(ordered, scores)
-    told = Choice(None, _told(ordered, scores), tuple(ordered), tuple(turns.get(first.name, [])),
-                  compared[first.name], first)  # fmt: skip
+    told = Choice(
+        None,
+        _told(ordered, scores),
+        tuple(ordered),
+        tuple(turns.get(first.name, [])),
+        compared[first.name],
+        first,
+    )
     rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
     known = scores.get(first.name, 0.0) >= MIN_CORRELATION
     alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)

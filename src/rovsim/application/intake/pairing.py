@@ -137,9 +137,13 @@ def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> lis
 
 
 def _decided(
-    motion: MotionFile, logs: list[CommandFile], scores: Array,
-    content: int | None, name: int | None, clock: int | None,
-) -> Pair:  # fmt: skip
+    motion: MotionFile,
+    logs: list[CommandFile],
+    scores: Array,
+    content: int | None,
+    name: int | None,
+    clock: int | None,
+) -> Pair:
     if content is not None and name in (None, content):
         how = f"its commands cause this motion (likeness {scores[content]:.2f})"
         return Pair(

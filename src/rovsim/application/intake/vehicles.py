@@ -93,8 +93,9 @@ def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
         log = log.model_copy(update={"angles": [n for n in log.names if n in angles]})
     chosen = drive.of(log.names)
     try:
-        export = as_commands(drive.time, chosen, log, lambda line, column: str(path),
-                             pulses=_pulses(chosen, log))  # fmt: skip
+        export = as_commands(
+            drive.time, chosen, log, lambda line, column: str(path), pulses=_pulses(chosen, log)
+        )
         return tidy_commands(export, path)[0]
     except BadInput:
         return None

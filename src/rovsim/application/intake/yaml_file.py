@@ -92,6 +92,8 @@ def _texts(old: Any) -> list[str]:
 
 
 def _wrapped(lines: list[str], width: int) -> str:
-    filled = [textwrap.wrap(line, width - 2, break_long_words=False, break_on_hyphens=False) or [""]
-              for line in lines]  # fmt: skip
+    filled = [
+        textwrap.wrap(line, width - 2, break_long_words=False, break_on_hyphens=False) or [""]
+        for line in lines
+    ]
     return "\n".join(part for parts in filled for part in parts)

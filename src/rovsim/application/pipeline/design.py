@@ -109,6 +109,10 @@ def _refuse(question: Question) -> None:
 
 def _picture(found: Plan, commands: Commands, log: CommandLog) -> PlannedFlight:
     return PlannedFlight(
-        found.paths[:, :, :3], found.site.tank, commands.time, as_logged(commands, log),
-        tuple(log.names), UNITS[log.kind],
-    )  # fmt: skip
+        found.paths[:, :, :3],
+        found.site.tank,
+        commands.time,
+        as_logged(commands, log),
+        tuple(log.names),
+        UNITS[log.kind],
+    )

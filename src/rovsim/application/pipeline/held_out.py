@@ -61,9 +61,13 @@ def measure_pitfalls_by_run(
     """What mistakes cost; `models`: the effects found while that run was held out."""
     runs = {
         test.run.id: measure_pitfalls(
-            model, [m for m in motions if m.run.id != test.run.id], test, dict(learners),
-            settings.signals, settings.replay,
+            model,
+            [m for m in motions if m.run.id != test.run.id],
+            test,
+            dict(learners),
+            settings.signals,
+            settings.replay,
         )
         for test, model in zip(motions, models, strict=True)
-    }  # fmt: skip
+    }
     return Pitfalls(runs=runs)

@@ -43,9 +43,14 @@ def train(
     learner = settings.learner
     with reported(f"training {learner.kind}") as progress:
         gathered = gather_pairs(
-            base, motions, settings.control, learner.features, settings.signals, settings.replay,
+            base,
+            motions,
+            settings.control,
+            learner.features,
+            settings.signals,
+            settings.replay,
             settings.seed,
-        )  # fmt: skip
+        )
         trained = fit(*gathered.pairs, learner, settings.seed, progress)
     known = {"base": base.name, "train_runs": gathered.runs, "train_rows": gathered.rows}
     known |= {"seed": settings.seed}

@@ -33,17 +33,30 @@ def track_diagnosis(
     selected = "+".join(one.effect for one in found.selected) or "none"
     tags = {"model": base, "verdict": found.verdict, "selected": selected}
     whole = track(
-        settings, experiment=experiment, name="diagnosis", tags=tags, params=leaves(params),
-        scores={}, files=files, parent=parent, metrics=diagnosis_metrics(found),
-    )  # fmt: skip
+        settings,
+        experiment=experiment,
+        name="diagnosis",
+        tags=tags,
+        params=leaves(params),
+        scores={},
+        files=files,
+        parent=parent,
+        metrics=diagnosis_metrics(found),
+    )
     return {"diagnosis": whole} | {
         step.model: track(
-            settings, experiment=experiment, name=step.model, parent=whole,
-            tags={"model": step.model, "residual": "none", "control": "none"}, params={},
-            scores={}, files=[], metrics=step_metrics(step),
+            settings,
+            experiment=experiment,
+            name=step.model,
+            parent=whole,
+            tags={"model": step.model, "residual": "none", "control": "none"},
+            params={},
+            scores={},
+            files=[],
+            metrics=step_metrics(step),
         )
         for step in found.ladder.steps
-    }  # fmt: skip
+    }
 
 
 def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:

@@ -15,13 +15,18 @@ UI = "http://127.0.0.1:5000/"  # of `mlflow ui`, unless told otherwise
 # MLflow's page of an experiment: the one for models, not for prompts.
 SHOWN = {"mlflow.experimentKind": "custom_model_development"}
 COLUMNS = (
-    f"metrics.`{RANKED_BY}`", f"metrics.`{OF_BASE}`", "tags.`model`", "tags.`residual`",
+    f"metrics.`{RANKED_BY}`",
+    f"metrics.`{OF_BASE}`",
+    "tags.`model`",
+    "tags.`residual`",
     "tags.`control`",
-)  # fmt: skip
+)
 VIEW: dict[str, Any] = {
-    "searchFilter": f"metrics.{RANKED_BY} >= 0", "orderByKey": COLUMNS[0], "orderByAsc": True,
+    "searchFilter": f"metrics.{RANKED_BY} >= 0",
+    "orderByKey": COLUMNS[0],
+    "orderByAsc": True,
     "selectedColumns": COLUMNS,
-}  # fmt: skip
+}
 
 
 def address(number: str, server: str = "") -> str:

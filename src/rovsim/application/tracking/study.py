@@ -39,19 +39,28 @@ def track_study(
     steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
     written = {path.parent.name: path for path in files.models}
     parent = track(
-        settings, experiment=campaign, name="study", tags={"model": "study"}, params={},
-        scores={}, files=files.kept,
-    )  # fmt: skip
+        settings,
+        experiment=campaign,
+        name="study",
+        tags={"model": "study"},
+        params={},
+        scores={},
+        files=files.kept,
+    )
     diagnosed = track_diagnosis(
         settings, campaign, "nominal", diagnosis, diagnosing, [files.diagnosis], parent
-    )  # fmt: skip
+    )
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
     for name, entry in Comparison.read(files.comparison).models.items():
         runs[name] = track(
-            settings, experiment=campaign, name=name, parent=parent, scores=entry.runs,
+            settings,
+            experiment=campaign,
+            name=name,
+            parent=parent,
+            scores=entry.runs,
             metrics={"windows_2s": steps[name]} if name in steps else {},
             **_described(name, written.get(name)),
-        )  # fmt: skip
+        )
     return runs
 
 

@@ -53,10 +53,13 @@ class Vehicle(Fmi2Slave):
         """A variable that is an element of an array."""
         self.register_variable(
             Real(
-                name, causality=causality, getter=lambda: float(array[i]),
-                setter=lambda value: array.__setitem__(i, value), **more,
+                name,
+                causality=causality,
+                getter=lambda: float(array[i]),
+                setter=lambda value: array.__setitem__(i, value),
+                **more,
             )
-        )  # fmt: skip
+        )
 
     def exit_initialization_mode(self):
         """Begin where the parameters say."""

@@ -27,9 +27,11 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
     """
     if out.suffix != ".fmu":
         raise BadInput(
-            f"'{out.name}' is no unit", where="out", expected="a name that ends with .fmu",
+            f"'{out.name}' is no unit",
+            where="out",
+            expected="a name that ends with .fmu",
             remedy="For example out=vehicle.fmu.",
-        )  # fmt: skip
+        )
     from pythonfmu.builder import FmuBuilder
 
     with TemporaryDirectory() as folder:

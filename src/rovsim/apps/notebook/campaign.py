@@ -63,12 +63,13 @@ class Campaign:
         """The runs: split, control, length, and what is the matter with those that are not used."""
         rows = {
             run.id: (
-                run.split, run.control,
+                run.split,
+                run.control,
                 self.data.quality[run.id].duration_s if run.id in self.data.motions else None,
                 self.data.quality[run.id].unusable or "",
             )
             for run in self.data.campaign.runs
-        }  # fmt: skip
+        }
         columns = ["split", "control", "seconds", "unusable"]
         return DataFrame.from_dict(rows, orient="index", columns=columns)
 
@@ -103,9 +104,12 @@ class Campaign:
         return ShownDiagnosis(Diagnosis.read(path), path, self._known)
 
     def add(
-        self, diagnosis: ShownDiagnosis, path: Spec,
-        effects: Sequence[str] | None = None, to: Spec = "nominal",
-    ) -> ShownModel:  # fmt: skip
+        self,
+        diagnosis: ShownDiagnosis,
+        path: Spec,
+        effects: Sequence[str] | None = None,
+        to: Spec = "nominal",
+    ) -> ShownModel:
         """Write a model with the effects that a diagnosis selected, or with those named.
 
         Raises:
@@ -117,9 +121,13 @@ class Campaign:
         return self.model(out)
 
     def train(
-        self, residual: str = "knn", model: Spec = "nominal", control: str = "6dof",
-        path: Spec | None = None, **keys: object,
-    ) -> ShownModel:  # fmt: skip
+        self,
+        residual: str = "knn",
+        model: Spec = "nominal",
+        control: str = "6dof",
+        path: Spec | None = None,
+        **keys: object,
+    ) -> ShownModel:
         """Train a residual on top of a model; `keys` are those of its section: k=5 for knn.
 
         Raises:

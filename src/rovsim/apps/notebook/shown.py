@@ -229,11 +229,15 @@ def _named(table: Table) -> DataFrame:
 def _effects(found: Sequence[FittedEffect]) -> DataFrame:
     rows = {
         (one.effect, name): (
-            or_nan(v.value), v.std, v.unit, or_nan(one.error_reduction), one.probability
+            or_nan(v.value),
+            v.std,
+            v.unit,
+            or_nan(one.error_reduction),
+            one.probability,
         )
         for one in found
         for name, v in one.parameters.items()
-    }  # fmt: skip
+    }
     return _rows(rows, (*FITTED, "error_reduction", "probability"))
 
 

@@ -40,8 +40,10 @@ class Add:
         run = first_run(bench)
         first = {"run": run, "axes": excited(bench, run), "horizon": WINDOW}
         possible: Mapping[str, Sequence[Any]] = {
-            "run": self.runs, "axes": AXES, "horizon": HORIZONS,
-        }  # fmt: skip
+            "run": self.runs,
+            "axes": AXES,
+            "horizon": HORIZONS,
+        }
         self.chosen = place.choose(first, possible)
         self.wanted = self.drawing = False
         self.missing = False  # no chart, as the draft was no model
@@ -53,8 +55,9 @@ class Add:
         heading(TITLE, QUESTION)
         text(
             "Tick an effect to add it, move a slider to change it: the replay follows at once. "
-            "Here you see a train run; the test runs are opened when you save.", "soft",
-        )  # fmt: skip
+            "Here you see a train run; the test runs are opened when you save.",
+            "soft",
+        )
         about_axes()
         with ui.row().classes("halves"):
             with ui.column().classes("half left"):

@@ -46,8 +46,9 @@ class Effects:
             if unknown := self.draft.unknown:
                 text(
                     f"The diagnosis also found {', '.join(unknown)}, which nobody knows here: open "
-                    "the workbench with the effects_file=… it was made with.", "warning",
-                )  # fmt: skip
+                    "the workbench with the effects_file=… it was made with.",
+                    "warning",
+                )
             for name in offered[:FIRST] + [n for n in offered[FIRST:] if n in self.draft.ticked]:
                 self._card(name)
             rest = [name for name in self.bench.catalogue if name not in offered[:FIRST]]

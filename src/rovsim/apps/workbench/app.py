@@ -244,8 +244,16 @@ def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
 
     ui.run(
-        lambda: Page(sessions).build(), host=HOST, port=settings.port, show=settings.open,
-        reload=False, title="rovsim", favicon=ICON, tailwind=False, show_welcome_message=False,
-        reconnect_timeout=10.0, dark=None,
+        lambda: Page(sessions).build(),
+        host=HOST,
+        port=settings.port,
+        show=settings.open,
+        reload=False,
+        title="rovsim",
+        favicon=ICON,
+        tailwind=False,
+        show_welcome_message=False,
+        reconnect_timeout=10.0,
+        dark=None,
         ws_per_message_deflate=False,  # within one machine packing takes longer than sending
-    )  # fmt: skip
+    )

@@ -109,9 +109,7 @@ def columns(panels: Sequence[Panel]) -> Options:
 def _ends(panel: Panel) -> list[tuple[str, Array]]:
     """Lower ends of bands, and what is stacked on these."""
     each = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
-    return [
-        one for name, low, wide in each for one in ((name + LOW, low), (name + WIDTH, wide))
-    ]  # fmt: skip
+    return [one for name, low, wide in each for one in ((name + LOW, low), (name + WIDTH, wide))]
 
 
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
@@ -119,10 +117,18 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
     every = list(range(len(panels)))
     titles = [f"{panel.title} ({panel.unit})" for panel in panels]
     found: Options = {
-        "legend": {"type": "scroll", "top": 0, "left": 56, "right": 8, "itemWidth": 34,
-                   "itemStyle": {"opacity": 0}},
+        "legend": {
+            "type": "scroll",
+            "top": 0,
+            "left": 56,
+            "right": 8,
+            "itemWidth": 34,
+            "itemStyle": {"opacity": 0},
+        },
         "toolbox": {
-            "right": 8, "top": ICONS, "iconStyle": {"borderColor": SOFT},
+            "right": 8,
+            "top": ICONS,
+            "iconStyle": {"borderColor": SOFT},
             "feature": {
                 "dataZoom": {"yAxisIndex": "none", "title": {"zoom": "zoom", "back": "back"}}
             },
@@ -135,8 +141,11 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         },
         "dataZoom": [
             {
-                "type": "inside", "xAxisIndex": every, "filterMode": "none",
-                "zoomOnMouseWheel": "ctrl", "moveOnMouseMove": "shift",
+                "type": "inside",
+                "xAxisIndex": every,
+                "filterMode": "none",
+                "zoomOnMouseWheel": "ctrl",
+                "moveOnMouseMove": "shift",
                 "preventDefaultMouseMove": False,
             }
         ],
@@ -144,18 +153,24 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         "xAxis": [_time_axis(k, time, k == every[-1]) for k in every],
         "yAxis": [_value_axis(k, panel) for k, panel in enumerate(panels)],
         "series": [],
-    }  # fmt: skip
+    }
     ready = {one["id"]: one["data"] for one in series_data(time, panels)}
     for k, panel in enumerate(panels):
         for name in panel.curves:
             found["series"].append(
                 {
-                    "id": f"{k}/{name}", "name": told(name), "type": "line", "symbol": "none",
-                    "xAxisIndex": k, "yAxisIndex": k, "lineStyle": line_style(look[name]),
-                    "itemStyle": {"color": look[name].color}, "data": ready[f"{k}/{name}"],
+                    "id": f"{k}/{name}",
+                    "name": told(name),
+                    "type": "line",
+                    "symbol": "none",
+                    "xAxisIndex": k,
+                    "yAxisIndex": k,
+                    "lineStyle": line_style(look[name]),
+                    "itemStyle": {"color": look[name].color},
+                    "data": ready[f"{k}/{name}"],
                     "z": 3 if name == "measured" else 2,
                 }
-            )  # fmt: skip
+            )
         for name in panel.bands:
             found["series"] += [_area(k, name, end, look[name], ready) for end in (LOW, WIDTH)]
         found["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
@@ -166,12 +181,21 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
     """One of the two series that make a band: an unseen line, and what fills up to the other."""
     shade = {"color": look.color, "opacity": SHADE if end == WIDTH else 0.0}
     return {
-        "id": f"{k}/{name}{end}", "name": told(name), "type": "line", "silent": True,
+        "id": f"{k}/{name}{end}",
+        "name": told(name),
+        "type": "line",
+        "silent": True,
         "symbol": "none",
-        "xAxisIndex": k, "yAxisIndex": k, "stack": f"{k}/{name}", "stackStrategy": "all",
-        "lineStyle": {"opacity": 0}, "areaStyle": shade, "itemStyle": {"color": look.color},
-        "data": ready[f"{k}/{name}{end}"], "z": 1,
-    }  # fmt: skip
+        "xAxisIndex": k,
+        "yAxisIndex": k,
+        "stack": f"{k}/{name}",
+        "stackStrategy": "all",
+        "lineStyle": {"opacity": 0},
+        "areaStyle": shade,
+        "itemStyle": {"color": look.color},
+        "data": ready[f"{k}/{name}{end}"],
+        "z": 1,
+    }
 
 
 def cursor(panel: int, time: float | None) -> Options:
@@ -179,10 +203,18 @@ def cursor(panel: int, time: float | None) -> Options:
     at = [] if time is None else [{"xAxis": time}]
     look = {"color": MARK, "width": 1.5, "type": "solid"}
     return {
-        "id": f"{panel}/cursor", "type": "line", "data": [], "silent": True,
-        "markLine": {"symbol": "none", "label": {"show": False}, "data": at, "lineStyle": look,
-                     "animation": False},
-    }  # fmt: skip
+        "id": f"{panel}/cursor",
+        "type": "line",
+        "data": [],
+        "silent": True,
+        "markLine": {
+            "symbol": "none",
+            "label": {"show": False},
+            "data": at,
+            "lineStyle": look,
+            "animation": False,
+        },
+    }
 
 
 def _grids(panels: Sequence[Panel]) -> list[Options]:
@@ -196,21 +228,43 @@ def _grids(panels: Sequence[Panel]) -> list[Options]:
 
 def _time_axis(k: int, time: Array, last: bool) -> Options:
     return {
-        "type": "value", "gridIndex": k, "min": float(time[0]), "max": float(time[-1]),
-        "axisLabel": {"show": last, "color": SOFT, "hideOverlap": True, "showMinLabel": False,
-                      "showMaxLabel": False},
+        "type": "value",
+        "gridIndex": k,
+        "min": float(time[0]),
+        "max": float(time[-1]),
+        "axisLabel": {
+            "show": last,
+            "color": SOFT,
+            "hideOverlap": True,
+            "showMinLabel": False,
+            "showMaxLabel": False,
+        },
         "axisTick": {"show": last},
-        "axisLine": {"onZero": False, "lineStyle": {"color": LINE}}, "splitLine": {"show": False},
+        "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
+        "splitLine": {"show": False},
         "axisPointer": {"label": {":formatter": "p => Number(p.value).toFixed(2) + ' s'"}},
-        **({"name": "time (s)", "nameLocation": "middle", "nameGap": 22,
-            "nameTextStyle": {"color": SOFT}} if last else {}),
-    }  # fmt: skip
+        **(
+            {
+                "name": "time (s)",
+                "nameLocation": "middle",
+                "nameGap": 22,
+                "nameTextStyle": {"color": SOFT},
+            }
+            if last
+            else {}
+        ),
+    }
 
 
 def _value_axis(k: int, panel: Panel) -> Options:
     return {
-        "type": "value", "gridIndex": k, "scale": True, "splitNumber": 2 if panel.short else 3,
-        "name": f"{panel.title} ({panel.unit})", "nameGap": 10,
+        "type": "value",
+        "gridIndex": k,
+        "scale": True,
+        "splitNumber": 2 if panel.short else 3,
+        "name": f"{panel.title} ({panel.unit})",
+        "nameGap": 10,
         "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -52]},
-        "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}},
-    }  # fmt: skip
+        "axisLabel": {"color": SOFT},
+        "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+    }

@@ -54,14 +54,23 @@ class Compare:
         runs = list(bench.data.motions)
         run = first_run(bench)
         first = {
-            "run": run, "beside": [], "models": [bench.base.name], "axes": excited(bench, run),
-            "quantity": "nu", "horizon": WINDOW, "bands": False,
-        }  # fmt: skip
+            "run": run,
+            "beside": [],
+            "models": [bench.base.name],
+            "axes": excited(bench, run),
+            "quantity": "nu",
+            "horizon": WINDOW,
+            "bands": False,
+        }
         possible: dict[str, Sequence[Any]] = {
-            "run": runs, "beside": runs, "models": list(bench.models), "axes": AXES,
-            "quantity": list(QUANTITIES), "horizon": HORIZONS,
+            "run": runs,
+            "beside": runs,
+            "models": list(bench.models),
+            "axes": AXES,
+            "quantity": list(QUANTITIES),
+            "horizon": HORIZONS,
             "bands": (False, True),
-        }  # fmt: skip
+        }
         self.chosen = place.choose(first, possible)
         self.span = (place.number("from"), place.number("to"))
         self.traces: Traces | None = None

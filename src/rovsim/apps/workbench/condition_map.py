@@ -34,8 +34,9 @@ class FieldMap:
         text(
             "Percent of that axis' squared error: the more, the stronger the blue. A constant "
             "error is in the row throughout alone. Click a field to see its bins; or use the arrow "
-            "keys, and Enter.", "soft",
-        )  # fmt: skip
+            "keys, and Enter.",
+            "soft",
+        )
         self.at = (0, 0)
         self.chart = chart(
             map_chart(self.shown),

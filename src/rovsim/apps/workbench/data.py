@@ -75,7 +75,8 @@ def _recordings(quality: Mapping[str, Quality]) -> None:
             (
                 run,
                 [
-                    words(q.split), words(q.control),
+                    words(q.split),
+                    words(q.control),
                     cell(q.rate_hz.median, f"{run}/rate_hz"),
                     cell(q.duration_s, f"{run}/duration_s"),
                     cell(q.not_found, f"{run}/not_found"),
@@ -87,7 +88,7 @@ def _recordings(quality: Mapping[str, Quality]) -> None:
                     cell(_times(q.noise.attitude_rad, 1e3), f"{run}/noise_mrad"),
                 ],
             )
-        )  # fmt: skip
+        )
     heads = [
         "run", "split", "control", "rate (Hz)", "length (s)", "frames without pose", "gaps",
         "longest (s)", "outliers", "duplicates", "noise (mm)", "noise (mrad)",
@@ -116,22 +117,41 @@ def _gaps(quality: Mapping[str, Quality]) -> None:
     chart(
         {
             "grid": {"left": 8, "right": 24, "top": 8, "bottom": 34, "containLabel": True},
-            "tooltip": {":formatter": "p => p.value[0].toFixed(2) + ' s to '"
-                                      " + p.value[2].toFixed(2) + ' s'"},
-            "xAxis": {"type": "value", "min": 0, "max": longest, "name": "time in the run (s)",
-                      "nameLocation": "middle", "nameGap": 22, "nameTextStyle": {"color": SOFT},
-                      "axisLabel": {"color": SOFT, "showMaxLabel": False},
-                      "splitLine": {"show": False}},
-            "yAxis": {"type": "category", "data": runs, "axisLabel": {"color": INK},
-                      "axisTick": {"show": False}, "splitLine": {"show": True,
-                      "lineStyle": {"color": LINE}}},
-            "series": [{"type": "custom", "data": data, ":renderItem": GAP_SHAPE,
-                        "encode": {"x": [0, 2], "y": 1}, "itemStyle": {"color": MARK}}],
+            "tooltip": {
+                ":formatter": "p => p.value[0].toFixed(2) + ' s to ' + p.value[2].toFixed(2) + ' s'"
+            },
+            "xAxis": {
+                "type": "value",
+                "min": 0,
+                "max": longest,
+                "name": "time in the run (s)",
+                "nameLocation": "middle",
+                "nameGap": 22,
+                "nameTextStyle": {"color": SOFT},
+                "axisLabel": {"color": SOFT, "showMaxLabel": False},
+                "splitLine": {"show": False},
+            },
+            "yAxis": {
+                "type": "category",
+                "data": runs,
+                "axisLabel": {"color": INK},
+                "axisTick": {"show": False},
+                "splitLine": {"show": True, "lineStyle": {"color": LINE}},
+            },
+            "series": [
+                {
+                    "type": "custom",
+                    "data": data,
+                    ":renderItem": GAP_SHAPE,
+                    "encode": {"x": [0, 2], "y": 1},
+                    "itemStyle": {"color": MARK},
+                }
+            ],
         },
         "Gaps in each run over time",
         60 + 30 * len(runs),
         columns={"names": ("from (s)", "run", "to (s)")},
-    )  # fmt: skip
+    )
 
 
 GAP_SHAPE = (

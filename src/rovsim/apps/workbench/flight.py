@@ -47,14 +47,20 @@ class Flight:
         self.known = [name for name in bench.known_models() if name not in trained]
         added = [name for name in list(bench.models)[1:] if name not in trained]
         first = {
-            "model": (added or self.known)[-1], "asked": "between", "one": one,
-            "other": other, "seconds": int(bench.settings.seconds),
-        }  # fmt: skip
+            "model": (added or self.known)[-1],
+            "asked": "between",
+            "one": one,
+            "other": other,
+            "seconds": int(bench.settings.seconds),
+        }
         effects = list(bench.catalogue)
         possible: Mapping[str, Sequence[Any]] = {
-            "model": self.known, "asked": list(ASKED), "one": effects, "other": effects,
+            "model": self.known,
+            "asked": list(ASKED),
+            "one": effects,
+            "other": effects,
             "seconds": range(SHORTEST, LONGEST + 1),
-        }  # fmt: skip
+        }
         self.chosen = place.choose(first, possible)
 
     async def show(self) -> None:
@@ -141,12 +147,15 @@ class Flight:
     def _ask(self, question: Question) -> None:
         text(
             "Commands are searched that move the vehicle so that the answer shows best. This takes "
-            "one to some minutes, and can be cancelled.", "soft",
-        )  # fmt: skip
+            "one to some minutes, and can be cancelled.",
+            "soft",
+        )
         button = jobs.Beginning(
-            self.bench, "Plan the flight", icon="route",
+            self.bench,
+            "Plan the flight",
+            icon="route",
             on_click=lambda: jobs.start_design(self.bench, self.chosen["model"], question),
-        )  # fmt: skip
+        )
         button.props("unelevated no-caps").classes("onward")
 
     def _terminal(self) -> None:
@@ -170,9 +179,10 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
     with ui.row().classes("controls"):
         for name, title in (("experiment.csv", "Commands"), ("instructions.txt", "Instructions")):
             ui.button(
-                f"{title} ({name})", icon="download",
+                f"{title} ({name})",
+                icon="download",
                 on_click=lambda _, path=folder / name: ui.download.file(path),
-            ).props("outline no-caps")  # fmt: skip
+            ).props("outline no-caps")
     section("What to do")
     ui.html(_numbered(found.instructions), sanitize=False).classes("text")
     section("What the usual manoeuvres would tell")
@@ -203,15 +213,20 @@ def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
             (name, [words(size_of_odds(one.now)), words(size_of_odds(one.then))])
             for name, one in found.expects.odds.items()
         ]
-        table("Odds of each effect against the other, if it is the true one",
-              ["effect", "now", "after the flight"], rows)  # fmt: skip
+        table(
+            "Odds of each effect against the other, if it is the true one",
+            ["effect", "now", "after the flight"],
+            rows,
+        )
     if found.expects.std:
         named = with_thruster_names(found.expects.std, thrusters)
         rows = [
-            (f"{called} ({unit(one.unit)})" if one.unit not in (None, "1") else called,
-             [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")])
+            (
+                f"{called} ({unit(one.unit)})" if one.unit not in (None, "1") else called,
+                [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")],
+            )
             for called, (name, one) in zip(named, found.expects.std.items(), strict=True)
-        ]  # fmt: skip
+        ]
         table("Standard deviation of each value", ["value", "now", "after the flight"], rows)
 
 

@@ -47,8 +47,9 @@ async def entry(bench: Workbench, effect: str) -> None:
         hidden = ", ".join(f"{k} = {minus(f'{v:g}')}" for k, v in cls.signature.values.items())
         text(
             f"Hidden in a calm tank: {hidden}. Left: {_about(cls.signature)}; right: over time. "
-            "Dots: what the nominal model misses; thick line: what the true effect adds.", "soft",
-        )  # fmt: skip
+            "Dots: what the nominal model misses; thick line: what the true effect adds.",
+            "soft",
+        )
     for title, said in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
         ui.html(f"<p><strong>{title}.</strong> {escape(said)}</p>", sanitize=False).classes("text")
     text(f"Neglects {cls.neglects}. Source: {cls.source}.", "soft")

@@ -60,7 +60,7 @@ def _table(ladder: Ladder) -> None:
             ],
         )
         for s in ladder.steps
-    ]  # fmt: skip
+    ]
     heads = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
     groups = [("in standard deviations", 1), ("mean absolute error of the velocity", len(AXES))]
     table("Models on the test runs, restarted every 2 s", ["model", ERROR, *heads], rows, groups)
@@ -107,37 +107,66 @@ def chart_of(ladder: Ladder) -> Options:
     shown = chart_ladder(ladder)
     floor = or_none(shown.noise_floor)
     bars = [
-        {"value": or_none(bar.value), "itemStyle": {"color": bar.look.color},
-         "label": _label(bar, cut=bar in shown.beyond)}
+        {
+            "value": or_none(bar.value),
+            "itemStyle": {"color": bar.look.color},
+            "label": _label(bar, cut=bar in shown.beyond),
+        }
         for bar in shown.bars
-    ]  # fmt: skip
+    ]
     line = {
-        "symbol": "none", "silent": True, "data": [{"xAxis": floor}],
+        "symbol": "none",
+        "silent": True,
+        "data": [{"xAxis": floor}],
         "precision": -1,  # where the number says; of itself ECharts rounds to two decimals
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
-        "label": {"formatter": f"noise floor {significant(shown.noise_floor)}", "position": "start",
-                  "color": INK},
-    }  # fmt: skip
+        "label": {
+            "formatter": f"noise floor {significant(shown.noise_floor)}",
+            "position": "start",
+            "color": INK,
+        },
+    }
     return {
         "grid": {"left": 8, "right": 56, "top": 30, "bottom": 28, "containLabel": True},
-        "xAxis": {"type": "value", "min": 0, "max": shown.end,
-                  "name": f"{ERROR} (standard deviations)", "nameLocation": "middle",
-                  "nameGap": 26, "nameTextStyle": {"color": SOFT},
-                  "axisLabel": {"color": SOFT, "showMaxLabel": False},
-                  "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
-        "yAxis": {"type": "category", "inverse": True, "axisTick": {"show": False},
-                  "data": [bar.label for bar in shown.bars], "axisLabel": {"color": INK}},
-        "series": [{
-            "type": "bar", "data": bars, "barMaxWidth": 22,
-            **({"markLine": line} if floor is not None else {}),
-        }],
-    }  # fmt: skip
+        "xAxis": {
+            "type": "value",
+            "min": 0,
+            "max": shown.end,
+            "name": f"{ERROR} (standard deviations)",
+            "nameLocation": "middle",
+            "nameGap": 26,
+            "nameTextStyle": {"color": SOFT},
+            "axisLabel": {"color": SOFT, "showMaxLabel": False},
+            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+        },
+        "yAxis": {
+            "type": "category",
+            "inverse": True,
+            "axisTick": {"show": False},
+            "data": [bar.label for bar in shown.bars],
+            "axisLabel": {"color": INK},
+        },
+        "series": [
+            {
+                "type": "bar",
+                "data": bars,
+                "barMaxWidth": 22,
+                **({"markLine": line} if floor is not None else {}),
+            }
+        ],
+    }
 
 
 def _label(bar: LadderBar, cut: bool) -> Options:
     """The number of a bar behind it, or on it where the bar leaves the axis."""
     text = significant(bar.value)
     if cut:
-        return {"show": True, "position": "insideRight", "color": INK, "padding": [3, 4],
-                "backgroundColor": "#ffffff", "formatter": f"{text} →"}  # fmt: skip
+        return {
+            "show": True,
+            "position": "insideRight",
+            "color": INK,
+            "padding": [3, 4],
+            "backgroundColor": "#ffffff",
+            "formatter": f"{text} →",
+        }
     return {"show": True, "position": "right", "color": INK, "formatter": text}

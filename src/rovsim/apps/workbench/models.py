@@ -66,13 +66,19 @@ class Models:
         added = list(bench.models)[1:]
         others = [*(name for name in known if name != bench.base.name), *added]
         first = {
-            "left": bench.base.name, "right": next(reversed(others), None), "run": run,
-            "axes": excited(bench, run), "horizon": WINDOW,
-        }  # fmt: skip
+            "left": bench.base.name,
+            "right": next(reversed(others), None),
+            "run": run,
+            "axes": excited(bench, run),
+            "horizon": WINDOW,
+        }
         possible: Mapping[str, Sequence[Any]] = {
-            "left": known, "right": known, "run": list(motions), "axes": AXES,
+            "left": known,
+            "right": known,
+            "run": list(motions),
+            "axes": AXES,
             "horizon": HORIZONS,
-        }  # fmt: skip
+        }
         self.chosen = place.choose(first, possible)
         self.span: Span = (place.number("from"), place.number("to"))
         self.models: dict[str, Model] = {}  # those shown, by name
@@ -214,8 +220,10 @@ def _tell_errors(run: str, errors: Errors) -> None:
     change = f"; change from {' to '.join(names)}" if len(errors) == 2 else ""
     table(
         f"Root mean square error on run {run}: restarted every {spans} s; open loop{change}",
-        ["axis", *heads * len(horizons)], rows, groups,
-    )  # fmt: skip
+        ["axis", *heads * len(horizons)],
+        rows,
+        groups,
+    )
 
 
 def _read(metrics: Metrics, name: str) -> float | None:
@@ -239,10 +247,12 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
         text("No effect was added to the vehicle file.")
         return
     rows = [
-        (f"{effect}, {parameter}" if parameter else effect,
-         [words(values.get((effect, parameter), ABSENT)) for values in columns.values()])
+        (
+            f"{effect}, {parameter}" if parameter else effect,
+            [words(values.get((effect, parameter), ABSENT)) for values in columns.values()],
+        )
         for effect, parameter in known
-    ]  # fmt: skip
+    ]
     heads = ["value", *map(title, columns)]
     table("Effects that were added, with 95 % intervals", heads, rows)
 

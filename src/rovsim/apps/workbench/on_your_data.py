@@ -40,7 +40,7 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
         lowered_chart(found),
         f"On your data: {_name(found)} over {found.condition.name}, without {effect} and with it",
         230,
-    )  # fmt: skip
+    )
     what = "the size (RMS) of what is left" if found.size else "what is left"
     ui.label(
         f"On your {before.split} runs: {what} on {found.axis}, measured minus model, beside all "
@@ -73,18 +73,29 @@ def lowered_chart(found: Lowered) -> Options:
         "grid": {"left": 64, "right": 16, "top": 52, "bottom": 44},
         "legend": {"top": 0, "left": 56, "data": list(LOOKS)},
         "tooltip": {"trigger": "axis"},
-        "xAxis": {"type": "value", "scale": True, "nameLocation": "middle", "nameGap": 26,
-                  "name": f"{name} ({unit})" if unit else name,
-                  "nameTextStyle": {"color": SOFT}, "splitLine": {"show": False},
-                  "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
-                  "axisLabel": {"color": SOFT}},
-        "yAxis": {"type": "value", "splitNumber": 4, "axisTick": {"show": False},
-                  "axisLine": {"show": False, "onZero": False},
-                  "name": f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})",
-                  "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-                  "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "xAxis": {
+            "type": "value",
+            "scale": True,
+            "nameLocation": "middle",
+            "nameGap": 26,
+            "name": f"{name} ({unit})" if unit else name,
+            "nameTextStyle": {"color": SOFT},
+            "splitLine": {"show": False},
+            "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
+            "axisLabel": {"color": SOFT},
+        },
+        "yAxis": {
+            "type": "value",
+            "splitNumber": 4,
+            "axisTick": {"show": False},
+            "axisLine": {"show": False, "onZero": False},
+            "name": f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})",
+            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
+            "axisLabel": {"color": SOFT},
+            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+        },
         "series": series,
-    }  # fmt: skip
+    }
 
 
 def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) -> list[Options]:
@@ -92,15 +103,23 @@ def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) ->
     height = table.rms if size else curve.mean
     at, mean, error = (x[curve.judged] for x in (curve.center, height, curve.error))
     line = {
-        "name": name, "type": "line", "symbolSize": 6, "itemStyle": {"color": color},
-        "lineStyle": {"color": color, "type": dash}, "data": np.stack([at, mean], 1).tolist(),
-    }  # fmt: skip
+        "name": name,
+        "type": "line",
+        "symbolSize": 6,
+        "itemStyle": {"color": color},
+        "lineStyle": {"color": color, "type": dash},
+        "data": np.stack([at, mean], 1).tolist(),
+    }
     if size:
         return [line]
     bars = {
-        "type": "custom", "name": f"{name}, {ERRORS}", "silent": True,
-        ":renderItem": WHISKER, "z": 4,
+        "type": "custom",
+        "name": f"{name}, {ERRORS}",
+        "silent": True,
+        ":renderItem": WHISKER,
+        "z": 4,
         "data": np.stack([at, mean - error, mean + error], 1).tolist(),
-        "encode": {"x": 0, "y": [1, 2]}, "tooltip": {"show": False},
-    }  # fmt: skip
+        "encode": {"x": 0, "y": [1, 2]},
+        "tooltip": {"show": False},
+    }
     return [line, bars]

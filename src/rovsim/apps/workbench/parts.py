@@ -188,9 +188,12 @@ def tile_html(called: str, value: float | None, name: str, note: str = "") -> st
 
 
 def chart(
-    options: Options, about: str, height: int = 0, on_point_click: Callable | None = None,
+    options: Options,
+    about: str,
+    height: int = 0,
+    on_point_click: Callable | None = None,
     columns: Columns = NO_COLUMNS,
-) -> ui.echart:  # fmt: skip
+) -> ui.echart:
     """An ECharts chart that says what it shows to those who do not see it.
 
     The CSV calls its `columns` as the axes are called, unless they are named.

@@ -32,9 +32,10 @@ from rovsim.simulation.prediction import Prediction
 Span = tuple[float | None, float | None]  # s, part of a run; None: from its start, to its end
 POSE_UNITS = ("m",) * 3 + ("rad",) * 3
 QUANTITIES = {
-    "nu": ("velocity", VELOCITY_UNITS), "nu_dot": ("acceleration", ACCELERATION_UNITS),
+    "nu": ("velocity", VELOCITY_UNITS),
+    "nu_dot": ("acceleration", ACCELERATION_UNITS),
     "eta": ("position and attitude", POSE_UNITS),
-}  # fmt: skip
+}
 # A pose belongs to the tank: what stands in place of the axis of the body.
 POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
 BANDED = {"nu": "nu", "eta": "place"}  # what a band calls these; others have none
@@ -74,9 +75,13 @@ def excited(bench: Workbench, run: str) -> list[str]:
 
 
 def panels(
-    motion: Motion, predicted: Mapping[str, Prediction], axes: Sequence[str], quantity: str = "nu",
-    thrust: Array | None = None, bands: Mapping[str, Band] = NO_BANDS,
-) -> list[Panel]:  # fmt: skip
+    motion: Motion,
+    predicted: Mapping[str, Prediction],
+    axes: Sequence[str],
+    quantity: str = "nu",
+    thrust: Array | None = None,
+    bands: Mapping[str, Band] = NO_BANDS,
+) -> list[Panel]:
     """A panel per axis, and under it what each model missed (measured minus model).
 
     `bands` by model: within what it may lie. Under that `thrust` (n, 6), what the commands push
@@ -161,10 +166,15 @@ class Traces:
     """The chart on the page, a remark above it, a range slider that zooms all its panels below."""
 
     def __init__(
-        self, time: Array, shown: Sequence[Panel], about: str, span: Span = (None, None),
-        zoomed: Callable[[Span], None] = lambda span: None, look: Mapping[str, Look] | None = None,
+        self,
+        time: Array,
+        shown: Sequence[Panel],
+        about: str,
+        span: Span = (None, None),
+        zoomed: Callable[[Span], None] = lambda span: None,
+        look: Mapping[str, Look] | None = None,
         remark: str = "",
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.time, self.shown, self.told = time, list(shown), zoomed
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
         self.remark = ui.label().classes("text warning").props('role="status"')

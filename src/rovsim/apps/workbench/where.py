@@ -121,8 +121,9 @@ class Where:
             section(f"{axis.capitalize()} error over {condition}")
             text(
                 "Mean error of each bin, measured minus model, with two standard errors. "
-                "Click a bin, or choose it below, to see its samples in time.", "soft",
-            )  # fmt: skip
+                "Click a bin, or choose it below, to see its samples in time.",
+                "soft",
+            )
             chart(
                 bins_chart(self.told.axes[axis][condition], condition, axis, unit),
                 f"Mean {axis} error by bins of {condition}",
@@ -168,22 +169,44 @@ def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> O
     return {
         "grid": {"left": 64, "right": 16, "top": 30, "bottom": 44},
         "tooltip": {"trigger": "item"},
-        "xAxis": {"type": "category", "data": centers, "nameLocation": "middle", "nameGap": 26,
-                  "name": f"{condition} ({curve.unit})" if curve.unit else condition,
-                  "nameTextStyle": {"color": SOFT},
-                  "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
-                  "axisLabel": {"color": SOFT}},
-        "yAxis": {"type": "value", "name": f"{axis} error ({unit})",
-                  "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-                  "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "xAxis": {
+            "type": "category",
+            "data": centers,
+            "nameLocation": "middle",
+            "nameGap": 26,
+            "name": f"{condition} ({curve.unit})" if curve.unit else condition,
+            "nameTextStyle": {"color": SOFT},
+            "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
+            "axisLabel": {"color": SOFT},
+        },
+        "yAxis": {
+            "type": "value",
+            "name": f"{axis} error ({unit})",
+            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
+            "axisLabel": {"color": SOFT},
+            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+        },
         "series": [
-            {"type": "bar", "name": "mean error", "barMaxWidth": 64,
-             "data": [{"value": m, "itemStyle": {"color": c}}
-                      for m, c in zip(found.mean, colors, strict=True)]},
-            {"type": "custom", "name": ERRORS, "silent": True, "data": whiskers,
-             ":renderItem": WHISKER, "z": 4, "encode": {"x": 0, "y": [1, 2]}},
+            {
+                "type": "bar",
+                "name": "mean error",
+                "barMaxWidth": 64,
+                "data": [
+                    {"value": m, "itemStyle": {"color": c}}
+                    for m, c in zip(found.mean, colors, strict=True)
+                ],
+            },
+            {
+                "type": "custom",
+                "name": ERRORS,
+                "silent": True,
+                "data": whiskers,
+                ":renderItem": WHISKER,
+                "z": 4,
+                "encode": {"x": 0, "y": [1, 2]},
+            },
         ],
-    }  # fmt: skip
+    }
 
 
 WHISKER = (
@@ -200,21 +223,41 @@ def samples_chart(time, error, inside, run: str, axis: str) -> Options:
     return {
         "grid": {"left": 64, "right": 16, "top": 28, "bottom": 36},
         "tooltip": {"trigger": "item"},
-        "xAxis": {"type": "value", "name": "time in the run (s)", "nameLocation": "middle",
-                  "nameGap": 22, "nameTextStyle": {"color": SOFT}, "splitLine": {"show": False},
-                  "axisLabel": {"color": SOFT},
-                  "axisLine": {"onZero": False, "lineStyle": {"color": LINE}}},
-        "yAxis": {"type": "value", "name": f"run {run}, {axis} error", "splitNumber": 3,
-                  "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-                  "axisLabel": {"color": SOFT}, "splitLine": {"lineStyle": {"color": "#eeeeee"}}},
+        "xAxis": {
+            "type": "value",
+            "name": "time in the run (s)",
+            "nameLocation": "middle",
+            "nameGap": 22,
+            "nameTextStyle": {"color": SOFT},
+            "splitLine": {"show": False},
+            "axisLabel": {"color": SOFT},
+            "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
+        },
+        "yAxis": {
+            "type": "value",
+            "name": f"run {run}, {axis} error",
+            "splitNumber": 3,
+            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
+            "axisLabel": {"color": SOFT},
+            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+        },
         "series": [
-            {"type": "scatter", "name": "other", "symbolSize": 4, "itemStyle": {"color": FAINT},
-             "data": pairs[~inside].tolist()},
-            {"type": "scatter", "name": "in the bin", "symbolSize": 9,
-             "itemStyle": {"color": MARK, "borderColor": "#ffffff"},
-             "data": pairs[inside].tolist()},
+            {
+                "type": "scatter",
+                "name": "other",
+                "symbolSize": 4,
+                "itemStyle": {"color": FAINT},
+                "data": pairs[~inside].tolist(),
+            },
+            {
+                "type": "scatter",
+                "name": "in the bin",
+                "symbolSize": 9,
+                "itemStyle": {"color": MARK, "borderColor": "#ffffff"},
+                "data": pairs[inside].tolist(),
+            },
         ],
-    }  # fmt: skip
+    }
 
 
 async def show(bench: Workbench, place: Place) -> None:

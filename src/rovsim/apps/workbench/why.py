@@ -171,23 +171,28 @@ def _ranking(found: Diagnosis) -> None:
         section("Each effect alone")
         text(
             "As if one effect alone were missing, the likeliest first. Where several are missing, "
-            "an effect that is certain beside the others may be unlikely alone.", "soft",
-        )  # fmt: skip
+            "an effect that is certain beside the others may be unlikely alone.",
+            "soft",
+        )
         rows = [
             (
                 r.effect,
                 [
                     bar(r.error_reduction or 0.0, f"ranking/{r.effect}/error_reduction"),
-                    cell(r.probability, f"ranking/{r.effect}/probability",
-                         tell_probability(r.probability)),
+                    cell(
+                        r.probability,
+                        f"ranking/{r.effect}/probability",
+                        tell_probability(r.probability),
+                    ),
                 ],
             )
             for r in ranking
-        ]  # fmt: skip
+        ]
         table(
             "Error that each effect removes by itself, at its first estimate",
-            ["effect", "error removed", "probability, if one alone is missing"], rows,
-        )  # fmt: skip
+            ["effect", "error removed", "probability, if one alone is missing"],
+            rows,
+        )
     if found.where:
         section("Where the model fails")
         rows = [(w.axis, [words(w.condition), words(tell_share(w))]) for w in found.where]

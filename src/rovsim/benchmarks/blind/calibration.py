@@ -76,9 +76,12 @@ def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
     shares, points = np.array(parts).T
     low, high = np.quantile(shares, [0.05, 0.95])
     return BandRates(
-        campaigns=len(parts), points=int(points.sum()),
-        inside=float(shares @ points / points.sum()), low=float(low), high=float(high),
-    )  # fmt: skip
+        campaigns=len(parts),
+        points=int(points.sum()),
+        inside=float(shares @ points / points.sum()),
+        low=float(low),
+        high=float(high),
+    )
 
 
 def list_misses(answer: KeptAnswer) -> Iterator[Miss]:

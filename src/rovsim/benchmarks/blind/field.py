@@ -42,9 +42,13 @@ def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
     random = random_of(case_id, seeds)
     hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special))
     return Case(
-        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=hidden, forgiven=NOMINAL,
+        id=case_id,
+        kind=kind,
+        seed=seed_of(case_id, seeds),
+        hidden=hidden,
+        forgiven=NOMINAL,
         tank=merged(*(RECIPES[name].tank for name in special)),
-    )  # fmt: skip
+    )
 
 
 def workshops(k: int, seeds: Range) -> Iterator[Case]:
@@ -74,9 +78,13 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
     settings, smoothing = _camera(how, random)
     hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)
     return Case(
-        id=case_id, kind="laboratory", seed=seed_of(case_id, seeds), hidden=hidden,
-        forgiven=NOMINAL, tank=merged(*(RECIPES[name].tank for name in special), settings),
-    )  # fmt: skip
+        id=case_id,
+        kind="laboratory",
+        seed=seed_of(case_id, seeds),
+        hidden=hidden,
+        forgiven=NOMINAL,
+        tank=merged(*(RECIPES[name].tank for name in special), settings),
+    )
 
 
 def _camera(

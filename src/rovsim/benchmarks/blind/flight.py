@@ -82,10 +82,15 @@ def _is_stated(case: Case) -> bool:
 
 SIMULATORS: Mapping[str, Simulator] = {
     "tank": Simulator(
-        "tank", _in_tank, lambda case: True,
+        "tank",
+        _in_tank,
+        lambda case: True,
         ("rovsim.simulation.synthetic_tank", "rovsim.benchmarks.blind.outside"),
     ),
     "independent": Simulator(
-        "independent", _independently, _is_stated, ("rovsim.benchmarks.blind.independent",),
+        "independent",
+        _independently,
+        _is_stated,
+        ("rovsim.benchmarks.blind.independent",),
     ),
-}  # fmt: skip
+}

@@ -257,16 +257,23 @@ def _law(effect: type[Effect], on: str, quantities: str) -> KnownLaw:
 LAWS: dict[str, KnownLaw] = {
     one.effect.id: one
     for one in (
-        _law(CoupledCubic, "sway", "u v"), _law(DriftMoment, "yaw", "v"),
-        _law(TurningDrag, "yaw", "v r"), _law(TurningSway, "sway", "u r"),
-        _law(DivingMoment, "pitch", "u w"), _law(Whisker, "yaw", "v"),
-        _law(Canopy, "surge sway heave", "u v w"), _law(Squat, "heave", "u v"),
-        _law(Swirl, "water", "place"), _law(Shear, "water", "place"),
-        _law(Stream, "water", "place"), _law(Jet, "force", "place"),
-        _law(Compression, "force", "depth"), _law(SideWake, "sway", "v memory"),
+        _law(CoupledCubic, "sway", "u v"),
+        _law(DriftMoment, "yaw", "v"),
+        _law(TurningDrag, "yaw", "v r"),
+        _law(TurningSway, "sway", "u r"),
+        _law(DivingMoment, "pitch", "u w"),
+        _law(Whisker, "yaw", "v"),
+        _law(Canopy, "surge sway heave", "u v w"),
+        _law(Squat, "heave", "u v"),
+        _law(Swirl, "water", "place"),
+        _law(Shear, "water", "place"),
+        _law(Stream, "water", "place"),
+        _law(Jet, "force", "place"),
+        _law(Compression, "force", "depth"),
+        _law(SideWake, "sway", "v memory"),
         _law(Backlash, "thrusters", "thrust memory"),
     )
-}  # fmt: skip
+}
 
 
 def find_outside(name: str) -> type[Effect]:

@@ -217,10 +217,18 @@ class Backlash(ThrusterDynamics):
 OUTSIDE: dict[str, type[Effect]] = {
     cls.id: cls
     for cls in (
-        SquareWave, Tone, Shedding, Squat, LooseBallast, Jet, Kicks, Ingress, Compression,
+        SquareWave,
+        Tone,
+        Shedding,
+        Squat,
+        LooseBallast,
+        Jet,
+        Kicks,
+        Ingress,
+        Compression,
         Backlash,
     )
-}  # fmt: skip
+}
 SIZES = (0.7, 1.5)  # at strength 1, in scales of the first parameter
 
 

@@ -46,11 +46,14 @@ def draw_ranks(found: Calibration) -> Figure:
     for axes in panels[len(shown) :]:
         axes.set_axis_off()
     fewer = len(found.parameters) - len(shown) + 1
-    note(figure, [
-        "Rank of the truth, Φ((truth − value) / std), and how many values have it.",
-        f"Grey: {100 * CHANCE:.0f} % of the bars of honest intervals lie there.",
-        f"{fewer} parameters have fewer than {2 * EXPECTED} values." if fewer else "",
-    ])  # fmt: skip
+    note(
+        figure,
+        [
+            "Rank of the truth, Φ((truth − value) / std), and how many values have it.",
+            f"Grey: {100 * CHANCE:.0f} % of the bars of honest intervals lie there.",
+            f"{fewer} parameters have fewer than {2 * EXPECTED} values." if fewer else "",
+        ],
+    )
     return figure
 
 
@@ -86,8 +89,15 @@ def draw_reliability(found: Calibration) -> Figure:
         share = bin_.right / bin_.names
         axes.plot([doubt] * 2, [test.low, test.high], color=BAR, linewidth=1.2)
         axes.plot(doubt, share, "o", color=BAR, markersize=4)
-        axes.annotate(f"{bin_.right} of {bin_.names}", (doubt, share), xytext=(-4, -4),
-                      textcoords="offset points", fontsize=7, ha="right", va="top")  # fmt: skip
+        axes.annotate(
+            f"{bin_.right} of {bin_.names}",
+            (doubt, share),
+            xytext=(-4, -4),
+            textcoords="offset points",
+            fontsize=7,
+            ha="right",
+            va="top",
+        )
     honest = np.geomspace(CERTAIN, 1.0, 100)
     axes.plot(honest, 1.0 - honest, color=LINE, label="honest")
     axes.set_xscale("log")

@@ -67,7 +67,9 @@ RECIPES: Mapping[str, Recipe] = {
     "current": Recipe((("north", "east"), *_each("north", "east")), (0.7, 1.5)),
     "current_drift": Recipe(_each("rate"), (1.0, 2.5), 1),
     "tether_tension": Recipe(
-        _each("stiffness"), (0.8, 1.5), 1,
+        _each("stiffness"),
+        (0.8, 1.5),
+        1,
         {"slack_length": (0.3, 1.0), "anchor_x": (3, 7), "anchor_y": (1, 4), "anchor_z": (3, 3)},
     ),
     "tether_drag": Recipe(_each("coefficient"), (5.0, 10.0), 1),
@@ -90,15 +92,18 @@ RECIPES: Mapping[str, Recipe] = {
     "fin_effectiveness": Recipe(_each("all"), (2.0, 5.0), -1, tank=SUITABLE["surfaces"]),
     "waterplane_stiffness": Recipe(_each("roll"), (40.0, 80.0), tank=SUITABLE["waterplane"]),
     "onboard_control": Recipe(
-        (("bandwidth_yaw",), ("bandwidth_roll", "bandwidth_pitch", "bandwidth_yaw")), (1.5, 3.0),
-        1, {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
-        SUITABLE["demands"], weak=False,
+        (("bandwidth_yaw",), ("bandwidth_roll", "bandwidth_pitch", "bandwidth_yaw")),
+        (1.5, 3.0),
+        1,
+        {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
+        SUITABLE["demands"],
+        weak=False,
     ),
     "pose_filter": Recipe(_each("cutoff"), (994.0, 997.0), -1),  # from 1000 Hz down to 3 to 6 Hz
     "marker_offset": Recipe(_each("x", "y", "z"), (1.0, 3.0)),
     "marker_misalignment": Recipe(_each("roll", "pitch", "yaw"), (1.5, 4.0)),
     "world_tilt": Recipe(_each("roll", "pitch"), (2.0, 4.0)),
-}  # fmt: skip
+}
 
 
 def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntry:

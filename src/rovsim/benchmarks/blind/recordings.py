@@ -64,12 +64,17 @@ def _releases() -> list[dict[str, Any]]:
 KINDS: Mapping[str, Kind] = {
     "depth and attitude": Kind(
         {
-            "runs": _runs("3dof"), "log": {"kind": "demand"},
+            "runs": _runs("3dof"),
+            "log": {"kind": "demand"},
             "sensors": {"depth": {"rate": 3.0, "noise": 0.01}, "attitude": ATTITUDE},
         },
         (
-            BUOYANCY, ("linear_damping", {"heave": (10.0, 20.0)}), DELAY,
-            ("buoyancy_center", {"x": (0.003, 0.008)}), LAG, ("payload", {"mass": (0.3, 0.7)}),
+            BUOYANCY,
+            ("linear_damping", {"heave": (10.0, 20.0)}),
+            DELAY,
+            ("buoyancy_center", {"x": (0.003, 0.008)}),
+            LAG,
+            ("payload", {"mass": (0.3, 0.7)}),
         ),
         (CURRENT,),
     ),
@@ -77,20 +82,26 @@ KINDS: Mapping[str, Kind] = {
         {
             "runs": _runs(),
             "sensors": {
-                "rates": {"rate": 200.0, "noise": 0.01}, "attitude": ATTITUDE,
+                "rates": {"rate": 200.0, "noise": 0.01},
+                "attitude": ATTITUDE,
                 "depth": {"rate": 5.0, "noise": 0.01},
             },
         },
         (
-            ("linear_damping", {"yaw": (1.0, 3.0)}), LAG, ("added_mass", {"yaw": (0.1, 0.3)}),
-            ("buoyancy_center", {"y": (0.003, 0.008)}), DELAY,
+            ("linear_damping", {"yaw": (1.0, 3.0)}),
+            LAG,
+            ("added_mass", {"yaw": (0.1, 0.3)}),
+            ("buoyancy_center", {"y": (0.003, 0.008)}),
+            DELAY,
             ("propeller_torque", {"ratio": (0.01, 0.03)}),
         ),
         (CURRENT,),
     ),
     "ship": Kind(
         {
-            "runs": _runs(), "vehicle": SHIP, "duration": 120.0,
+            "runs": _runs(),
+            "vehicle": SHIP,
+            "duration": 120.0,
             "tank": {"x": (0.0, 40.0), "y": (0.0, 40.0), "z": (0.0, 3.0)},
             "turbulence": {"force": 0.05, "moment": 0.02},
             "sensors": {
@@ -99,36 +110,48 @@ KINDS: Mapping[str, Kind] = {
             },
         },
         (
-            ("linear_damping", {"surge": (0.8, 2.0)}), ("input_delay", {"delay": (0.2, 0.5)}),
-            CURRENT, ("constant_wrench", {"sway": (0.2, 0.5)}),
-            ("thruster_gain", {"all": (0.7, 0.85)}), ("added_mass", {"sway": (3.0, 8.0)}),
+            ("linear_damping", {"surge": (0.8, 2.0)}),
+            ("input_delay", {"delay": (0.2, 0.5)}),
+            CURRENT,
+            ("constant_wrench", {"sway": (0.2, 0.5)}),
+            ("thruster_gain", {"all": (0.7, 0.85)}),
+            ("added_mass", {"sway": (3.0, 8.0)}),
         ),
         (BUOYANCY,),
     ),
     "decay": Kind(
         {"runs": _releases(), "duration": 10.0},
         (
-            BUOYANCY, ("buoyancy_center", {"z": (0.003, 0.008)}),
-            ("linear_damping", {"roll": (0.3, 0.8)}), ("added_mass", {"roll": (0.1, 0.25)}),
+            BUOYANCY,
+            ("buoyancy_center", {"z": (0.003, 0.008)}),
+            ("linear_damping", {"roll": (0.3, 0.8)}),
+            ("added_mass", {"roll": (0.1, 0.25)}),
         ),
         (LAG, DELAY),
     ),
     "torpedo": Kind(
         {
-            "runs": _runs(), "vehicle": "remus100", "duration": 90.0,
+            "runs": _runs(),
+            "vehicle": "remus100",
+            "duration": 90.0,
             "tank": {"x": (0.0, 200.0), "y": (0.0, 200.0), "z": (0.0, 30.0)},
             "sensors": {
-                "position": {"rate": 5.0, "noise": 0.3}, "velocity": {"rate": 5.0, "noise": 0.01},
-                "attitude": {"rate": 10.0, "noise": 0.005}, "rates": {"rate": 50.0, "noise": 0.005},
+                "position": {"rate": 5.0, "noise": 0.3},
+                "velocity": {"rate": 5.0, "noise": 0.01},
+                "attitude": {"rate": 10.0, "noise": 0.005},
+                "rates": {"rate": 50.0, "noise": 0.005},
                 "depth": {"rate": 5.0, "noise": 0.02},
             },
         },
         (
-            ("fin_effectiveness", {"all": (0.5, 0.75)}), CURRENT, BUOYANCY,
-            ("input_delay", {"delay": (0.3, 0.6)}), ("thruster_gain", {"all": (0.7, 0.85)}),
+            ("fin_effectiveness", {"all": (0.5, 0.75)}),
+            CURRENT,
+            BUOYANCY,
+            ("input_delay", {"delay": (0.3, 0.6)}),
+            ("thruster_gain", {"all": (0.7, 0.85)}),
         ),
     ),
-}  # fmt: skip
+}
 
 
 def recordings(seeds: Range) -> Iterator[Case]:
@@ -145,9 +168,13 @@ def recording(kind: str, k: int, seeds: Range) -> Case:
     entry = _draw(chosen, random_of(case_id, seeds)) if chosen else None
     silent = tuple(name for name, _ in settings.silent if chosen and name == chosen[0])
     return Case(
-        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=(entry,) if entry else (),
-        silent=silent, tank=dict(settings.tank),
-    )  # fmt: skip
+        id=case_id,
+        kind=kind,
+        seed=seed_of(case_id, seeds),
+        hidden=(entry,) if entry else (),
+        silent=silent,
+        tank=dict(settings.tank),
+    )
 
 
 def _draw(hidden: Hidden, random: np.random.Generator) -> EffectEntry:

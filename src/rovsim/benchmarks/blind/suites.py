@@ -123,9 +123,13 @@ def full(seeds: Range) -> Iterator[Case]:
 
 
 def hiding(
-    kind: str, names: Sequence[str], k: int, seeds: Range, strength: float = 1.0,
+    kind: str,
+    names: Sequence[str],
+    k: int,
+    seeds: Range,
+    strength: float = 1.0,
     tank: Mapping[str, Any] | None = None,
-) -> Case:  # fmt: skip
+) -> Case:
     """A case that hides these effects of the catalogue.
 
     The k-th case of an effect hides the same at every strength, so that only the strength differs.
@@ -136,9 +140,13 @@ def hiding(
     hidden = tuple(drawn(name, strength, random) for name in names)
     needed = [RECIPES[name].tank for name in names]
     return Case(
-        id=case_id, kind=label, seed=seed_of(case_id, seeds), hidden=hidden, strength=strength,
+        id=case_id,
+        kind=label,
+        seed=seed_of(case_id, seeds),
+        hidden=hidden,
+        strength=strength,
         tank=merged(*needed, tank or {}),
-    )  # fmt: skip
+    )
 
 
 def combination(count: int, k: int, seeds: Range) -> Case:
@@ -169,9 +177,13 @@ def deviation(k: int, seeds: Range) -> Case:
     water = load_vehicle(default_vehicle()).hydrodynamics
     hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING]
     return Case(
-        id=case_id, kind="deviation", seed=seed_of(case_id, seeds), hidden=tuple(hidden),
-        forgiven=DEVIATING, strength=share,
-    )  # fmt: skip
+        id=case_id,
+        kind="deviation",
+        seed=seed_of(case_id, seeds),
+        hidden=tuple(hidden),
+        forgiven=DEVIATING,
+        strength=share,
+    )
 
 
 def _off(
@@ -191,9 +203,12 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
     known = str(random.choice(["quadratic_damping", "net_buoyancy", "thruster_lag"]))
     hidden = (drawn(known, 1.0, random),) if beside else ()
     return Case(
-        id=case_id, kind=kind, seed=seed_of(case_id, seeds), hidden=hidden,
+        id=case_id,
+        kind=kind,
+        seed=seed_of(case_id, seeds),
+        hidden=hidden,
         outside=(Unlisted(name=name, parameters=unlisted.given()),),
-    )  # fmt: skip
+    )
 
 
 LAWLESS = ("tone", "kicks", "square_wave", "shedding", "ingress", "loose_ballast")
@@ -218,12 +233,18 @@ def law(name: str, k: int, seeds: Range) -> Case:
     case_id = f"law/{name}/{k}"
     found = drawn_law(name, random_of(case_id, seeds))
     return Case(
-        id=case_id, kind="law", seed=seed_of(case_id, seeds),
+        id=case_id,
+        kind="law",
+        seed=seed_of(case_id, seeds),
         outside=(Unlisted(name=name, parameters=found.given()),),
-    )  # fmt: skip
+    )
 
 
 SUITES = {
-    "quick": quick, "standard": standard, "full": full, "recordings": recordings,
-    "equations": equations, "laboratory": laboratories,
-}  # fmt: skip
+    "quick": quick,
+    "standard": standard,
+    "full": full,
+    "recordings": recordings,
+    "equations": equations,
+    "laboratory": laboratories,
+}

@@ -51,9 +51,15 @@ def _judge(one: KeptAnswer) -> Judged:
     first = selected[0].effect if selected else ""
     worth = score(one.case, one.diagnosis)
     return Judged(
-        one.case, one.redrawn, one.seconds, worth, first, verdict,
-        cpu_seconds=one.cpu_seconds, worse=_is_worse(one.diagnosis),
-    )  # fmt: skip
+        one.case,
+        one.redrawn,
+        one.seconds,
+        worth,
+        first,
+        verdict,
+        cpu_seconds=one.cpu_seconds,
+        worse=_is_worse(one.diagnosis),
+    )
 
 
 def _is_worse(answer: Answer | Diagnosis) -> bool | None:

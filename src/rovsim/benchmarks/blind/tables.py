@@ -22,27 +22,41 @@ KIND_COLUMNS = {
     "seconds_95": "95 % below", "cpu_seconds": "CPU s", "cpu_seconds_95": "95 % below",
 }  # fmt: skip
 EFFECT_COLUMNS = {
-    "first": "first name right", "exact_strict": "exact", "exact": "exact, lenient",
-    "limit": "half are named at", "error_median": "parameter error", "coverage": "intervals hold",
+    "first": "first name right",
+    "exact_strict": "exact",
+    "exact": "exact, lenient",
+    "limit": "half are named at",
+    "error_median": "parameter error",
+    "coverage": "intervals hold",
     "instead": "said instead",
-}  # fmt: skip
+}
 LAW_COLUMNS = {
-    "cases": "cases", "unexplained": "flagged", "proposed": "an equation", "right": "right terms",
+    "cases": "cases",
+    "unexplained": "flagged",
+    "proposed": "an equation",
+    "right": "right terms",
     "half": "half way to the floor",
-}  # fmt: skip
+}
 BAND_COLUMNS = {
-    "campaigns": "campaigns", "points": "points", "inside": "inside",
-    "low": "in 5 % of campaigns less than", "high": "in 5 % more than",
-}  # fmt: skip
+    "campaigns": "campaigns",
+    "points": "points",
+    "inside": "inside",
+    "low": "in 5 % of campaigns less than",
+    "high": "in 5 % more than",
+}
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
 PERCENT = {"inside", "low", "high", "verdict", "first", "exact_strict", "exact", "unseen",
            "false_names",
            "unexplained", "proposed", "right", "half",
            "error_median", "error_95", "coverage", "worse", "covered", "p_value"}  # fmt: skip
 RANK_COLUMNS = {
-    "values": "values", "covered": "inside 95 %", "stretch": "times too narrow",
-    "p_value": "chance of such ranks", "counts": "ranks", "said": "intervals are",
-}  # fmt: skip
+    "values": "values",
+    "covered": "inside 95 %",
+    "stretch": "times too narrow",
+    "p_value": "chance of such ranks",
+    "counts": "ranks",
+    "said": "intervals are",
+}
 _FLOWN = {"tank": "tank", "independent": "independent simulator"}
 UNLIKELY = 0.01  # of a histogram of honest ranks
 RARE = 0.001  # chances below are not told apart

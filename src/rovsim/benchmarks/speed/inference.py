@@ -46,9 +46,13 @@ class Stopwatch:
         # one query has no work for two threads, and waiting for a second costs milliseconds
         with threadpool_limits(1), as_a_control_loop() as self.scheduling:
             stats = time_calls(
-                call, self.pairs.queries, effort.calls, effort.warmup, points=points,
+                call,
+                self.pairs.queries,
+                effort.calls,
+                effort.warmup,
+                points=points,
                 seconds=seconds,
-            )  # fmt: skip
+            )
         self.found[f"{name}@{points}"] = stats
         times = f"{stats.median_us:12.1f} us median {stats.p999_us:12.1f} us p99.9"
         print(f"{name}@{points}".ljust(36), times, flush=True)

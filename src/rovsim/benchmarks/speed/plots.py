@@ -43,9 +43,13 @@ def draw_sizes(bench: Bench) -> Figure:
             for statistic, style in (("median_us", "o-"), ("p999_us", ":")):
                 label = name.replace("_", " ") if style == "o-" else None
                 axes.plot(
-                    list(sizes), [getattr(s, statistic) for s in sizes.values()], style,
-                    color=color, markersize=3, label=label,
-                )  # fmt: skip
+                    list(sizes),
+                    [getattr(s, statistic) for s in sizes.values()],
+                    style,
+                    color=color,
+                    markersize=3,
+                    label=label,
+                )
         axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
         plain_log(axes, "xy")
         axes.set(xlabel="points", ylabel="one prediction (µs)")
@@ -71,10 +75,13 @@ def draw_accuracy(bench: Bench) -> Figure:
     for axes, where in zip(panels, ("seen", "unseen"), strict=True):
         for (name, fades), rows in _by_way(bench.accuracy).items():
             axes.plot(
-                [row.median_us for row in rows], [getattr(row, where).mean for row in rows],
-                "o-" if fades else "x--", color=COLORS[name], markersize=4,
+                [row.median_us for row in rows],
+                [getattr(row, where).mean for row in rows],
+                "o-" if fades else "x--",
+                color=COLORS[name],
+                markersize=4,
                 label=f"{name.replace('_', ' ')}{', fades' if fades else ''}",
-            )  # fmt: skip
+            )
         axes.axhline(1.0, color="#444444", linewidth=0.8, linestyle=":")
         plain_log(axes)
         axes.set(xlabel="one prediction (µs)", title=where)

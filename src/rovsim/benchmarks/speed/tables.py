@@ -34,11 +34,16 @@ def write_markdown(bench: Bench) -> str:
     plots = [f"![{caption}](images/{name}.png)" for name, caption in PLOTS.items()]
     parts = [
         f"{bench.machine}; {bench.scheduling}.",
-        "### Replay", _replay(bench.replay),
-        "### One prediction", _inference(bench.inference),
-        "### By size", plots[0],
-        "### Error against cost", plots[1], _accuracy(bench.accuracy),
-    ]  # fmt: skip
+        "### Replay",
+        _replay(bench.replay),
+        "### One prediction",
+        _inference(bench.inference),
+        "### By size",
+        plots[0],
+        "### Error against cost",
+        plots[1],
+        _accuracy(bench.accuracy),
+    ]
     return "\n\n".join(parts)
 
 
@@ -82,8 +87,15 @@ def _accuracy(rows: Sequence[Accuracy]) -> str:
     head = ["residual", "points", "fades", "median µs", "left, seen", "left, unseen",
             "worst axis, unseen"]  # fmt: skip
     lines = [
-        [row.name, str(row.points), "yes" if row.fades else "no", significant(row.median_us, 2),
-         f"{row.seen.mean:.3f}", f"{row.unseen.mean:.3f}", f"{row.unseen.worst:.3f}"]
+        [
+            row.name,
+            str(row.points),
+            "yes" if row.fades else "no",
+            significant(row.median_us, 2),
+            f"{row.seen.mean:.3f}",
+            f"{row.unseen.mean:.3f}",
+            f"{row.unseen.worst:.3f}",
+        ]
         for row in rows
-    ]  # fmt: skip
+    ]
     return table(head, lines)

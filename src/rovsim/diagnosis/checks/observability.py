@@ -90,6 +90,7 @@ def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: V
     means = list_means(runs, vehicle)
     needed = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
     return {
-        name for name, effect in catalogue.on(vehicle).items()
+        name
+        for name, effect in catalogue.on(vehicle).items()
         if effect.requires in needed and effect.requires not in means
-    }  # fmt: skip
+    }

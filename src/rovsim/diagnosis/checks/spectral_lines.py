@@ -89,8 +89,9 @@ def _judge_comb(
     yield from residual.weigh(
         f"a period of {1.0 / spectrum.frequency[k]:.3g} s{overtones}{growth}",
         size=np.sqrt(_push_power(spectrum, lines, residual)),
-        statistic=float(np.sum(spectrum.total[lines])), limit=limit,
-    )  # fmt: skip
+        statistic=float(np.sum(spectrum.total[lines])),
+        limit=limit,
+    )
 
 
 def _push_power(spectrum: Periodogram, lines: Sequence[int], residual: AxisResidual) -> float:

@@ -120,9 +120,7 @@ def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
     return _Moving(samples.a_sim[which], samples.a_res[which], step[which], blocks, length)
 
 
-def _judge(
-    run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving
-) -> Standstill | None:  # fmt: skip
+def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> Standstill | None:
     """The longest standstill of a run; those near each other are one."""
     candidates: list[tuple[_Rest, int, float]] = []
     for rest in rests:
@@ -138,9 +136,13 @@ def _judge(
         return None
     rest, axis, gained = max(candidates, key=lambda one: one[0].end - one[0].begin)
     return Standstill(
-        run=run, from_s=round(rest.begin, 2), to_s=round(rest.end, 2), axis=AXES[axis],
-        gained=float(f"{gained:.3g}"), use=tuple(_without(spans, rest.begin, rest.end)),
-    )  # fmt: skip
+        run=run,
+        from_s=round(rest.begin, 2),
+        to_s=round(rest.end, 2),
+        axis=AXES[axis],
+        gained=float(f"{gained:.3g}"),
+        use=tuple(_without(spans, rest.begin, rest.end)),
+    )
 
 
 def _find_axis(rest: _Rest, moving: _Moving) -> int | None:

@@ -80,5 +80,8 @@ def _judge_kick(
     at = run.edges[0] + run.time[run.settled][k]
     yield from residual.weigh(
         f"a push of {duration:g} s at {at:.1f} s in run {run.motion.run.id}",
-        size=abs(factor[k]) / MOMENT, statistic=factor[k] ** 2 * power, limit=limit, moment=True,
-    )  # fmt: skip
+        size=abs(factor[k]) / MOMENT,
+        statistic=factor[k] ** 2 * power,
+        limit=limit,
+        moment=True,
+    )

@@ -50,16 +50,22 @@ def describe_force(force: ForceInTime) -> Disturbance:
     """The force in time, a line every fifth of a second."""
     each = zip(force.runs, force.time, force.place, force.force, strict=True)
     return Disturbance(
-        axes=force.axes, rms=ByAxis.of(_round_all(force.rms)),
+        axes=force.axes,
+        rms=ByAxis.of(_round_all(force.rms)),
         band_hz=(round(force.band[0], 3), round(force.band[1], 3)),
         spectrum=_describe_spectrum(force.spectrum),
         strongest=tuple(
-            Push(run=p.run, time_s=round(p.time, 2), axis=p.axis, force=float(f"{p.force:.4g}"),
-                 place_m=_triple(p.place))
+            Push(
+                run=p.run,
+                time_s=round(p.time, 2),
+                axis=p.axis,
+                force=float(f"{p.force:.4g}"),
+                place_m=_triple(p.place),
+            )
             for p in force.pushes
         ),
         runs=tuple(_describe_run(*one) for one in each),
-    )  # fmt: skip
+    )
 
 
 def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
@@ -73,10 +79,11 @@ def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
 def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:
     every = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
     return ForceOfRun(
-        run=run, time_s=tuple(np.round(time[::every], 2).tolist()),
+        run=run,
+        time_s=tuple(np.round(time[::every], 2).tolist()),
         place_m=tuple(map(_triple, place[::every])),
         force=tuple(map(tuple, _round_all(force[::every]).tolist())),
-    )  # fmt: skip
+    )
 
 
 def _round_all(values: Array) -> Array:
@@ -92,7 +99,10 @@ def describe_law(law: ProposedLaw) -> Proposal:
         for one in law.beside
     ]
     return Proposal(
-        axis=law.axis, equation=law.form.equation, file=LAW, effect=PROPOSED,
+        axis=law.axis,
+        equation=law.form.equation,
+        file=LAW,
+        effect=PROPOSED,
         meaning=law.form.meaning,
         parameters={
             n.name: FittedValue(value=rounded(n.value), std=rounded(n.std), unit=n.unit)
@@ -105,7 +115,7 @@ def describe_law(law: ProposedLaw) -> Proposal:
         ),
         beside=tuple(beside),
         rivals=tuple(RivalLaw(equation=e, deficit=rounded(d)) for e, d in law.rivals),
-    )  # fmt: skip
+    )
 
 
 def _triple(place: Array) -> tuple[float, float, float]:

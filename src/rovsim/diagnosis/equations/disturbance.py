@@ -105,9 +105,11 @@ def smooth_stretch(e: Array, f: AxisFilter, period: float, std: float, lasts: fl
 
 
 def _gather(
-    runs: Sequence[ObservedRun], forces: Sequence[Array], axes: tuple[str, ...],
+    runs: Sequence[ObservedRun],
+    forces: Sequence[Array],
+    axes: tuple[str, ...],
     residuals: dict[str, AxisResidual],
-) -> ForceInTime:  # fmt: skip
+) -> ForceInTime:
     whole = np.concatenate(forces)
     rms = np.sqrt(np.mean(whole**2, axis=0))
     index = [AXES.index(a) for a in axes]
@@ -115,10 +117,16 @@ def _gather(
     strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
     spectrum = find_spectrum(forces, runs[0].period)
     return ForceInTime(
-        tuple(run.motion.run.id for run in runs), tuple(map(_tell_time, runs)), tuple(places),
-        tuple(forces), axes, rms, spectrum, spectrum.find_band(strongest),
+        tuple(run.motion.run.id for run in runs),
+        tuple(map(_tell_time, runs)),
+        tuple(places),
+        tuple(forces),
+        axes,
+        rms,
+        spectrum,
+        spectrum.find_band(strongest),
         tuple(_find_pushes(runs, forces, places, index, rms)),
-    )  # fmt: skip
+    )
 
 
 def _tell_time(run: ObservedRun) -> Array:
@@ -134,9 +142,12 @@ def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
 
 
 def _find_pushes(
-    runs: Sequence[ObservedRun], forces: Sequence[Array], places: Sequence[Array],
-    index: Sequence[int], rms: Array,
-) -> list[Push]:  # fmt: skip
+    runs: Sequence[ObservedRun],
+    forces: Sequence[Array],
+    places: Sequence[Array],
+    index: Sequence[int],
+    rms: Array,
+) -> list[Push]:
     """The strongest, in units of the RMS of their axis."""
     ranked: list[tuple[float, Push]] = []
     for run, force, place in zip(runs, forces, places, strict=True):
@@ -144,9 +155,17 @@ def _find_pushes(
             size = np.abs(force[:, i]) / max(rms[i], 1e-12)
             peaks, _ = find_peaks(size, height=STRONG, distance=max(1, round(APART / run.period)))
             ranked += [
-                (float(size[k]), Push(run.motion.run.id, float(_tell_time(run)[k]), AXES[i],
-                                      float(force[k, i]), place[k]))
+                (
+                    float(size[k]),
+                    Push(
+                        run.motion.run.id,
+                        float(_tell_time(run)[k]),
+                        AXES[i],
+                        float(force[k, i]),
+                        place[k],
+                    ),
+                )
                 for k in peaks
-            ]  # fmt: skip
+            ]
     ranked.sort(key=lambda one: -one[0])
     return [push for _, push in ranked[:LISTED]]

@@ -7,9 +7,16 @@ from rovsim.diagnosis.equations.form import Form, Number
 
 
 def write_effect(
-    name: str, form: Form, numbers: Sequence[Number], story: str, *, base: str, imports: str,
-    method: str, start: Mapping[str, float],
-) -> str:  # fmt: skip
+    name: str,
+    form: Form,
+    numbers: Sequence[Number],
+    story: str,
+    *,
+    base: str,
+    imports: str,
+    method: str,
+    start: Mapping[str, float],
+) -> str:
     """Python source of an effect.
 
     Args:
@@ -23,13 +30,18 @@ def write_effect(
         start: values that a fit begins from; empty where its defaults will do.
     """
     return FILE.format(
-        story=story, meaning=form.meaning, imports=imports, id=name, base=base,
-        names=", ".join(sorted((base, "Parameter"))), equation=form.equation,
+        story=story,
+        meaning=form.meaning,
+        imports=imports,
+        id=name,
+        base=base,
+        names=", ".join(sorted((base, "Parameter"))),
+        equation=form.equation,
         title="".join(part.capitalize() for part in name.split("_")),
         parameters="\n".join(_parameter(n) for n in numbers),
         starts=f"    starts = ({dict(start)},)\n" if start else "",
         method=indent(method.strip("\n"), "    "),
-    )  # fmt: skip
+    )
 
 
 def round_start(numbers: Sequence[Number]) -> dict[str, float]:

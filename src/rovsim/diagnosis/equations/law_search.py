@@ -118,9 +118,13 @@ class LawSearch:
         return Surroundings.of(self.workspace.bank.runs)
 
     def fit_products(
-        self, fit: Fit, terms: tuple[LawTerm, ...], more: Sequence[LawTerm], columns: Columns,
+        self,
+        fit: Fit,
+        terms: tuple[LawTerm, ...],
+        more: Sequence[LawTerm],
+        columns: Columns,
         middle: Array,
-    ) -> dict[LawTerm, FittedLaw]:  # fmt: skip
+    ) -> dict[LawTerm, FittedLaw]:
         """Laws of all these terms and one more beside a fit, the likeliest first.
 
         Args:
@@ -210,8 +214,9 @@ class LawSearch:
         order = np.argsort(-explained, kind="stable")[:THRUST_LAWS_TRIED]
         laws = {
             int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))
-            for k in order if explained[k] > least
-        }  # fmt: skip
+            for k in order
+            if explained[k] > least
+        }
         return self._find_likeliest(laws, fit)
 
     def finish(self, grown: FittedLaw) -> FittedLaw:
@@ -288,13 +293,23 @@ def is_seen(selection: SearchResult) -> bool:
 
 
 def project_terms(
-    workspace: SearchWorkspace, current: Fit, candidates: Sequence[Any], middle: Array,
+    workspace: SearchWorkspace,
+    current: Fit,
+    candidates: Sequence[Any],
+    middle: Array,
     push: Push = push,
-) -> Columns:  # fmt: skip
+) -> Columns:
     """All candidate terms against what a fit leaves."""
     bank, noise = workspace.bank, current.noise
     white, J = bank.whiten(current.seen.e, noise), bank.whiten(current.seen.J, noise)
     return project(
-        candidates, current.hypothesis.model, bank, white, J, bank.design_filters(noise),
-        number_blocks(bank.runs) % BLOCKS, middle, push,
-    )  # fmt: skip
+        candidates,
+        current.hypothesis.model,
+        bank,
+        white,
+        J,
+        bank.design_filters(noise),
+        number_blocks(bank.runs) % BLOCKS,
+        middle,
+        push,
+    )

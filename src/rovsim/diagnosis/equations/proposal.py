@@ -79,9 +79,14 @@ class ProposedLaw:
 
 
 def propose_law(
-    selection: SearchResult, best: Catalogued, base: Model, holdout: HoldoutValidation,
-    runs: Sequence[ObservedRun], polish: Polish, camera: Sequence[Named],
-) -> ProposedLaw | None:  # fmt: skip
+    selection: SearchResult,
+    best: Catalogued,
+    base: Model,
+    holdout: HoldoutValidation,
+    runs: Sequence[ObservedRun],
+    polish: Polish,
+    camera: Sequence[Named],
+) -> ProposedLaw | None:
     """An equation for what is left; None where none holds.
 
     A law holds if it gains more than the best of so many terms would by chance, if it helps on

@@ -40,20 +40,33 @@ class WithMemory(Form):
         """The free parameters, as the effect declares them."""
         return [
             Number(
-                p.name, p.unit, self._symbol(p.name), law.effect[p.name], std[p.name], p.scale,
-                stated(p.low), stated(p.high), law.effect[p.name] if p.default else None,
+                p.name,
+                p.unit,
+                self._symbol(p.name),
+                law.effect[p.name],
+                std[p.name],
+                p.scale,
+                stated(p.low),
+                stated(p.high),
+                law.effect[p.name] if p.default else None,
             )
             for p in law.parameters
-        ]  # fmt: skip
+        ]
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """The method of the effect itself, with the parameters that were fitted."""
         (base,) = self.effect.__bases__
         method = next(one for one in vars(self.effect).values() if callable(one))
         return write_effect(
-            name, self, numbers, story, base=base.__name__, imports=self.imports,
-            method=dedent(inspect.getsource(method)), start=round_start(numbers),
-        )  # fmt: skip
+            name,
+            self,
+            numbers,
+            story,
+            base=base.__name__,
+            imports=self.imports,
+            method=dedent(inspect.getsource(method)),
+            start=round_start(numbers),
+        )
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
         """Without each of its names, as long as one is left."""

@@ -190,9 +190,15 @@ class WithThrust(Form):
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """A kernel of plain arithmetic that reads the thrusters."""
         return write_effect(
-            name, self, numbers, story, base="Wrench", imports="", start={},
+            name,
+            self,
+            numbers,
+            story,
+            base="Wrench",
+            imports="",
+            start={},
             method=KERNEL.format(body=indent("\n".join(self._lines(law)), "    ")),
-        )  # fmt: skip
+        )
 
     def _lines(self, law: Term) -> Iterator[str]:
         t = self.term

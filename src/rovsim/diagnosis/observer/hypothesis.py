@@ -136,10 +136,13 @@ class Hypothesis:
         """A step of each scaled parameter (k,) that stays inside its range, to see what changes."""
         parameters = [p for term in self.terms for p in term.parameters]
         sizes = [max(SCALED_STEP, p.resolution / p.scale) for p in parameters]
-        return np.array([
-            -step if (x + step) * p.scale > p.high else step
-            for x, step, p in zip(self.x, sizes, parameters, strict=True)
-        ], float)  # fmt: skip
+        return np.array(
+            [
+                -step if (x + step) * p.scale > p.high else step
+                for x, step, p in zip(self.x, sizes, parameters, strict=True)
+            ],
+            float,
+        )
 
     @cached_property
     def beside(self) -> list["Hypothesis"]:

@@ -68,16 +68,24 @@ class Noise:
     def of_axis(self, i: int) -> AxisNoise:
         """The noise of one axis."""
         return AxisNoise(
-            self.disturbance_std[i], self.correlation_time[i], self.measurement_std[i],
-            self.bias_std[i], self.bias_correlation_time[i],
-        )  # fmt: skip
+            self.disturbance_std[i],
+            self.correlation_time[i],
+            self.measurement_std[i],
+            self.bias_std[i],
+            self.bias_correlation_time[i],
+        )
 
     def draws(self, run: ObservedRun, random: np.random.Generator) -> NoiseDraws:
         """The same to draw from, of a run."""
         return NoiseDraws(
-            self.disturbance_std, self.correlation_time, self.measurement_std, run.period,
-            self.bias_std, self.bias_correlation_time, random,
-        )  # fmt: skip
+            self.disturbance_std,
+            self.correlation_time,
+            self.measurement_std,
+            run.period,
+            self.bias_std,
+            self.bias_correlation_time,
+            random,
+        )
 
     @property
     def white(self) -> "Noise":

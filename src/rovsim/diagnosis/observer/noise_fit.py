@@ -132,9 +132,16 @@ class _AxisInnovations:
     def _of_run(self, run: ObservedRun, old: AxisFilter, e: Array) -> tuple:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
         return (
-            kind, h, self.dynamics.over(h, kind), old.denominator, old.noise_denominator,
-            e, run.innovation_segments, run.settled, run.innovation_mask[:, i],
-        )  # fmt: skip
+            kind,
+            h,
+            self.dynamics.over(h, kind),
+            old.denominator,
+            old.noise_denominator,
+            e,
+            run.innovation_segments,
+            run.settled,
+            run.innovation_mask[:, i],
+        )
 
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
@@ -195,9 +202,11 @@ def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float
     """Where a cost is least, and the least."""
     simplex = first + np.vstack([np.zeros(len(first)), 0.3 * np.eye(len(first))])
     best = minimize(
-        cost, first, method="Nelder-Mead",
+        cost,
+        first,
+        method="Nelder-Mead",
         options={"initial_simplex": simplex, "xatol": 0.01, "fatol": 0.02, "maxiter": 300},
-    )  # fmt: skip
+    )
     return best.x, float(best.fun)
 
 

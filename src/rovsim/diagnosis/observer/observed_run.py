@@ -204,9 +204,13 @@ class ObservedRun(Steps):
 
 
 def prepare_run(
-    stage: Stage, motion: Motion, settings: ReplaySettings, catalogue: Catalogue, free: Array,
+    stage: Stage,
+    motion: Motion,
+    settings: ReplaySettings,
+    catalogue: Catalogue,
+    free: Array,
     kept: Recent | None = None,
-) -> ObservedRun:  # fmt: skip
+) -> ObservedRun:
     """A run as the observer sees it; without usable stretches it has no segments.
 
     Args:
@@ -225,9 +229,13 @@ def prepare_run(
     if not motion.binned:
         replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
-        **vars(steps), motion=motion, drives=drives, replay_drives=replayed,
-        wrenches=catalogue.wrenches, free_axes=free,
-    )  # fmt: skip
+        **vars(steps),
+        motion=motion,
+        drives=drives,
+        replay_drives=replayed,
+        wrenches=catalogue.wrenches,
+        free_axes=free,
+    )
 
 
 def _lasts(motion: Motion, a: int, b: int) -> bool:

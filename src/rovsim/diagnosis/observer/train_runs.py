@@ -85,9 +85,14 @@ def prepare_test(
 
 
 def _prepare(
-    runs: Runs, name: str, at: slice, settings: ReplaySettings, catalogue: Catalogue, free: Array,
+    runs: Runs,
+    name: str,
+    at: slice,
+    settings: ReplaySettings,
+    catalogue: Catalogue,
+    free: Array,
     kept: Recent | None = None,
-) -> ObservedRun:  # fmt: skip
+) -> ObservedRun:
     stage, motion = runs.stages[name], runs.motions[name]
     if at != slice(None):
         first = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))

@@ -22,9 +22,7 @@ from rovsim.dynamics.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
-ALWAYS = (
-    *DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay"
-)  # fmt: skip
+ALWAYS = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
 
 
 def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:

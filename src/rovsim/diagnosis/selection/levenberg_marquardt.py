@@ -25,9 +25,13 @@ Monitor = Callable[[Linearised, float], None]
 
 
 def levenberg_marquardt(
-    start: Hypothesis, source: ResidualSource, noise: Noise, prior: Prior | None = None,
-    first: Linearised | None = None, monitor: Monitor = lambda seen, predicted_reduction: None,
-) -> Linearised:  # fmt: skip
+    start: Hypothesis,
+    source: ResidualSource,
+    noise: Noise,
+    prior: Prior | None = None,
+    first: Linearised | None = None,
+    monitor: Monitor = lambda seen, predicted_reduction: None,
+) -> Linearised:
     """Damped least squares from a hypothesis, beside what is known before: where they lead.
 
     Levenberg (1944) and Marquardt (1963): the larger the damping, the shorter the step.

@@ -59,9 +59,11 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     Each round starts from the first guess: a level that once fell to zero does not come back.
     """
     first = replace(
-        FIRST_NOISE, bias_std=noise.bias_std, bias_correlation_time=noise.bias_correlation_time,
+        FIRST_NOISE,
+        bias_std=noise.bias_std,
+        bias_correlation_time=noise.bias_correlation_time,
         drift=noise.drift,
-    )  # fmt: skip
+    )
     fit = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
         bank = bank.redesign(model, fit.noise)

@@ -100,9 +100,10 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
         fit.hypothesis, source, fit.noise, Prior.around(fit.hypothesis.x, REACH)
     )
     covariance = estimate_covariance_of_few(
-        source.whiten(seen.e, fit.noise), source.whiten(seen.J, fit.noise),
+        source.whiten(seen.e, fit.noise),
+        source.whiten(seen.J, fit.noise),
         source.number(),
-    )  # fmt: skip
+    )
     fresh = bank.redesign(seen.at.model, fit.noise)
     again = judge(fresh.linearise(seen.at), fresh, fit.noise)
     return replace(again, covariance=covariance)

@@ -216,9 +216,10 @@ class SearchWorkspace:
             return []
         starts = [block.candidate.term() for block in self.sensitivities.blocks]
         return [
-            one for one in starts
+            one
+            for one in starts
             if one.id == term.id and one.free and set(one.free) == set(term.free)
-        ]  # fmt: skip
+        ]
 
     def propose(self, current: Fit) -> list[Proposal]:
         """All candidates, best first, judged to first order on top of what is there; made once.

@@ -62,11 +62,13 @@ class AddedMassCoupling(Coefficients):
     signature = Signature({"surge_pitch": 1.0}, "pitch", "surge acceleration")
     parameters = tuple(
         Parameter(
-            f"{AXES[i]}_{AXES[j]}", UNITS[i // 3 + j // 3], f"m_{{{AXES[i]},{AXES[j]}}}",
+            f"{AXES[i]}_{AXES[j]}",
+            UNITS[i // 3 + j // 3],
+            f"m_{{{AXES[i]},{AXES[j]}}}",
             scale=SCALES[i // 3 + j // 3],
         )
         for i, j in PAIRS
-    )  # fmt: skip
+    )
 
     def enter(self, body: Body) -> None:
         """Add to both sides of the diagonal of M_A."""

@@ -76,6 +76,10 @@ class CubicDamping(Wrench):
         """Against the motion of each axis."""
         u, v, w, a, b, c = at.nu_r
         return (
-            -p.surge * u * u * u, -p.sway * v * v * v, -p.heave * w * w * w,
-            -p.roll * a * a * a, -p.pitch * b * b * b, -p.yaw * c * c * c,
-        )  # fmt: skip
+            -p.surge * u * u * u,
+            -p.sway * v * v * v,
+            -p.heave * w * w * w,
+            -p.roll * a * a * a,
+            -p.pitch * b * b * b,
+            -p.yaw * c * c * c,
+        )

@@ -40,6 +40,10 @@ class DryFriction(Wrench):
         """Against the motion of each axis."""
         u, v, w, a, b, c = at.nu_r
         return (
-            rub(p.surge, u), rub(p.sway, v), rub(p.heave, w),
-            rub(p.roll, a), rub(p.pitch, b), rub(p.yaw, c),
-        )  # fmt: skip
+            rub(p.surge, u),
+            rub(p.sway, v),
+            rub(p.heave, w),
+            rub(p.roll, a),
+            rub(p.pitch, b),
+            rub(p.yaw, c),
+        )

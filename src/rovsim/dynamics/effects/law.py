@@ -116,13 +116,16 @@ class Law(Wrench):
     neglects = "what is not a product of its factors"
     source = "definition"
     parameters = (
-        *_term(1), *_term(2), *_term(3),
-        Parameter("x", "m", "x_0", scale=0.5), Parameter("y", "m", "y_0", scale=0.5),
+        *_term(1),
+        *_term(2),
+        *_term(3),
+        Parameter("x", "m", "x_0", scale=0.5),
+        Parameter("y", "m", "y_0", scale=0.5),
         Parameter("z", "m", "z_0", scale=0.5),
         Parameter("width", "m", "s", low=0.15, high=5.0, default=0.5, scale=0.2),
         *(Parameter(f"linear{i}", "N s/m", "d", scale=1.0, fitted=False) for i in range(3)),
         *(Parameter(f"quadratic{i}", "N s2/m2", "d", scale=1.0, fitted=False) for i in range(3)),
-    )  # fmt: skip
+    )
 
     @staticmethod
     def wrench(at, p):

@@ -17,16 +17,20 @@ def nearness(distance, length):
 def times(factor, tau):
     """A wrench times a factor."""
     return (
-        factor * tau[0], factor * tau[1], factor * tau[2],
-        factor * tau[3], factor * tau[4], factor * tau[5],
-    )  # fmt: skip
+        factor * tau[0],
+        factor * tau[1],
+        factor * tau[2],
+        factor * tau[3],
+        factor * tau[4],
+        factor * tau[5],
+    )
 
 
 def _length(default: float) -> Parameter:
     # the gain's effect at the usual distances fixes the product of both, often hardly the length
     return Parameter(
         "length_scale", "m", "l", low=0.01, default=default, scale=0.2, fitted=False, shape=True
-    )  # fmt: skip
+    )
 
 
 class WallProximity(Wrench):

@@ -57,6 +57,10 @@ class ThrustLaw(Wrench):
         value *= p.c * p.size
         on = int(p.on)
         return (
-            value if on == 0 else 0.0, value if on == 1 else 0.0, value if on == 2 else 0.0,
-            value if on == 3 else 0.0, value if on == 4 else 0.0, value if on == 5 else 0.0,
-        )  # fmt: skip
+            value if on == 0 else 0.0,
+            value if on == 1 else 0.0,
+            value if on == 2 else 0.0,
+            value if on == 3 else 0.0,
+            value if on == 4 else 0.0,
+            value if on == 5 else 0.0,
+        )

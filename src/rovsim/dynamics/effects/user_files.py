@@ -84,8 +84,11 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
     missing += sorted(cls.__abstractmethods__)
     if missing:
         what = ", ".join(f"'{name}'" for name in missing)
-        raise _refused(f"has no {what}", where, "a docstring, id, equation, neglects, source, "
-                       "parameters and the method of its kind")  # fmt: skip
+        raise _refused(
+            f"has no {what}",
+            where,
+            "a docstring, id, equation, neglects, source, parameters and the method of its kind",
+        )
     if not re.fullmatch(r"[a-z][a-z0-9_]*", cls.id):
         raise _refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
     if cls.id in taken:
@@ -108,9 +111,10 @@ def _check_parameters(cls: type[Effect], where: str) -> None:
         inside = np.isnan(p.default) or p.low <= p.default <= p.high
         if not (usable and inside and p.scale > 0) or names.count(p.name) > 1:
             raise _refused(
-                f"parameter '{p.name}' is {p}", where,
+                f"parameter '{p.name}' is {p}",
+                where,
                 "a name of its own, low <= default <= high, and a scale above 0",
-            )  # fmt: skip
+            )
     for start in cls.starts:
         cls(**start)
 
@@ -134,9 +138,10 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
         kernel(example_reading(channels) if cls.reads() else EXAMPLE, p)
     except (NumbaError, TypeError) as error:
         raise _refused(
-            f"'wrench' does not compile: {_reason(str(error))}", where,
+            f"'wrench' does not compile: {_reason(str(error))}",
+            where,
             "arithmetic on the numbers of `at` and `p`, functions of math, and if",
-        ) from None  # fmt: skip
+        ) from None
     made = kernel.nopython_signatures[0].return_type
     numbers = [isinstance(part, types.Number) for part in getattr(made, "types", ())]
     if len(numbers) != 6 or not all(numbers):

@@ -24,7 +24,7 @@ from rovsim.dynamics.engine.vectors import (
     times6,
     vector3,
     vector6,
-)  # fmt: skip
+)
 
 
 @inline_internal
@@ -85,10 +85,13 @@ def damping_term(linear, quadratic, v):
 def damping(a, b, v):
     """Linear (a) and quadratic (b) diagonal damping (Fossen 2021, eq. 6.75)."""
     return (
-        damping_term(a[0], b[0], v[0]), damping_term(a[1], b[1], v[1]),
-        damping_term(a[2], b[2], v[2]), damping_term(a[3], b[3], v[3]),
-        damping_term(a[4], b[4], v[4]), damping_term(a[5], b[5], v[5]),
-    )  # fmt: skip
+        damping_term(a[0], b[0], v[0]),
+        damping_term(a[1], b[1], v[1]),
+        damping_term(a[2], b[2], v[2]),
+        damping_term(a[3], b[3], v[3]),
+        damping_term(a[4], b[4], v[4]),
+        damping_term(a[5], b[5], v[5]),
+    )
 
 
 @inline_internal
@@ -144,9 +147,13 @@ def accelerate(extra, at, body, p, thrust, acting, level):
 def diagonal(a, b):
     """Diagonal of the sum of two matrices."""
     return (
-        a[0][0] + b[0][0], a[1][1] + b[1][1], a[2][2] + b[2][2],
-        a[3][3] + b[3][3], a[4][4] + b[4][4], a[5][5] + b[5][5],
-    )  # fmt: skip
+        a[0][0] + b[0][0],
+        a[1][1] + b[1][1],
+        a[2][2] + b[2][2],
+        a[3][3] + b[3][3],
+        a[4][4] + b[4][4],
+        a[5][5] + b[5][5],
+    )
 
 
 @inline_anew

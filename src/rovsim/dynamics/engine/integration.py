@@ -107,14 +107,30 @@ def learned(extra, t, x, body, p, step, push, data, site, features, a_res):
 def constants_of(bodies, m):
     """Constants of parameter set m alone, as tuples."""
     return Constants(
-        matrix6(bodies.M_RB[m]), matrix6(bodies.M_A[m]), matrix6(bodies.M_inv[m]),
-        vector6(bodies.linear[m]), vector6(bodies.quadratic[m]), bodies.heaviness[m],
-        vector3(bodies.righting[m]), vector3(bodies.current[m]), bodies.advance[m],
-        bodies.coupled[m], bodies.coupling[m], vector6(bodies.memory[m]), bodies.memory_decay[m],
-        bodies.B[m], bodies.directions,
-        bodies.further[m], vector3(bodies.waterplane[m]), bodies.products[m], bodies.factors,
-        bodies.surfaces, bodies.lifting[m], vector6(bodies.free[m]), bodies.places,
-    )  # fmt: skip
+        matrix6(bodies.M_RB[m]),
+        matrix6(bodies.M_A[m]),
+        matrix6(bodies.M_inv[m]),
+        vector6(bodies.linear[m]),
+        vector6(bodies.quadratic[m]),
+        bodies.heaviness[m],
+        vector3(bodies.righting[m]),
+        vector3(bodies.current[m]),
+        bodies.advance[m],
+        bodies.coupled[m],
+        bodies.coupling[m],
+        vector6(bodies.memory[m]),
+        bodies.memory_decay[m],
+        bodies.B[m],
+        bodies.directions,
+        bodies.further[m],
+        vector3(bodies.waterplane[m]),
+        bodies.products[m],
+        bodies.factors,
+        bodies.surfaces,
+        bodies.lifting[m],
+        vector6(bodies.free[m]),
+        bodies.places,
+    )
 
 
 @inline_internal
@@ -127,9 +143,11 @@ def parameters_of(p, m):
 def step_of(inputs, row, k):
     """Commands of step k: wrench, forces and angles, demand, duration of the recording."""
     return (
-        vector6(inputs.wrench[row, k]), inputs.acting[row, k], vector6(inputs.demand[k]),
+        vector6(inputs.wrench[row, k]),
+        inputs.acting[row, k],
+        vector6(inputs.demand[k]),
         inputs.duration[k],
-    )  # fmt: skip
+    )
 
 
 @inline_internal

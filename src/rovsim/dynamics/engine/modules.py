@@ -161,10 +161,12 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
         after = acts + 1 + len(wrench.parameters)
         values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, after)), COLUMNS)
         pushes += PUSH.format(
-            id=wrench.id, acts=acts, values=textwrap.indent(values, MARGIN),
+            id=wrench.id,
+            acts=acts,
+            values=textwrap.indent(values, MARGIN),
             at="seen" if wrench.reads() else "at",
             reading=_reading(wrench, channel) if wrench.reads() else "",
-        )  # fmt: skip
+        )
         acts, channel = after, channel + len(wrench.channels)
     imports = {f"from {w.__module__} import {w.__name__}{_alias(w, known)}\n" for w in known}
     return {

@@ -39,9 +39,11 @@ def turned(q, v):
     w, i, j, k = q
     a, b, c = 0.5 * v[0], 0.5 * v[1], 0.5 * v[2]
     return (
-        w - i * a - j * b - k * c, i + w * a + j * c - k * b,
-        j + w * b + k * a - i * c, k + w * c + i * b - j * a,
-    )  # fmt: skip
+        w - i * a - j * b - k * c,
+        i + w * a + j * c - k * b,
+        j + w * b + k * a - i * c,
+        k + w * c + i * b - j * a,
+    )
 
 
 @inline_internal
@@ -75,9 +77,10 @@ def pose_error(x, y, known):
     1 where sensors of their own tell height and place: level axes keep the noise of each apart.
     """
     moved = (
-        known[0] * (y[0] - x.position[0]), known[1] * (y[1] - x.position[1]),
+        known[0] * (y[0] - x.position[0]),
+        known[1] * (y[1] - x.position[1]),
         known[2] * (y[2] - x.position[2]),
-    )  # fmt: skip
+    )
     d = into_body(axes_of_errors(x.attitude, known), moved)
     w, i, j, k = x.attitude
     a, b, c, e = y[3], y[4], y[5], y[6]
@@ -86,20 +89,26 @@ def pose_error(x, y, known):
     real = w * a + i * b + j * c + k * e
     two = 2.0 if real >= 0.0 else -2.0
     return (
-        d[0], d[1], d[2],
+        d[0],
+        d[1],
+        d[2],
         two * (w * b - i * a - j * e + k * c),
         two * (w * c + i * e - j * a - k * b),
         two * (w * e - i * c + j * b - k * a),
-    )  # fmt: skip
+    )
 
 
 @inline_internal
 def velocity_error(mean, y):
     """Measured mean velocity, in y (13,) behind the pose, minus the predicted one."""
     return (
-        y[7] - mean[0], y[8] - mean[1], y[9] - mean[2],
-        y[10] - mean[3], y[11] - mean[4], y[12] - mean[5],
-    )  # fmt: skip
+        y[7] - mean[0],
+        y[8] - mean[1],
+        y[9] - mean[2],
+        y[10] - mean[3],
+        y[11] - mean[4],
+        y[12] - mean[5],
+    )
 
 
 @inline_internal

@@ -94,9 +94,21 @@ def actuators_at(at, layout, acting):
 def reading_at(at, actuators, channels):
     """An instant with what only some effects read."""
     return ReadingAt(
-        at.t, at.duration, at.position, at.R, at.nu, at.nu_r, at.nu_c_dot, at.drag, at.inertia,
-        at.demand, at.tank, at.axes, actuators, channels,
-    )  # fmt: skip
+        at.t,
+        at.duration,
+        at.position,
+        at.R,
+        at.nu,
+        at.nu_r,
+        at.nu_c_dot,
+        at.drag,
+        at.inertia,
+        at.demand,
+        at.tank,
+        at.axes,
+        actuators,
+        channels,
+    )
 
 
 # How a chain of effects is called by its address: (at, p, layout, acting).

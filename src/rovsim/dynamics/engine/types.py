@@ -40,10 +40,19 @@ class At(NamedTuple):
 _NONE: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 # Some instant: what a kernel can be tried on.
 EXAMPLE = At(
-    0.0, 1.0, (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-    _NONE, _NONE, _NONE, _NONE, _NONE, _NONE,
-    ((-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0)), (1.0, -1.0, -1.0),
-)  # fmt: skip
+    0.0,
+    1.0,
+    (0.0, 0.0, 0.0),
+    ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    _NONE,
+    _NONE,
+    _NONE,
+    _NONE,
+    _NONE,
+    _NONE,
+    ((-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0)),
+    (1.0, -1.0, -1.0),
+)
 
 
 class State(NamedTuple):

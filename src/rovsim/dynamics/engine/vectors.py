@@ -37,9 +37,13 @@ def add4(a, h, b):
 def add6(a, h, b):
     """a + h b."""
     return (
-        a[0] + h * b[0], a[1] + h * b[1], a[2] + h * b[2],
-        a[3] + h * b[3], a[4] + h * b[4], a[5] + h * b[5],
-    )  # fmt: skip
+        a[0] + h * b[0],
+        a[1] + h * b[1],
+        a[2] + h * b[2],
+        a[3] + h * b[3],
+        a[4] + h * b[4],
+        a[5] + h * b[5],
+    )
 
 
 @inline_shared
@@ -52,8 +56,13 @@ def each6(a, b):
 def times6(M, v):
     """Matrix (six rows) times 6-vector."""
     return (
-        dot6(M[0], v), dot6(M[1], v), dot6(M[2], v), dot6(M[3], v), dot6(M[4], v), dot6(M[5], v)
-    )  # fmt: skip
+        dot6(M[0], v),
+        dot6(M[1], v),
+        dot6(M[2], v),
+        dot6(M[3], v),
+        dot6(M[4], v),
+        dot6(M[5], v),
+    )
 
 
 @inline_shared

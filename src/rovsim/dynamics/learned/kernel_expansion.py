@@ -63,10 +63,17 @@ def _part(data, part):
     weights = spectrum + rank
     vectors = weights + rows * length
     return Part(
-        part * share, share, data[at], data[at + 1], data[prior:scaling], scaling,
-        data[points:spectrum].reshape((blocks, wide, LANES)), data[spectrum:weights],
-        data[weights:vectors], data[vectors : vectors + rank * length],
-    )  # fmt: skip
+        part * share,
+        share,
+        data[at],
+        data[at + 1],
+        data[prior:scaling],
+        scaling,
+        data[points:spectrum].reshape((blocks, wide, LANES)),
+        data[spectrum:weights],
+        data[weights:vectors],
+        data[vectors : vectors + rank * length],
+    )
 
 
 @plain

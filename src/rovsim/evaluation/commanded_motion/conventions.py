@@ -99,16 +99,18 @@ def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherRead
     """The best of those that are clearly better, and the simplest one that does as well."""
     enough = max(own.whole + BETTER, MIN_CORRELATION)
     better = [
-        (found, reading) for found, reading in scored
+        (found, reading)
+        for found, reading in scored
         if found.whole >= enough and found.linear >= own.linear + FASTER
-    ]  # fmt: skip
+    ]
     if not better:
         return None
     best = max(found for found, _ in better)
     alike = [
-        reading for found, reading in better
+        reading
+        for found, reading in better
         if found.whole >= best.whole - AS_GOOD and found.linear >= best.linear - AS_FAST
-    ][:2]  # fmt: skip
+    ][:2]
     said = ", or with ".join(reading.said for reading in alike)
     remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in alike))
     return OtherReading(best.whole, own.whole, said, remedy)

@@ -22,9 +22,7 @@ from rovsim.results.error_conditions import BLOCK
 from rovsim.simulation.samples import Samples
 
 SEEN = 0.5  # share of a block that must have been seen
-SPEEDS = (
-    "surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate"
-)  # fmt: skip
+SPEEDS = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
 THROUGHOUT, HEADING = "throughout", "heading"
 ACCELERATION = "acceleration"  # kind of those that are no condition of a search
 ANGLES = ("roll angle", "pitch angle", HEADING)

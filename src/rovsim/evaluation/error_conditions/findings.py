@@ -59,9 +59,11 @@ class Finding:
         """As `where` of a diagnosis lists it."""
         alone = self.push is not None and self.condition == THROUGHOUT
         return ConditionShare(
-            axis=self.axis, condition=self.condition, share_of_error=round(self.share_of_error, 3),
+            axis=self.axis,
+            condition=self.condition,
+            share_of_error=round(self.share_of_error, 3),
             push=float(f"{self.push:.4g}") if alone else None,
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, eq=False)

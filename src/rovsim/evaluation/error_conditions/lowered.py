@@ -66,10 +66,13 @@ def find_most_lowered(
     declared = shown.condition if shown else ""
     return max(
         near,
-        key=lambda one: (one.condition.name == declared, one.condition.axis == one.axis,
-                         one.removed),
+        key=lambda one: (
+            one.condition.name == declared,
+            one.condition.axis == one.axis,
+            one.removed,
+        ),
         default=None,
-    )  # fmt: skip
+    )
 
 
 def _list_choices(

@@ -9,13 +9,21 @@ from rovsim.evaluation.error_conditions.findings import SMALLEST, Explanation, F
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
 FORCES = {axis: "N" for axis in UNITS}
 POSITIVE = {
-    "surge": "forward", "sway": "to starboard", "heave": "downward", "roll": "to starboard",
-    "pitch": "nose up", "yaw": "to starboard",
-}  # fmt: skip
+    "surge": "forward",
+    "sway": "to starboard",
+    "heave": "downward",
+    "roll": "to starboard",
+    "pitch": "nose up",
+    "yaw": "to starboard",
+}
 NEGATIVE = {
-    "surge": "backward", "sway": "to port", "heave": "upward", "roll": "to port",
-    "pitch": "nose down", "yaw": "to port",
-}  # fmt: skip
+    "surge": "backward",
+    "sway": "to port",
+    "heave": "upward",
+    "roll": "to port",
+    "pitch": "nose down",
+    "yaw": "to port",
+}
 # On the condition's own axis: what it means that error and condition have equal, or other, signs.
 RELATIONS = {
     "speed": ("brakes too much when moving fast", "brakes too little when moving fast"),

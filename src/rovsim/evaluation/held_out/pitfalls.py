@@ -38,10 +38,12 @@ def on_wrong_clock(motion: Motion) -> Motion:
     said = motion.time[0] + SAID * np.arange(len(edges))
     arrival = np.interp(motion.commands.time, edges, said)
     return replace(
-        motion, time=said[:-1], end=float(said[-1]),
+        motion,
+        time=said[:-1],
+        end=float(said[-1]),
         nu_dot=backward_difference(motion.nu, said[:-1]),
         commands=replace(motion.commands, time=arrival),
-    )  # fmt: skip
+    )
 
 
 def replay_error(

@@ -113,10 +113,18 @@ def compare_published(
             remedy="Name the runs of the campaign as in the published file.",
         )
     found = [
-        _cell(_of(published, run, axis), _errors(comparisons[run], run, axis, metric), moved[run],
-              run, axis, metric)
-        for run in known for axis in AXES for metric in METRICS
-    ]  # fmt: skip
+        _cell(
+            _of(published, run, axis),
+            _errors(comparisons[run], run, axis, metric),
+            moved[run],
+            run,
+            axis,
+            metric,
+        )
+        for run in known
+        for axis in AXES
+        for metric in METRICS
+    ]
     cells = tuple(cell for cell in found if cell)
     names = dict.fromkeys(name for cell in cells for name in cell.ratios)
     return PublishedErrors(
@@ -141,9 +149,13 @@ def _errors(comparison: Comparison, run: str, axis: str, metric: str) -> dict[st
 
 
 def _cell(
-    theirs: Sequence[Published], ours: Mapping[str, float | None], moved: Mapping[str, bool],
-    run: str, axis: str, metric: str,
-) -> PublishedCell | None:  # fmt: skip
+    theirs: Sequence[Published],
+    ours: Mapping[str, float | None],
+    moved: Mapping[str, bool],
+    run: str,
+    axis: str,
+    metric: str,
+) -> PublishedCell | None:
     """One cell; None without a published error, or where nothing was measured."""
     still = ours.get(STILL)
     if not theirs or still is None:

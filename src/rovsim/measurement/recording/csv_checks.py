@@ -39,25 +39,44 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
     """
     step = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
     if step > LONGEST_STEP:
-        raise _refused(path, "time_s", f"steps of {step:.3g} s: ms, us or ns?", "seconds",
-                       RENAME.format("time_ms", "s"))  # fmt: skip
+        raise _refused(
+            path,
+            "time_s",
+            f"steps of {step:.3g} s: ms, us or ns?",
+            "seconds",
+            RENAME.format("time_ms", "s"),
+        )
     if values.keys() >= set(POSITION):
         order = np.argsort(time, kind="stable")
         position = np.stack([values[name] for name in POSITION], axis=1)
         speed = usual_speed(position[order], time[order])
         if speed > FASTEST:
-            raise _refused(path, "x_m", f"a vehicle that moves at {speed:.3g} m/s: mm or cm?", "m",
-                           RENAME.format("x_mm", "m"))  # fmt: skip
+            raise _refused(
+                path,
+                "x_m",
+                f"a vehicle that moves at {speed:.3g} m/s: mm or cm?",
+                "m",
+                RENAME.format("x_mm", "m"),
+            )
     pitch = np.abs(values.get("pitch_rad", np.zeros(0)))
     if np.nanmax(pitch, initial=0.0) > TURNED:
-        raise _refused(path, "pitch_rad", f"angles up to {np.nanmax(pitch):.3g}: degrees?",
-                       "rad, within a quarter turn", RENAME.format("pitch_deg", "rad"))  # fmt: skip
+        raise _refused(
+            path,
+            "pitch_rad",
+            f"angles up to {np.nanmax(pitch):.3g}: degrees?",
+            "rad, within a quarter turn",
+            RENAME.format("pitch_deg", "rad"),
+        )
     depth = values.get("depth_m", np.zeros(0))
     if is_height(depth):
         low, high = np.nanmin(depth), np.nanmax(depth)
-        raise _refused(path, "depth_m", f"depths from {low:.3g} to {high:.3g} m: heights?",
-                       "m, positive down", "Turn the sign of the column; `rovsim init` does so in "
-                       "a copy.")  # fmt: skip
+        raise _refused(
+            path,
+            "depth_m",
+            f"depths from {low:.3g} to {high:.3g} m: heights?",
+            "m, positive down",
+            "Turn the sign of the column; `rovsim init` does so in a copy.",
+        )
 
 
 def usual_speed(value: Array, time: Array) -> float:

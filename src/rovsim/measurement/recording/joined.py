@@ -38,8 +38,9 @@ def join(exports: Mapping[Path, Export]) -> Export:
     counts: Counter[str] = Counter()
     for one in exports.values():
         counts.update(one.counts)
-    channels = {kind: c for one in exports.values() for kind, c in one.channels.items()
-                if len(c.time)}  # fmt: skip
+    channels = {
+        kind: c for one in exports.values() for kind, c in one.channels.items() if len(c.time)
+    }
     notes = dict.fromkeys(note for one in exports.values() for note in one.notes)
     return replace(first, counts=dict(counts), channels=channels, notes=(*notes, *left_out))
 

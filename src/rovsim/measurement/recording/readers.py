@@ -73,9 +73,14 @@ class Export:
     ) -> "Export":
         """What holds no full poses."""
         return Export(
-            np.empty(0), np.empty((0, 3)), np.empty((0, 4)), np.empty(0, bool),
-            counts=counts or {}, channels=channels, notes=notes,
-        )  # fmt: skip
+            np.empty(0),
+            np.empty((0, 3)),
+            np.empty((0, 4)),
+            np.empty(0, bool),
+            counts=counts or {},
+            channels=channels,
+            notes=notes,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,9 +65,18 @@ class Recording:
         channels = from_names(a)
         sensors = Sensors.model_validate_json(str(a["sensors"])) if channels else Sensors()
         return Recording(
-            run, site, a["time"], a["position"], a["attitude"], a["found"], commands,
-            float(a["rate"]), a.get("nu"), channels, sensors,
-        )  # fmt: skip
+            run,
+            site,
+            a["time"],
+            a["position"],
+            a["attitude"],
+            a["found"],
+            commands,
+            float(a["rate"]),
+            a.get("nu"),
+            channels,
+            sensors,
+        )
 
 
 def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:

@@ -134,8 +134,9 @@ class _Way:
 
     def _moves(self, steps: Array) -> bool:
         """Whether steps, the one beside a repetition first, are those of a vehicle under way."""
-        return bool(len(steps) and steps.sum() > NEARBY * self.seen
-                    and steps[0] > SLOWED * steps.max())  # fmt: skip
+        return bool(
+            len(steps) and steps.sum() > NEARBY * self.seen and steps[0] > SLOWED * steps.max()
+        )
 
     def _jumped(self, before: slice, after: slice, first: int, end: int) -> bool:
         """Whether the step that follows makes up for the time."""

@@ -163,8 +163,10 @@ def no_time(path: Path, names: list[str]) -> BadInput:
             remedy="Put one above them: time_s,x_m,y_m,z_m,qw,qx,qy,qz or time_s,t1,t2,… for what "
             "the columns hold (docs/formats.md).",
         )
-    told = [f"'{name}'" if name else f"one without a name (the {k + 1}.)" for k, name in
-            enumerate(names)]  # fmt: skip
+    told = [
+        f"'{name}'" if name else f"one without a name (the {k + 1}.)"
+        for k, name in enumerate(names)
+    ]
     likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]
     remedy = f"Give the column of the times the name {TIME}."
     if likely:

@@ -47,9 +47,18 @@ def bin_motion(recording: Recording) -> Motion:
     eta, state_nu = _states(recording, nu, edges, usable)
     usable = usable & np.append(False, usable[:-1])
     return Motion(
-        recording.run, recording.site, time, eta, nu, backward_difference(nu, time),
-        state_nu, usable, recording.commands, binned=True, end=end,
-    )  # fmt: skip
+        recording.run,
+        recording.site,
+        time,
+        eta,
+        nu,
+        backward_difference(nu, time),
+        state_nu,
+        usable,
+        recording.commands,
+        binned=True,
+        end=end,
+    )
 
 
 def edge_values(edges: Array, means: Array) -> Array:

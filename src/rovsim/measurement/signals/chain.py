@@ -133,9 +133,19 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
     usable &= np.isfinite(nu).all(axis=1)
     nu, nu_dot = blank(poses.measured, nu, 0.0), blank(poses.measured, nu_dot, 0.0)
     return Motion(
-        poses.run, poses.site, poses.time, poses.eta, nu, nu_dot, nu, usable,
-        poses.commands, binned=False, end=float(poses.time[-1]), measured=poses.measured,
-    )  # fmt: skip
+        poses.run,
+        poses.site,
+        poses.time,
+        poses.eta,
+        nu,
+        nu_dot,
+        nu,
+        usable,
+        poses.commands,
+        binned=False,
+        end=float(poses.time[-1]),
+        measured=poses.measured,
+    )
 
 
 def velocities(eta: Array, dt: float, settings: SignalSettings) -> tuple[Array, Array]:

@@ -35,9 +35,12 @@ class Poses:
     def part(self, at: slice) -> "Poses":
         """Some samples of it."""
         return replace(
-            self, time=self.time[at], eta=self.eta[at], usable=self.usable[at],
+            self,
+            time=self.time[at],
+            eta=self.eta[at],
+            usable=self.usable[at],
             measured=self.measured and self.measured.part(at),
-        )  # fmt: skip
+        )
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
@@ -101,9 +104,12 @@ class Motion:
         before = commands.before + float(time[0] - self.time[0])
         after = commands.after + self.end - end
         return replace(
-            self, commands=replace(commands, before=before, after=after), end=end,
-            measured=self.measured and self.measured.part(at), **arrays,
-        )  # fmt: skip
+            self,
+            commands=replace(commands, before=before, after=after),
+            end=end,
+            measured=self.measured and self.measured.part(at),
+            **arrays,
+        )
 
     def segments(self) -> list[tuple[int, int]]:
         """Stretches [first, last) of usable samples, in order."""
@@ -123,6 +129,16 @@ class Motion:
         a = read_arrays(path)
         run, site, commands = unlabelled(a)
         return Motion(
-            run, site, a["time"], a["eta"], a["nu"], a["nu_dot"], a["state_nu"], a["usable"],
-            commands, bool(a["binned"]), float(a["end"]), Measured.from_names(a),
-        )  # fmt: skip
+            run,
+            site,
+            a["time"],
+            a["eta"],
+            a["nu"],
+            a["nu_dot"],
+            a["state_nu"],
+            a["usable"],
+            commands,
+            bool(a["binned"]),
+            float(a["end"]),
+            Measured.from_names(a),
+        )

@@ -49,9 +49,14 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
     usable = np.logical_and.reduce([at.bridged(channel) for channel in chosen.read.values()])
     usable = without_short(usable, round(settings.min_segment * rate))
     return Poses(
-        recording.run, recording.site, clock, np.hstack([moved.value, turned.value]), usable,
-        recording.commands, _describe(at, chosen, turned, moved),
-    )  # fmt: skip
+        recording.run,
+        recording.site,
+        clock,
+        np.hstack([moved.value, turned.value]),
+        usable,
+        recording.commands,
+        _describe(at, chosen, turned, moved),
+    )
 
 
 def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Array:
@@ -170,9 +175,13 @@ def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tra
             when[:, own] = at.nearest(_read_at(kind, chosen.all[kind]))[:, None]
     slowest = min(channel.rate or 0.0 for channel in chosen.read.values())
     return Measured(
-        moved.known, turned.known[2:], axes, np.append(moved.summed, turned.summed), when & axes,
+        moved.known,
+        turned.known[2:],
+        axes,
+        np.append(moved.summed, turned.summed),
+        when & axes,
         np.array([SHARE * slowest]),
-    )  # fmt: skip
+    )
 
 
 def _read_at(kind: str, channel: Channel) -> Array:

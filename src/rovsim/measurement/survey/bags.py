@@ -89,9 +89,10 @@ def look_into_bag(path: Path) -> Contents:
 def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[str, ...]:
     """A sentence on topics of such names and types that rovsim does not read, if there are any."""
     found = [
-        topic for topic, name in topics.items()
+        topic
+        for topic, name in topics.items()
         if re.search(named, topic, re.I) and re.fullmatch(kind, _short(name))
-    ]  # fmt: skip
+    ]
     return (said.format(", ".join(found)),) if found else ()
 
 
@@ -110,9 +111,10 @@ def _short(kind: str) -> str:
 def _channel(topics: dict[str, str], key: str) -> str | None:
     types, first, never = CHANNELS[key]
     found = [
-        topic for topic, kind in topics.items()
+        topic
+        for topic, kind in topics.items()
         if _short(kind) in types and not re.search(never, topic, re.I) and not WISHES.search(topic)
-    ]  # fmt: skip
+    ]
     if key == "velocity":
         found = [t for t in found if re.search(first, t, re.I) or _short(topics[t]) == "DVL"]
     found.sort(key=lambda topic: not re.search(first, topic, re.I))

@@ -157,23 +157,40 @@ def _commands(
         value = np.stack([columns[name] for name in forces.values()], axis=1)
         said = "guess: forces and moments by their names, N and N m: x forward, y right, z down"
         return CommandCandidate(
-            "csv", tuple(forces.values()), time, value, "wrench", said, axes=tuple(forces),
-            auxiliary=voltage, asked=within(value.ravel(), "demand"),
-        )  # fmt: skip
+            "csv",
+            tuple(forces.values()),
+            time,
+            value,
+            "wrench",
+            said,
+            axes=tuple(forces),
+            auxiliary=voltage,
+            asked=within(value.ravel(), "demand"),
+        )
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
     rest = {name: column for name, column in columns.items() if name not in chosen}
     return CommandCandidate(
-        "csv", tuple(chosen), time, value, kind, said, auxiliary=voltage, rest=rest,
+        "csv",
+        tuple(chosen),
+        time,
+        value,
+        kind,
+        said,
+        auxiliary=voltage,
+        rest=rest,
         asked=kind == "wrench",
-    )  # fmt: skip
+    )
 
 
 def _radio(columns: dict[str, Array]) -> dict[str, str]:
     """Columns of a pilot's radio, by the channels of ArduSub: RC1, or chan1_raw of RC_CHANNELS."""
-    numbered = {f"RC{int(found[1])}": name for name, value in columns.items()
-                if (found := RADIO.fullmatch(name)) and within(value, "pwm")}  # fmt: skip
+    numbered = {
+        f"RC{int(found[1])}": name
+        for name, value in columns.items()
+        if (found := RADIO.fullmatch(name)) and within(value, "pwm")
+    }
     return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
 
 

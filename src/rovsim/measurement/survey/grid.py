@@ -40,8 +40,10 @@ def even_poses(export: Export | Recording) -> ResampledPoses:
     """Found poses as medians over steps of the even clock; short gaps are bridged."""
     seen = export.found
     time, position, attitude = (
-        export.time[seen], export.position[seen], continuous(export.attitude[seen])
-    )  # fmt: skip
+        export.time[seen],
+        export.position[seen],
+        continuous(export.attitude[seen]),
+    )
     clock = even_clock(time)
     step = clock[1] - clock[0]
     bins = np.floor((time - clock[0]) / step + 0.5).astype(int)

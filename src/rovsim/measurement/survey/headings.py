@@ -93,9 +93,11 @@ def _columns(lines: Lines, units: Units) -> list[Column]:
     """Columns that are ours under another name or unit."""
     plain = {k: split_unit(name) for k, name in enumerate(lines.names)}
     places = {
-        ours: k for ours, form in FORMS.items() for k, (stem, _) in plain.items()
+        ours: k
+        for ours, form in FORMS.items()
+        for k, (stem, _) in plain.items()
         if lines.names[k] == ours or (ours not in lines.names and re.fullmatch(form, stem))
-    }  # fmt: skip
+    }
     _drop_ambiguous(places, lines)
     if "time_s" not in places:
         return []

@@ -37,14 +37,17 @@ def read_others(lines: Lines) -> Columns:
     if TIME not in lines.names:
         return np.empty(0), {}
     kept = [
-        name for name in lines.names
-        if name not in (*KNOWN, TIME) and lines.names.count(name) == 1
+        name
+        for name in lines.names
+        if name not in (*KNOWN, TIME)
+        and lines.names.count(name) == 1
         and not WATCHED.fullmatch(name)
-    ]  # fmt: skip
+    ]
     places = column_places(lines.path, lines.names, [TIME, *kept])
     table, _ = without_cut_line(lines, places)
-    columns = {n: v for n, p in zip(kept, places[1:], strict=True)
-               if (v := _numbers(table, p)) is not None}  # fmt: skip
+    columns = {
+        n: v for n, p in zip(kept, places[1:], strict=True) if (v := _numbers(table, p)) is not None
+    }
     return times(table, places[0]), columns
 
 

@@ -29,9 +29,13 @@ class Timing:
         usual = float(np.median(steps))
         regular = steps[steps < 1.5 * usual]
         return Timing(
-            len(time), float(time[-1] - time[0]), 1.0 / usual, float(regular.std() / usual),
-            int(np.sum(steps > 2.0 * usual)), float(steps.max()),
-        )  # fmt: skip
+            len(time),
+            float(time[-1] - time[0]),
+            1.0 / usual,
+            float(regular.std() / usual),
+            int(np.sum(steps > 2.0 * usual)),
+            float(steps.max()),
+        )
 
     def __str__(self) -> str:
         said = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"

@@ -78,6 +78,10 @@ def _read(path: Path) -> Kind | None:
         return None
     takes = {one.arg: given for one, given in zip(draw.kwonlyargs, draw.kw_defaults, strict=True)}
     return Kind(
-        path.stem, told["SECTION"], told["CAPTION"], told["PLACE"],
-        tuple(takes), tuple(name for name, given in takes.items() if given is None),
-    )  # fmt: skip
+        path.stem,
+        told["SECTION"],
+        told["CAPTION"],
+        told["PLACE"],
+        tuple(takes),
+        tuple(name for name, given in takes.items() if given is None),
+    )

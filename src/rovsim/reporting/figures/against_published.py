@@ -70,8 +70,15 @@ def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]
     axes.tick_params(axis="x", length=0)
     for run in runs:
         middle = np.mean([x for x, c in zip(places, cells, strict=True) if c.run == run])
-        axes.text(middle, 1.01, f"run {short(run, 14)}", ha="center", va="bottom", fontsize=8,
-                  transform=axes.get_xaxis_transform())  # fmt: skip
+        axes.text(
+            middle,
+            1.01,
+            f"run {short(run, 14)}",
+            ha="center",
+            va="bottom",
+            fontsize=8,
+            transform=axes.get_xaxis_transform(),
+        )
 
 
 def _vertical(axes: Axes, lowest: float) -> None:
@@ -96,5 +103,11 @@ def _label(cell: PublishedCell) -> str:
 
 def _look(k: int, look: Look) -> Style:
     """A marker of its own for each model."""
-    return {"color": look.color, "marker": SHAPES[k % len(SHAPES)], "linestyle": "",
-            "markersize": 3.6, "markeredgewidth": 0.3, "markeredgecolor": "white"}  # fmt: skip
+    return {
+        "color": look.color,
+        "marker": SHAPES[k % len(SHAPES)],
+        "linestyle": "",
+        "markersize": 3.6,
+        "markeredgewidth": 0.3,
+        "markeredgecolor": "white",
+    }

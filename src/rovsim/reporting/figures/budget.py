@@ -65,13 +65,16 @@ def draw(*, budget: ForceBudget) -> Figure:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     left = [n for n in parts if n not in names]
     legend(figure, lines(style))
-    note(figure, [
-        f"Missing: mean over {significant(SMOOTH, 1)} s.",
-        f"Too small to be drawn: {', '.join(left)}." if left else "",
-        _excerpt_told(time, at),
-        SHARED,
-        *(r for r in remarks if r.startswith("No values")),
-    ])  # fmt: skip
+    note(
+        figure,
+        [
+            f"Missing: mean over {significant(SMOOTH, 1)} s.",
+            f"Too small to be drawn: {', '.join(left)}." if left else "",
+            _excerpt_told(time, at),
+            SHARED,
+            *(r for r in remarks if r.startswith("No values")),
+        ],
+    )
     return figure
 
 

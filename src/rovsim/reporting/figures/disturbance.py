@@ -128,6 +128,12 @@ def _circle(axes: Any, places: Sequence[Sequence[float]]) -> None:
     if places:
         x, y = zip(*places, strict=True)
         axes.plot(
-            x, y, "o", fillstyle="none",
-            color=FAMILIES["nominal"].color, markersize=8, zorder=3, clip_on=False,
-        )  # fmt: skip
+            x,
+            y,
+            "o",
+            fillstyle="none",
+            color=FAMILIES["nominal"].color,
+            markersize=8,
+            zorder=3,
+            clip_on=False,
+        )

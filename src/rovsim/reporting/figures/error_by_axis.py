@@ -72,8 +72,14 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
         at = np.arange(len(names)) + (k + 0.5) * width - 0.4
         axes.bar(at, np.nan_to_num(row), width * 0.92, label=name, **style[name].bar())
         for x in at[~np.isfinite(row)]:
-            axes.plot(x, 0.02, "x", color=style[name].color, markersize=3,
-                      transform=axes.get_xaxis_transform())  # fmt: skip
+            axes.plot(
+                x,
+                0.02,
+                "x",
+                color=style[name].color,
+                markersize=3,
+                transform=axes.get_xaxis_transform(),
+            )
     axes.set_xticks(np.arange(len(names)), names)
     axes.tick_params(axis="x", length=0)
     axes.grid(False, axis="x")

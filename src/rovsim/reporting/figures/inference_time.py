@@ -52,16 +52,26 @@ def _line(axes: Axes, y: float, stats: Latency, color: str) -> None:
 def _deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     times = [
         getattr(stats, key)
-        for both in inference.values() for stats in (both.library, both.exported) for key in MARKERS
-    ]  # fmt: skip
+        for both in inference.values()
+        for stats in (both.library, both.exported)
+        for key in MARKERS
+    ]
     low = min([t for t in times if t > 0], default=100.0)
     high = max(times, default=100.0)
     axes.set_xlim(low / 2, max(high, 1e6 / min(RATES)) * 1.6)
     for rate in RATES:
         axes.axvline(1e6 / rate, color="#444444", linewidth=0.8, linestyle="--", zorder=1)
-        axes.annotate(f"{rate} Hz", (1e6 / rate, 1.0), xycoords=axes.get_xaxis_transform(),
-                      xytext=(0, 2), textcoords="offset points", ha="center", va="bottom",
-                      fontsize=8, color="#444444")  # fmt: skip
+        axes.annotate(
+            f"{rate} Hz",
+            (1e6 / rate, 1.0),
+            xycoords=axes.get_xaxis_transform(),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8,
+            color="#444444",
+        )
 
 
 def _entries() -> list[Line2D]:

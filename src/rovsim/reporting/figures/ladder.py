@@ -54,9 +54,16 @@ def _value(axes: Axes, y: int, value: float, top: float) -> None:
     beyond = value > top
     text = significant(value) if np.isfinite(value) else "no value"
     place = (top, y) if beyond else (float(np.nan_to_num(value)), y)
-    axes.annotate(f"{text} →" if beyond else text, place, xytext=(-4 if beyond else 3, 0),
-                  va="center", ha="right" if beyond else "left", textcoords="offset points",
-                  fontsize=8, bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
+    axes.annotate(
+        f"{text} →" if beyond else text,
+        place,
+        xytext=(-4 if beyond else 3, 0),
+        va="center",
+        ha="right" if beyond else "left",
+        textcoords="offset points",
+        fontsize=8,
+        bbox={"facecolor": "white", "pad": 1, "linewidth": 0},
+    )
 
 
 def _remarks(ladder: Ladder, beyond: Sequence[LadderBar]) -> list[str]:

@@ -70,9 +70,7 @@ def note(figure: Figure, remarks: Iterable[str]) -> None:
 
 def nothing(axes: Axes, text: str) -> None:
     """Say in an empty panel why it is empty."""
-    axes.text(
-        0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#666666"
-    )  # fmt: skip
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#666666")
 
 
 def plain_log(axes: Axes, names: str = "x") -> None:

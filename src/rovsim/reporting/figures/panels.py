@@ -30,9 +30,12 @@ def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, li
 
 
 def plot_all(
-    axes: list[Axes], time: Array, curves: Mapping[str, Array], looks: Mapping[str, Look],
+    axes: list[Axes],
+    time: Array,
+    curves: Mapping[str, Array],
+    looks: Mapping[str, Look],
     shared: bool = False,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Plot curves {name: (n, 6)}; the first, measured, sets the scale. Returns remarks.
 
     `shared`: axes of one unit have one scale, so that noise on an axis at rest stays small.

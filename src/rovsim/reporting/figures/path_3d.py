@@ -30,9 +30,13 @@ CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
 @styled()
 def draw(
-    *, time: Array, eta: Array, predicted_eta: Mapping[str, Array], usable: Array | None = None,
+    *,
+    time: Array,
+    eta: Array,
+    predicted_eta: Mapping[str, Array],
+    usable: Array | None = None,
     tank: Array | None = None,
-) -> Figure:  # fmt: skip
+) -> Figure:
     """Draw positions `eta[:, :3]` and {model: (n, >= 3)}; `tank` (3, 2) low and high; NED, m.
 
     Plotted are north, west and up (NED turned half a turn about x, so nothing is mirrored); for a
@@ -80,8 +84,14 @@ def _inside(path: Array, low: Array, high: Array) -> Array:
 def _ends(axes: Axes3D, path: Array, color: str) -> None:
     seen = path[np.isfinite(path).all(axis=1)]
     for point, marker in ((seen[:1], "o"), (seen[-1:], "s")):
-        axes.plot(*point.T, marker, color=color, markersize=4, markeredgecolor="white",
-                  markeredgewidth=0.5)  # fmt: skip
+        axes.plot(
+            *point.T,
+            marker,
+            color=color,
+            markersize=4,
+            markeredgecolor="white",
+            markeredgewidth=0.5,
+        )
 
 
 def _box(axes: Axes3D, low: Array, high: Array) -> None:

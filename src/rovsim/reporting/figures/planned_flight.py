@@ -64,17 +64,26 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
         zip(planned_flight.names, planned_flight.values.T, strict=True)
     ):
         dash, color = looks[k % len(looks)]
-        axes.plot(planned_flight.time[::steps], column[::steps], label=name, linewidth=0.7,
-                  color=color, linestyle=dash)  # fmt: skip
+        axes.plot(
+            planned_flight.time[::steps],
+            column[::steps],
+            label=name,
+            linewidth=0.7,
+            color=color,
+            linestyle=dash,
+        )
     axes.set_xlabel("time (s)")
     axes.set_ylabel(f"command ({planned_flight.unit})")
     axes.margins(x=0.0)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=2.0)
-    legend(figure, [
-        Line2D([], [], color=PATH, label="likeliest path"),
-        Line2D([], [], color=CHANCE, label="where else it may lead"),
-        Line2D([], [], linestyle="none", label="start", **START),
-    ])  # fmt: skip
+    legend(
+        figure,
+        [
+            Line2D([], [], color=PATH, label="likeliest path"),
+            Line2D([], [], color=CHANCE, label="where else it may lead"),
+            Line2D([], [], linestyle="none", label="start", **START),
+        ],
+    )
     return figure
 
 

@@ -78,9 +78,15 @@ def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
         marker = "D" if shown == together else "<" if together < shown else ">"
         axes.plot(100 * shown, y, marker, color="black", markersize=4, clip_on=False)
     right = 100 * max(np.nan_to_num(alone), np.nan_to_num(shown))
-    axes.annotate(_text(alone, together), (right, y), xytext=(6, 0), va="center",
-                  textcoords="offset points", fontsize=8,
-                  bbox={"facecolor": "white", "pad": 1, "linewidth": 0})  # fmt: skip
+    axes.annotate(
+        _text(alone, together),
+        (right, y),
+        xytext=(6, 0),
+        va="center",
+        textcoords="offset points",
+        fontsize=8,
+        bbox={"facecolor": "white", "pad": 1, "linewidth": 0},
+    )
 
 
 def _text(alone: float, together: float) -> str:

@@ -25,9 +25,12 @@ LETTERS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
 
 @styled()
 def draw(
-    *, time: Array, nu_dot: Array, predicted_nu_dot: Mapping[str, Array],
+    *,
+    time: Array,
+    nu_dot: Array,
+    predicted_nu_dot: Mapping[str, Array],
     usable: Array | None = None,
-) -> Figure:  # fmt: skip
+) -> Figure:
     """Draw `nu_dot` (n, 6) minus each model's acceleration {model: (n, 6)} over `time` (n,) s.
 
     The first model sets the scale; gaps and excerpt as in `velocities`.

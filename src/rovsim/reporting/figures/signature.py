@@ -61,8 +61,10 @@ def signature(seen: Seen) -> Figure:
             Line2D([], [], color=BLACK, marker="o", markersize=4, label=MISSED),
             Line2D([], [], label=EFFECT, **LINE),
         ],
-        loc="outside upper center", ncols=2, borderaxespad=0.1,
-    )  # fmt: skip
+        loc="outside upper center",
+        ncols=2,
+        borderaxespad=0.1,
+    )
     return figure
 
 
@@ -107,9 +109,14 @@ def _trace(axes: Axes, seen: Seen) -> None:
     axes.axhline(0.0, color="#444444", linewidth=0.6)
     axes.plot(seen.time[part], seen.added[part], zorder=2, **LINE)
     axes.plot(
-        seen.time[part], seen.error[part], color=BLACK, linewidth=0.7, marker=".", markersize=3,
+        seen.time[part],
+        seen.error[part],
+        color=BLACK,
+        linewidth=0.7,
+        marker=".",
+        markersize=3,
         zorder=3,
-    )  # fmt: skip
+    )
     axes.set_xlabel("time in the run (s)")
     axes.margins(x=0.01)
 

@@ -93,10 +93,16 @@ def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
     axes.plot(x[judged], mean[judged], zorder=order, **look.line())
     for part, face in ((judged, look.color), (curve.seen & ~judged, "white")):
         axes.errorbar(
-            x[part], mean[part], yerr=curve.error[part] if face == look.color else None, fmt="o",
-             markersize=3, color=look.color, markerfacecolor=face, elinewidth=0.8,
+            x[part],
+            mean[part],
+            yerr=curve.error[part] if face == look.color else None,
+            fmt="o",
+            markersize=3,
+            color=look.color,
+            markerfacecolor=face,
+            elinewidth=0.8,
             zorder=order,
-        )  # fmt: skip
+        )
 
 
 def _counts(axes: Axes, table: ConditionTable) -> None:
@@ -104,9 +110,15 @@ def _counts(axes: Axes, table: ConditionTable) -> None:
     count, edges = np.array(table.blocks, float), chart_bins(table).edges
     share = 0.25 * count / max(count.max(), 1.0)
     axes.bar(
-        edges[:-1], share, np.diff(edges), align="edge", color="#e3e3e3", linewidth=0,
-        zorder=0.4, transform=axes.get_xaxis_transform(),
-    )  # fmt: skip
+        edges[:-1],
+        share,
+        np.diff(edges),
+        align="edge",
+        color="#e3e3e3",
+        linewidth=0,
+        zorder=0.4,
+        transform=axes.get_xaxis_transform(),
+    )
 
 
 def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:

@@ -20,13 +20,21 @@ def write_markdown(published_errors: PublishedErrors) -> list[str]:
 
 
 def _standings(published_errors: PublishedErrors) -> str:
-    head = ["model", "below the mark", "geometric mean of the ratios",
-            *(QUANTITIES[metric][0] for metric in METRICS)]  # fmt: skip
+    head = [
+        "model",
+        "below the mark",
+        "geometric mean of the ratios",
+        *(QUANTITIES[metric][0] for metric in METRICS),
+    ]
     rows = [
-        [name, f"{found.below} of {found.cells}", known(found.geometric_mean),
-         *(known(found.by_metric[m].geometric_mean) for m in METRICS)]
+        [
+            name,
+            f"{found.below} of {found.cells}",
+            known(found.geometric_mean),
+            *(known(found.by_metric[m].geometric_mean) for m in METRICS),
+        ]
         for name, found in published_errors.models.items()
-    ]  # fmt: skip
+    ]
     return table(head, rows)
 
 
@@ -58,11 +66,16 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     heading, units = QUANTITIES[metric]
     ours = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
     rows = [
-        [cell.run, cell.axis if cell.demanded else f"({cell.axis})",
-         significant(cell.mark), f"{cell.best.model}, {cell.best.variant}",
-         *(known(cell.ratios.get(name)) for name in ours)]
-        for cell in published_errors.cells if cell.metric == metric
-    ]  # fmt: skip
+        [
+            cell.run,
+            cell.axis if cell.demanded else f"({cell.axis})",
+            significant(cell.mark),
+            f"{cell.best.model}, {cell.best.variant}",
+            *(known(cell.ratios.get(name)) for name in ours),
+        ]
+        for cell in published_errors.cells
+        if cell.metric == metric
+    ]
     extra = "" if metric in COUNTED else ", not counted above"
     units_text = " and ".join(dict.fromkeys(units))
     return [

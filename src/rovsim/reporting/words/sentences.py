@@ -234,8 +234,11 @@ def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]
         return []
     best = min(models, key=lambda name: models[name])
     text = f"The lowest {ERROR} is {significant(models[best])}, that of {title(best)}"
-    others = [f"{title(n)} has {significant(models[n])}" for n in ("nominal", "zero_acceleration")
-              if n in models and n != best]  # fmt: skip
+    others = [
+        f"{title(n)} has {significant(models[n])}"
+        for n in ("nominal", "zero_acceleration")
+        if n in models and n != best
+    ]
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]
     floor = steps.get(NOISE_FLOOR, 0.0)
     if floor > 0 and unexplained:

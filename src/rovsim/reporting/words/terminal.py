@@ -34,9 +34,12 @@ MEANING = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE
 
 
 def tell_comparison(
-    errors: Mapping[str, float | None], where: ErrorConditions, tested: bool,
-    coverage: Bands | None = None, away: Sequence[str] = (),
-) -> str:  # fmt: skip
+    errors: Mapping[str, float | None],
+    where: ErrorConditions,
+    tested: bool,
+    coverage: Bands | None = None,
+    away: Sequence[str] = (),
+) -> str:
     """A table {model: normalised 2 s error}, what bands hold, the last searched model's findings.
 
     Without a test run (`tested`) a sentence stands for the table; `away`: models that run away.

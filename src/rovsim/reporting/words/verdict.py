@@ -103,9 +103,14 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
         for place, one in enumerate(found.selected)
     )
     return Verdict(
-        found.verdict, _sentence(found), missing, _key(len(missing)), error_sentence(found),
-        tuple(remarks), found.next_experiment,
-    )  # fmt: skip
+        found.verdict,
+        _sentence(found),
+        missing,
+        _key(len(missing)),
+        error_sentence(found),
+        tuple(remarks),
+        found.next_experiment,
+    )
 
 
 def _sentence(found: Diagnosis) -> str:

@@ -68,17 +68,21 @@ def describe(settings: TankSettings) -> CampaignFile:
         "tank": _describe_walls(settings),
         "mocap": _describe_sensors(settings.sensors) if settings.sensors else CAMERAS,
         "commands": {
-            "format": "csv", "kind": kind, "columns": columns if kind == "pwm" else list(AXES),
+            "format": "csv",
+            "kind": kind,
+            "columns": columns if kind == "pwm" else list(AXES),
         },
         "runs": [
             {
-                "id": run.id, "control": run.control, "split": run.split,
+                "id": run.id,
+                "control": run.control,
+                "split": run.split,
                 "mocap": motion_file(settings, run),
                 "commands": "none" if run.release else commands_file(run),
             }
             for run in settings.runs
         ],
-    }  # fmt: skip
+    }
     return checked(CampaignFile, content, "the settings of the tank")
 
 

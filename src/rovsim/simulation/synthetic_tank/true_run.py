@@ -61,9 +61,15 @@ def every_step(total: int, step: float) -> Array:
 
 
 def fly_run(
-    model: Model, settings: TankSettings, control: str, tank: Array, random: np.random.Generator,
-    release: Release | None = None, sent: SentLog | None = None, choose: Choose = every_step,
-) -> TrueRun:  # fmt: skip
+    model: Model,
+    settings: TankSettings,
+    control: str,
+    tank: Array,
+    random: np.random.Generator,
+    release: Release | None = None,
+    sent: SentLog | None = None,
+    choose: Choose = every_step,
+) -> TrueRun:
     """Fly one run.
 
     Args:

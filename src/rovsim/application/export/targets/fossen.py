@@ -95,8 +95,12 @@ def _thrusters(equation: Equation) -> dict[str, Any]:
                 "gain": gain,
             }
             for unit, column, curve, (back, ahead), gain in zip(
-                units, equation.columns, equation.curves, np.asarray(equation.full).T,
-                equation.gain, strict=True,
+                units,
+                equation.columns,
+                equation.curves,
+                np.asarray(equation.full).T,
+                equation.gain,
+                strict=True,
             )
         ],
-    }  # fmt: skip
+    }

@@ -148,12 +148,18 @@ def _vehicle(equation: Equation) -> ET.Element:
         _tree(ET.SubElement(joint, "axis"), {"xyz": numbers(_turned(unit.direction))})
     _plugin(vehicle, "Hydrodynamics", {"link_name": "base_link", **_water(equation)})
     for unit, force in zip(units, equation.most, strict=True):
-        _plugin(vehicle, "Thruster", {
-            "namespace": equation.model.name, "joint_name": unit.name,
-            "propeller_diameter": number(unit.diameter or 2.0 * RADIUS),
-            "velocity_control": "true", "max_thrust_cmd": number(force),
-            "min_thrust_cmd": number(-force),
-        })  # fmt: skip
+        _plugin(
+            vehicle,
+            "Thruster",
+            {
+                "namespace": equation.model.name,
+                "joint_name": unit.name,
+                "propeller_diameter": number(unit.diameter or 2.0 * RADIUS),
+                "velocity_control": "true",
+                "max_thrust_cmd": number(force),
+                "min_thrust_cmd": number(-force),
+            },
+        )
     return vehicle
 
 

@@ -64,8 +64,11 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     if warning:
         text += f".\n{warning}"
     content = {
-        "model": model, "effects": names, "diagnosed": diagnosed, "one_by_one": one_by_one,
+        "model": model,
+        "effects": names,
+        "diagnosed": diagnosed,
+        "one_by_one": one_by_one,
         "warning": warning,
-    }  # fmt: skip
+    }
     lines = [line for one in f"{model}: {text}".splitlines() for line in fold(one)]
     say(settings, "\n".join(lines), content)

@@ -86,9 +86,17 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
         origin = provenance(settings, catalogue, data.campaign, read)
         last = other.submit(
-            call, f"{SHOWING}:show_diagnosis",
-            out, data.campaign.name, base.name, shown, drawn, origin, settings.effect_files,
-            how.model_dump(mode="json"), tracking,
-        )  # fmt: skip
+            call,
+            f"{SHOWING}:show_diagnosis",
+            out,
+            data.campaign.name,
+            base.name,
+            shown,
+            drawn,
+            origin,
+            settings.effect_files,
+            how.model_dump(mode="json"),
+            tracking,
+        )
         with reported("writing the page and logging" if tracking else "writing the page"):
             last.result()

@@ -35,8 +35,13 @@ class Settings(CommandSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Look, and say it."""
     checks: tuple[Callable[[], list[Line]], ...] = (
-        _environment, _cores, _compiled, _settings, _extras, lambda: _services(settings.tracking)
-    )  # fmt: skip
+        _environment,
+        _cores,
+        _compiled,
+        _settings,
+        _extras,
+        lambda: _services(settings.tracking),
+    )
     lines = [line for check in checks for line in check()]
     text = "\n".join(
         f"  {'ok' if good else '-':<3} {what:<10} {more}" for what, good, more in lines
@@ -72,10 +77,11 @@ def _settings() -> list[Line]:
 
 def _extras() -> list[Line]:
     return [
-        (name, True, "installed") if installed(name)
+        (name, True, "installed")
+        if installed(name)
         else (name, False, f"pip install 'rovsim[{name}]'")
         for name in PACKAGES
-    ]  # fmt: skip
+    ]
 
 
 def _services(tracking: TrackingSettings) -> list[Line]:

@@ -57,16 +57,22 @@ def _record(
     thrusters = Thrusters(file, hidden, seconds)
     flight = Flight(
         Mover(read_constants(file, hidden), thrusters, hidden, tank),
-        Pilot(run["control"], tank, seconds, random), tick, 1.0 / settings["camera"]["rate"],
-    )  # fmt: skip
+        Pilot(run["control"], tank, seconds, random),
+        tick,
+        1.0 / settings["camera"]["rate"],
+    )
     ticks, wind = round(seconds / tick), settings["turbulence"]
     pushes = draw_pushes(wind["force"], wind["moment"], wind["time_constant"], tick, ticks, random)
     frames = list(flight.fly(pushes, tank))
     attitudes = Rotation.from_matrix(np.array([frame.R for frame in frames]))
     write_poses(
-        out / f"{run['id']}_6D.tsv", np.array([frame.place for frame in frames]), attitudes,
-        settings["camera"], hidden, random,
-    )  # fmt: skip
+        out / f"{run['id']}_6D.tsv",
+        np.array([frame.place for frame in frames]),
+        attitudes,
+        settings["camera"],
+        hidden,
+        random,
+    )
     write_commands(
         out / f"{run['id']}_commands.csv", flight.stamps, flight.commands, settings["log"], random
     )
@@ -111,8 +117,10 @@ class Flight:
     ) -> tuple[Vehicle, list[Vehicle]]:
         """Over one tick; commands change wherever they act inside it."""
         changes = [t for t in self.acts if begin < t < end]
-        frames = [k * self.frame for k in range(round(begin / self.frame) + 1,
-                                                round(end / self.frame) + 1)]  # fmt: skip
+        frames = [
+            k * self.frame
+            for k in range(round(begin / self.frame) + 1, round(end / self.frame) + 1)
+        ]
         seen: list[Vehicle] = []
         for a, b in pairwise([begin, *changes, end]):
             k = int(np.searchsorted(self.acts, 0.5 * (a + b), side="right")) - 1
@@ -143,14 +151,23 @@ def _list_hidden(settings: Mapping[str, Any]) -> Hidden:
 def _describe(settings: Mapping[str, Any]) -> dict[str, Any]:
     count = 8
     return {
-        "name": settings["name"], "vehicle": settings["vehicle"],
+        "name": settings["name"],
+        "vehicle": settings["vehicle"],
         "tank": {k: list(settings["tank"][k]) for k in "xyz"},
         "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
-        "commands": {"format": "csv", "kind": "pwm",
-                     "columns": [f"t{k + 1}" for k in range(count)]},
+        "commands": {
+            "format": "csv",
+            "kind": "pwm",
+            "columns": [f"t{k + 1}" for k in range(count)],
+        },
         "runs": [
-            {"id": run["id"], "control": run["control"], "split": run["split"],
-             "mocap": f"{run['id']}_6D.tsv", "commands": f"{run['id']}_commands.csv"}
+            {
+                "id": run["id"],
+                "control": run["control"],
+                "split": run["split"],
+                "mocap": f"{run['id']}_6D.tsv",
+                "commands": f"{run['id']}_commands.csv",
+            }
             for run in settings["runs"]
         ],
-    }  # fmt: skip
+    }

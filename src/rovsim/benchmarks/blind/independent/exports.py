@@ -93,9 +93,14 @@ def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> 
 
 def _header(frames: int, rate: float) -> str:
     known = {
-        "NO_OF_FRAMES": frames, "NO_OF_CAMERAS": 8, "NO_OF_BODIES": 1, "FREQUENCY": f"{rate:g}",
-        "DESCRIPTION": "--", "DATA_INCLUDED": "6D", "BODY_NAMES": BODY,
-    }  # fmt: skip
+        "NO_OF_FRAMES": frames,
+        "NO_OF_CAMERAS": 8,
+        "NO_OF_BODIES": 1,
+        "FREQUENCY": f"{rate:g}",
+        "DESCRIPTION": "--",
+        "DATA_INCLUDED": "6D",
+        "BODY_NAMES": BODY,
+    }
     names = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
     lines = [f"{key}\t{value}" for key, value in known.items()]
     return "\n".join([*lines, "\t".join(["Frame", "Time", f"{BODY} X", *names])]) + "\n"
@@ -103,10 +108,16 @@ def _header(frames: int, rate: float) -> str:
 
 def _table(rows: Array, rate: float) -> str:
     lines = (
-        "\t".join([str(k + 1), f"{k / rate:.5f}", *(f"{x:.4f}" for x in row[:7]),
-                   *(f"{x:.6f}" for x in row[7:])])
+        "\t".join(
+            [
+                str(k + 1),
+                f"{k / rate:.5f}",
+                *(f"{x:.4f}" for x in row[:7]),
+                *(f"{x:.6f}" for x in row[7:]),
+            ]
+        )
         for k, row in enumerate(rows)
-    )  # fmt: skip
+    )
     return "\n".join(lines) + "\n"
 
 

@@ -40,9 +40,13 @@ class Mover:
     """Carries a vehicle through time under static forces that are held."""
 
     def __init__(
-        self, own: Constants, thrusters: Thrusters, hidden: Hidden, tank: Array,
+        self,
+        own: Constants,
+        thrusters: Thrusters,
+        hidden: Hidden,
+        tank: Array,
         tolerance: float = TOLERANCE,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.own, self.thrusters, self.tolerance = own, thrusters, tolerance
         self.pushes: Sequence[Push] = list_pushes(own, hidden, tank)
         self.M_inv = np.linalg.inv(own.M)
@@ -79,9 +83,14 @@ class Mover:
         """
         flow, (begin, end) = _Flow(self, start, static, push, span[0]), span
         solver = DOP853(
-            flow.change, begin, flow.begin, end, first_step=end - begin, rtol=self.tolerance,
+            flow.change,
+            begin,
+            flow.begin,
+            end,
+            first_step=end - begin,
+            rtol=self.tolerance,
             atol=0.1 * self.tolerance,
-        )  # fmt: skip
+        )
         seen, left = [], list(wanted)
         while solver.status == "running":
             solver.step()

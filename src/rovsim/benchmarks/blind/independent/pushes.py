@@ -103,8 +103,11 @@ def tow(given: Given, tank: Array, at: Instant) -> Array:
 
 
 LAWS: Mapping[str, Callable[[Given, Instant], Array]] = {
-    "dry_friction": friction, "constant_wrench": trim, "lift": lift, "tether_tension": pull,
-}  # fmt: skip
+    "dry_friction": friction,
+    "constant_wrench": trim,
+    "lift": lift,
+    "tether_tension": pull,
+}
 
 
 def _axes(given: Given) -> Array:

@@ -49,9 +49,13 @@ def place_of(law: Term, site: Site) -> Array:
 
 
 def add_term(
-    h: Hypothesis, known: Sequence[LawTerm], more: LawTerm, columns: Columns, middle: Array,
+    h: Hypothesis,
+    known: Sequence[LawTerm],
+    more: LawTerm,
+    columns: Columns,
+    middle: Array,
     around: Surroundings,
-) -> Hypothesis:  # fmt: skip
+) -> Hypothesis:
     """The hypothesis with one more term in its law, at what the regression gives it.
 
     Args:

@@ -21,9 +21,11 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
 
 PLACES = {  # unit, symbol and scale of a place's numbers
-    "x": ("m", "x_0", 0.5), "y": ("m", "y_0", 0.5), "z": ("m", "z_0", 0.5),
+    "x": ("m", "x_0", 0.5),
+    "y": ("m", "y_0", 0.5),
+    "z": ("m", "z_0", 0.5),
     "width": ("m", "s", 0.2),
-}  # fmt: skip
+}
 KERNEL = '''\
 @staticmethod
 def wrench(at, p):
@@ -81,11 +83,15 @@ class Products(Form):
         maths = [f for f in ("exp", "sqrt", "tanh") if f"{f}(" in code]
         placed = any(n.default is not None for n in numbers)
         return write_effect(
-            name, self, numbers, story, base="Wrench",
+            name,
+            self,
+            numbers,
+            story,
+            base="Wrench",
             imports=f"from math import {', '.join(maths)}\n\n" if maths else "",
             method=KERNEL.format(body=indent(code, "    ")),
             start=round_start(numbers) if placed else {},
-        )  # fmt: skip
+        )
 
     def follow(self, h: Hypothesis) -> Hypothesis:
         """Water that moves drags with the coefficients of the model that it moves beside."""

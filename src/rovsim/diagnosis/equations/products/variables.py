@@ -46,12 +46,16 @@ def _velocities() -> list[Variable]:
     )
     return [
         Variable(
-            kind.format(NU[i]), latex.format(NU[i]), code.format(IN_CODE[i]),
-            *_unit_of_velocity(i, kind), i in ODD and kind != "|{}|", what.format(axis),
+            kind.format(NU[i]),
+            latex.format(NU[i]),
+            code.format(IN_CODE[i]),
+            *_unit_of_velocity(i, kind),
+            i in ODD and kind != "|{}|",
+            what.format(axis),
         )
         for kind, latex, code, what in kinds
         for i, axis in enumerate(AXES)
-    ]  # fmt: skip
+    ]
 
 
 def _unit_of_velocity(i: int, kind: str) -> tuple[int, int, int]:
@@ -80,7 +84,7 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("e", "(e - e_0)", "east", 1, 0, 0, None, "place along east"),
     Variable("d", "(d - d_0)", "deep", 1, 0, 0, None, "depth"),
     Variable("near", r"e^{-((n-n_0)^2+(e-e_0)^2)/2s^2}", "near", 0, 0, 0, None, "one place"),
-)  # fmt: skip
+)
 SPEED, DIRECTION, NORTH, EAST, DEEP, NEAR = range(24, 30)
 # What a term acts on: a body axis, a force along the world's axes, or the water's velocity.
 ON = (*AXES, "north", "east", "down", "water north", "water east", "swirl")

@@ -24,8 +24,9 @@ MANUAL: Mapping[str, tuple[str, int, int]] = {
     "heave": ("z", 500, -500),
     "yaw": ("r", 0, 1000),
 }
-FORCES = dict(zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"],
-                  strict=True))  # fmt: skip
+FORCES = dict(
+    zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"], strict=True)
+)
 
 Get = Callable[[Any], float]
 
