@@ -6,11 +6,11 @@ import pytest
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law
-from rovsim.diagnosis.equations.law_search import choose_kinds, stay
 from rovsim.diagnosis.equations.products.as_effect import list_moved
 from rovsim.diagnosis.equations.products.library import Columns, LawTerm, list_body_terms, push_at
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
+from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
 from rovsim.diagnosis.equations.products.wording import write_equation
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
@@ -137,7 +137,7 @@ def test_the_regression_finds_the_terms_that_made_the_data():
     y = 2.0 * X[..., 2] - 1.0 * X[..., 6] + rng.normal(size=(3, 400))
     rows = np.concatenate([y[..., None], X], axis=2)
     terms = tuple(LawTerm(0, (k, k)) for k in range(8))
-    columns = Columns(terms, np.ones(8), tuple(part.T @ part for part in rows))
+    columns = Columns(terms, np.ones(8), tuple(part.T @ part for part in rows), np.zeros(4))
     assert set(propose(columns, 2)[:2]) == {terms[2], terms[6]}
 
 

@@ -7,6 +7,7 @@ with_thrust  laws of the thrust: along one axis it pushes along another, or with
 action       where a law acts, and whether something is left there
 effect_file  a law as a file that can be read and edited
 fitted_law   a law on top of what was selected
+law_fits     laws fitted beside hypotheses, and what they are worth
 law_search   the likeliest law: products, laws with a memory, laws of the thrust
 masked       a law that names of the catalogue stand in for
 proposal     whether it holds, and what it is worth

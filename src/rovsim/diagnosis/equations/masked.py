@@ -12,9 +12,11 @@ import numpy as np
 
 from rovsim.diagnosis.checks.regressors import list_dependences, tabulate
 from rovsim.diagnosis.checks.residual import Structure, split_by_axis
-from rovsim.diagnosis.equations.law_search import LawSearch, choose_kinds, is_seen, project_terms
+from rovsim.diagnosis.equations.law_fits import LawFits
+from rovsim.diagnosis.equations.law_search import is_seen
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
+from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
 from rovsim.diagnosis.selection.search_result import SearchResult
 
 # Likelihood-ratio statistics. Of all functions of an axis one reaches 15 by chance in one campaign
@@ -31,15 +33,15 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
         return []
     workspace, fit = selection.workspace, selection.best
     runs = workspace.bank.runs
-    terms, middle = list_terms(runs), middle_of(runs)
-    search = LawSearch(selection, len(terms))
-    columns = project_terms(workspace, fit, terms, middle)
+    terms = list_terms(runs)
+    fits = LawFits(selection, len(terms))
+    columns = fits.project(fit, terms, middle_of(runs))
     order = np.argsort(-find_alone(columns.products), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
     score = workspace.score(fit)
-    for judged in search.fit_products(fit, (), kinds, columns, middle).values():
-        if search.is_worth(judged, fit, score):
-            return [replace(suspect, surprise=(judged.score - score) / max(search.chance, 1.0))]
+    for judged in fit_products(fits, fit, (), kinds, columns).values():
+        if fits.is_worth(judged, fit, score):
+            return [replace(suspect, surprise=(judged.score - score) / max(fits.chance, 1.0))]
     return []
 
 

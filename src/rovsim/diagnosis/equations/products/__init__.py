@@ -3,6 +3,7 @@
 variables     of what terms may be made, and on what they act
 library       all terms, and how each would show
 search        which comes next
+selection     one after the other, each refitted with all else
 as_effect     a law as an effect of a hypothesis
 wording       a law in LaTeX and in words
 kernel_lines  a law as lines of Python

@@ -53,7 +53,6 @@ def add_term(
     known: Sequence[LawTerm],
     more: LawTerm,
     columns: Columns,
-    middle: Array,
     around: Surroundings,
 ) -> Hypothesis:
     """The hypothesis with one more term in its law, at what the regression gives it.
@@ -63,7 +62,6 @@ def add_term(
         known: terms of its law.
         more: the term to add.
         columns: inner products of the terms with what is left.
-        middle: place (3,) NED m and width m about which terms are taken.
         around: where the runs went.
     """
     rest, law = split_law(h)
@@ -79,7 +77,7 @@ def add_term(
     }
     codes = (*more.factors, *[-1] * (FACTORS - len(more.factors)))
     values |= {f"factor{k}{j}": float(code) for j, code in enumerate(codes, start=1)}
-    place = middle.copy()
+    place = columns.middle.copy()
     if more.place is not None:
         place[:2] = more.place
     bounds = around.bounds

@@ -136,11 +136,13 @@ class Columns:
 
     `products` (1 + c, 1 + c) of whitened innovations and the terms' columns, each of unit size;
     what was fitted is projected out. One for all readings, and one `parts` for each block of time.
+    `middle` (4,): place NED m and width m of terms that have none of their own.
     """
 
     terms: tuple[Any, ...]
     size: Array
     parts: tuple[Array, ...]
+    middle: Array
 
     @property
     def products(self) -> Array:
@@ -248,7 +250,8 @@ def project(
             own = whole[:, :, block[at] == k]
             parts[int(k)] += sum(axis @ axis.T for axis in own)
         first = at.stop
-    return Columns(kept, size[acts], tuple(_without(list(parts.values()), 1 + len(acts))))
+    own_parts = _without(list(parts.values()), 1 + len(acts))
+    return Columns(kept, size[acts], tuple(own_parts), middle)
 
 
 def _measure_size(
