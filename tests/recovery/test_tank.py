@@ -61,6 +61,12 @@ def test_the_nominal_model_explains_an_empty_tank(tmp_path, seed):
     assert np.all(window_error(true_model(chosen, built_in()), motion) < FLOOR)
 
 
+def test_frames_and_commands_that_share_few_instants_change_no_physics(tmp_path):
+    """120 frames and 50 commands a second ask for other steps than 1 ms."""
+    _, _, _, motion = recorded(tmp_path, seed=11, camera=Camera(rate=120.0))
+    assert (window_error(nominal(load_vehicle(default_vehicle())), motion) < FLOOR).all()
+
+
 def entry(effect, **parameters):
     return EffectEntry(effect=effect, parameters=parameters)
 

@@ -90,7 +90,7 @@ def fly_run(
     duration = sent.seconds if sent else settings.duration
     ticks, per_tick = round(duration / tick), round(tick / h)
     total = ticks * per_tick
-    vehicle = _TrueVehicle(model, tank, settings, tick, duration)
+    vehicle = _TrueVehicle(model, tank, settings, tick, h, duration)
     pilot = vehicle.pilot(control, tank, ticks, tick, random)
     turbulence = draw_turbulence(settings.turbulence, total, h, random, PUSHED * per_tick)
     currents = draw_currents(model, ticks, tick, random)
@@ -148,9 +148,15 @@ class _TrueVehicle:
     """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
 
     def __init__(
-        self, model: Model, tank: Array, settings: TankSettings, tick: float, duration: float
+        self,
+        model: Model,
+        tank: Array,
+        settings: TankSettings,
+        tick: float,
+        h: float,
+        duration: float,
     ) -> None:
-        self.model, self.duration, self.tick, self.h = model, duration, tick, settings.step
+        self.model, self.duration, self.tick, self.h = model, duration, tick, h
         site = Site(tank, HALF_TURN_X, float(tank[2, 0]))  # what floats rests at the surface
         self.free = np.concatenate([np.ones(7), model.body.free])
         self.allocation = Allocation(model.vehicle)
