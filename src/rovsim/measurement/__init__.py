@@ -8,6 +8,7 @@ sensors        where sensors sit, and how late they are
 recording      raw exports in, recordings in NED and FRD out
 signals        from poses to velocities and accelerations
 means          are velocities means from line to line? the poses may tell
+velocities     are they of the same motion, in our units and axes? the poses tell
 quality        how good a recording is
 remarks        the same in sentences
 held_out       test runs that repeat train runs

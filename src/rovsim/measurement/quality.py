@@ -19,6 +19,7 @@ from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.measurement.signals.resample import Linear
 from rovsim.measurement.signals.track import track_channels
+from rovsim.measurement.velocities import doubt_velocities, find_impossible
 from rovsim.results.quality import (
     CommandLog,
     Excitation,
@@ -77,7 +78,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         channels=_describe_channels(recording),
     )
     others = (*remark(report), *anomalies.notes)
-    doubts = (*doubt(report), *doubt_means(recording))
+    doubts = (*doubt(report), *doubt_means(recording), *doubt_velocities(recording))
     return report.model_copy(update={"remarks": others}).doubted(*doubts)
 
 
@@ -87,6 +88,8 @@ def usable_reason(recording: Recording) -> str | None:
     Where no full poses were measured only its length is looked at.
     """
     found = recording.found
+    if too_fast := find_impossible(recording):
+        return too_fast
     if not recording.posed:
         length = float(np.ptp(recording.time))
         short = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"

@@ -18,6 +18,7 @@ from rovsim.application.intake.vehicles import Fit
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, rotations
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.survey.timing import Timing
+from rovsim.measurement.velocities import doubt_velocities
 
 
 def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal:
@@ -77,6 +78,8 @@ def _checked(facts: Facts) -> Iterator[str]:
     yield from (
         f"{file.named.name}: {d}" for one in every for file in one.files for d in file.doubts
     )
+    for name, one in zip(facts.ids, facts.pairs, strict=True):
+        yield from (f"{name}: {said}" for said in doubt_velocities(one.motion.track.export))
     yield from _unused(facts)
     if facts.choice.likeliest is not None and facts.choice.runs:
         yield from _against_commands(facts, facts.choice.likeliest)

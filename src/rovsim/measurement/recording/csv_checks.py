@@ -12,6 +12,12 @@ from rovsim.measurement.recording.table import find_filler
 LONGEST_STEP = 5.0  # s between two lines of any recording
 POSITION = ["x_m", "y_m", "z_m"]
 FASTEST = 30.0  # m/s: 58 kn, the fastest ship (HSC Francisco, 2013)
+FASTEST_TURN = 10.0  # rad/s: more than one and a half turns a second
+# Columns of a kind, what no vehicle reaches, our unit and what it may be instead.
+MOVING = (
+    (("u_m_s", "v_m_s", "w_m_s"), FASTEST, "m/s", "mm_s or cm_s"),
+    (("p_rad_s", "q_rad_s", "r_rad_s"), FASTEST_TURN, "rad/s", "deg_s"),
+)
 TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
 ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
 DEEP = 0.5  # m
@@ -67,6 +73,17 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
             "rad, within a quarter turn",
             RENAME.format("pitch_deg", "rad"),
         )
+    for names, fastest, unit, other in MOVING:
+        own = np.stack([values[name] for name in names if name in values] or [np.zeros(0)])
+        usual = float(np.nanpercentile(np.abs(own), 90)) if np.isfinite(own).any() else 0.0
+        if usual > fastest:
+            raise _refused(
+                path,
+                names[0],
+                f"values of {usual:.3g} {unit}: {other}?",
+                unit,
+                RENAME.format(names[0].split("_")[0] + "_" + other.split()[0], unit),
+            )
     depth = values.get("depth_m", np.zeros(0))
     if is_height(depth):
         low, high = np.nanmin(depth), np.nanmax(depth)

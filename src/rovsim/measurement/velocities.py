@@ -1,0 +1,149 @@
+"""Whether velocities and rates beside poses are those of the same motion, in our units and axes."""
+
+from itertools import product
+from typing import Iterator, NamedTuple
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import conjugate, log, multiply, unrotate
+from rovsim.measurement.recording.channels import Channels
+from rovsim.measurement.recording.csv_checks import FASTEST, FASTEST_TURN
+from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.recording import Recording
+
+USUAL = 90.0  # percentile
+WINDOW = 0.5  # s, over which poses and velocities are compared: slower than noise
+FEWEST = 20  # windows
+EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion tells nothing
+ALIKE, UNLIKE = 0.9, 0.6  # cosine between velocities and what poses say
+OTHER_SIZE = 1.3  # times: a sensor's scale is never so far off
+UNITS = {
+    "linear": ((100.0, "cm/s"), (1000.0, "mm/s")),
+    "angular": ((180.0 / np.pi, "deg/s"),),
+}
+NEAR_UNIT = 0.15  # off the factor of a unit
+NAMES = {"linear": "velocities", "angular": "rates"}
+
+
+class _Both(NamedTuple):
+    """Velocities (n, 3) by the poses, along the body and along the world, and as measured."""
+
+    body: Array
+    world: Array
+    measured: Array
+
+
+def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
+    """Say where velocities (u, v, w) or rates (p, q, r) contradict the poses of the same file."""
+    if not recording.found.any():
+        return
+    for kind, measured in _measured(recording).items():
+        both = _compare(recording, kind, measured)
+        if both is not None and (said := _judge(kind, both)):
+            yield said
+
+
+def find_impossible(of: Recording | Export) -> str | None:
+    """Say so where velocities or rates are usually faster than any vehicle's; None where not."""
+    fastest = {"velocity": (FASTEST, "m/s", "mm/s"), "rates": (FASTEST_TURN, "rad/s", "deg/s")}
+    beside = {} if of.nu is None else {"velocity": of.nu[:, :3], "rates": of.nu[:, 3:]}
+    channels = {name: own.value for name, own in of.channels.items()}
+    for name, value in (beside | channels).items():
+        if name not in fastest or not np.isfinite(value).any():
+            continue
+        most, ours, other = fastest[name]
+        usual = float(np.nanpercentile(np.abs(value), USUAL))
+        if usual > most:
+            return f"too fast: {name} of {usual:.3g} {ours}, {most:g} at most: are they {other}?"
+    return None
+
+
+def _measured(of: Recording | Export) -> dict[str, Array]:
+    """Velocities and rates (n, 3) at the times of the poses, of those that there are."""
+    if of.nu is not None:
+        return {"linear": of.nu[:, :3], "angular": of.nu[:, 3:]}
+    return {
+        kind: _at(of.channels, name, of.time)
+        for kind, name in (("linear", "velocity"), ("angular", "rates"))
+        if name in of.channels
+    }
+
+
+def _at(channels: Channels, name: str, time: Array) -> Array:
+    own = channels[name]
+    return np.stack(
+        [np.interp(time, own.time, c, left=np.nan, right=np.nan) for c in own.value.T], axis=1
+    )
+
+
+def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None:
+    """Means over windows, of both; None where there are too few, or hardly any motion."""
+    seen = of.found & np.isfinite(measured).all(axis=1)
+    time, position, attitude = of.time[seen], of.position[seen], of.attitude[seen]
+    if len(time) < FEWEST:
+        return None
+    k = max(1, round(WINDOW / float(np.median(np.diff(time)))))
+    lasts = (time[k:] - time[:-k])[:, None]
+    good = lasts[:, 0] < 2.0 * WINDOW + 2.0 * np.median(np.diff(time))
+    if good.sum() < FEWEST:
+        return None
+    if kind == "linear":
+        world = (position[k:] - position[:-k]) / lasts
+        body = unrotate(attitude[k // 2 : len(attitude) - k + k // 2], world)
+    else:
+        body = log(multiply(conjugate(attitude[:-k]), attitude[k:])) / lasts
+        world = log(multiply(attitude[k:], conjugate(attitude[:-k]))) / lasts
+    step = np.diff(time)[:, None]
+    value = measured[seen]
+    way = np.vstack([np.zeros((1, 3)), np.cumsum(0.5 * step * (value[1:] + value[:-1]), axis=0)])
+    mean = (way[k:] - way[:-k]) / lasts
+    if float(np.sqrt(np.mean(body[good] ** 2))) < EXCITED:
+        return None
+    return _Both(body[good], world[good], mean[good])
+
+
+def _judge(kind: str, both: _Both) -> str:
+    what, alike = NAMES[kind], _cosine(both.measured, both.body)
+    if alike > ALIKE:
+        return _judge_size(kind, both)
+    in_world = _cosine(both.measured, both.world)
+    if in_world > ALIKE:
+        return (
+            f"The {what} lie along the axes of the world, by the poses beside them (likeness "
+            f"{in_world:.2f}, along the body {alike:.2f}): turn them into the body's axes, or "
+            "leave them out."
+        )
+    signs = max(product((1.0, -1.0), repeat=3), key=lambda s: _cosine(both.measured * s, both.body))
+    turned = _cosine(both.measured * signs, both.body)
+    if turned > ALIKE:
+        axes = " and ".join(n for n, s in zip("xyz", signs, strict=True) if s < 0.0)
+        return (
+            f"The {what} fit the poses beside them with the sign of {axes} turned (likeness "
+            f"{turned:.2f}, as they are {alike:.2f}): poses and {what} have other axes. Bring them "
+            "to the same."
+        )
+    if alike < UNLIKE:
+        return (
+            f"The {what} do not fit the poses beside them (likeness {alike:.2f}): check their "
+            "axes, their order and their clock, or leave them out."
+        )
+    return ""
+
+
+def _judge_size(kind: str, both: _Both) -> str:
+    size = float(np.sum(both.measured * both.body) / np.sum(both.body**2))
+    if 1.0 / OTHER_SIZE < size < OTHER_SIZE:
+        return ""
+    unit = next((u for f, u in UNITS[kind] if abs(size / f - 1.0) < NEAR_UNIT), "")
+    ours = "m/s" if kind == "linear" else "rad/s"
+    said = f"they are {unit}, not {ours}." if unit else f"are they {ours}?"
+    return (
+        f"The {NAMES[kind]} are {size:.3g} times what the poses beside them say: {said} Name "
+        "their columns after their unit, or correct them."
+    )
+
+
+def _cosine(a: Array, b: Array) -> float:
+    norm = float(np.sqrt(np.sum(a**2) * np.sum(b**2)))
+    return float(np.sum(a * b)) / norm if norm > 0.0 else 0.0
