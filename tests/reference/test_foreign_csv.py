@@ -19,6 +19,8 @@ LINES = csv_lines(SWIM)
 HEAD, ROWS = LINES[0], LINES[1:]
 POSE = np.array([row.split(",") for row in ROWS], float)
 FREE = "time,x,y,z,roll,pitch,yaw"
+ROUND = np.hstack([POSE[:, :4], np.rad2deg(POSE[:, 4:]) % 360.0])
+QUATERNIONS = np.hstack([POSE[:, :4], from_matrix(SWIM.rotation)])
 
 
 def scaled(*factors: float) -> list[str]:
@@ -78,6 +80,35 @@ WRITTEN = {
         line.replace(",", ";").replace(".", ",") for line in [HEAD, *dated("%Y-%m-%dT%H:%M:%S.%f")]
     ],
     "times of day": [HEAD, *dated("%H:%M:%S.%f")],
+    "quotes": ['"' + line.replace(",", '","') + '"' for line in LINES],
+    "blanks": [line.replace(",", " ") for line in LINES],
+    "numpy.savetxt": [f"# {HEAD.replace(',', ' ')}", *(row.replace(",", "  ") for row in ROWS)],
+    "commas in names": [
+        "Time, s;x, m;y, m;z, m;roll, rad;pitch, rad;yaw, rad",
+        *(row.replace(",", ";").replace(".", ",") for row in ROWS),
+    ],
+    "minutes": ["Time [min],x,y,z,roll,pitch,yaw", *scaled(1 / 60, *[1] * 6)],
+    "signs of degrees": [
+        "Time [s],X [mm],Y [mm],Z [mm],Roll [°],Pitch [°],Yaw [°]",
+        *scaled(1, *[1e3] * 3, *[180 / np.pi] * 3),
+    ],
+    "words of units below": [
+        FREE,
+        "seconds,metres,metres,metres,radians,radians,radians",
+        *ROWS,
+    ],
+    "angles from 0 to 360": [
+        "time_s,x_m,y_m,z_m,roll_deg,pitch_deg,yaw_deg",
+        *(",".join(f"{x:.9f}" for x in row) for row in ROUND),
+    ],
+    "a second heading": [f"{FREE},heading", *(f"{row},{k % 3}" for k, row in enumerate(ROWS))],
+    "a second clock": [f"timestamp,{FREE}", *(f"{7 * k},{row}" for k, row in enumerate(ROWS))],
+    "a topic": [
+        "__time,/rov/pose/pose/position/x,/rov/pose/pose/position/y,/rov/pose/pose/position/z,"
+        "/rov/pose/pose/orientation/w,/rov/pose/pose/orientation/x,/rov/pose/pose/orientation/y,"
+        "/rov/pose/pose/orientation/z",
+        *(",".join(f"{x:.9f}" for x in row) for row in QUATERNIONS),
+    ],
     "no pose is -999": [HEAD, *every_50th("-999")],
     "no pose is NA": [HEAD, *every_50th("NA")],
     "no pose is null": [HEAD, *every_50th("null")],
@@ -117,8 +148,8 @@ def test_a_depth_that_is_a_height_is_turned_by_init_and_refused_by_the_reader(tm
 
 
 def with_quaternion(names: str) -> list[str]:
-    rows = np.column_stack([POSE[:, :4], from_matrix(SWIM.rotation)])
-    return [f"time_s,x_m,y_m,z_m,{names}", *(",".join(f"{x:.6f}" for x in row) for row in rows)]
+    rows = [",".join(f"{x:.6f}" for x in row) for row in QUATERNIONS]
+    return [f"time_s,x_m,y_m,z_m,{names}", *rows]
 
 
 @pytest.mark.parametrize("turns", [0.0, 1.5], ids=["near north", "all around"])
@@ -133,7 +164,41 @@ def test_a_quaternion_in_another_order_than_its_names_is_doubted(tmp_path, turns
     assert doubted == (wrong and turns > 0.0)  # near one heading both orders are upright
 
 
+ALTERNATING = [(row, row.partition(",")[0]) for row in ROWS]
+STAMPS = [f"{int(t)},{round((t % 1) * 1e9)}" for t in POSE[:, 0]]
+PLACES = [row.partition(",")[2] for row in ROWS]
 REFUSED = {
+    "ms at 250 Hz": (
+        [FREE, *(f"{4 * k},{place}" for k, place in enumerate(PLACES))],
+        r"times \('time'\) in steps of 4 over 1.6e\+03 \(s or ms\?\)",
+    ),
+    "days of a spreadsheet": ([FREE, *scaled(1e-3 / 86.4, *[1] * 6)], "days .* or minutes"),
+    "seconds and nanoseconds": (
+        [FREE.replace("time", "secs,nsecs"), *(map(",".join, zip(STAMPS, PLACES, strict=True)))],
+        r"time_s = secs \+ 1e-9 \* nsecs",
+    ),
+    "frames": (
+        ["frame,x_m", *(f"{k},{k}" for k in range(9))],
+        "divided by the rate of the cam",
+    ),
+    "times of MATLAB": ([HEAD, *(f"12-May-2026 10:00:{r}" for r in ROWS)], "not written by ISO"),
+    "two runs": (
+        [*LINES, *ROWS],
+        r"2 runs in one file: its times begin anew \(400 samples",
+    ),
+    "two runs under other names": ([FREE, *ROWS, *ROWS], "run.csv.*2 runs in one file"),
+    "two logs of commands": (
+        ["time_s,t1,t2", *(f"{0.1 * (k % 200):.1f},{1500 + k},1500" for k in range(400))],
+        "2 runs in one file",
+    ),
+    "two bodies": (
+        [f"{HEAD},name", *(f"{r},ROV\n{t},9,9,9,0,0,0,crane" for r, t in ALTERNATING)],
+        "2 bodies in one file: it jumps .* where 'name' changes \\(ROV, crane\\)",
+    ),
+    "rates in deg": (
+        ["time_s,p_rad_s", *(f"{0.1 * k:.1f},{30 * np.sin(k)}" for k in range(90))],
+        r"values of .* rad/s: deg_s\?",
+    ),
     "numbered quaternion": (with_quaternion("q0,q1,q2,q3"), "none says which is w"),
     "dates of no norm": ([HEAD, *(f"12/05/2026 10:00:{r}" for r in ROWS)], "line 2.*by ISO 8601"),
     "afternoons": (
@@ -175,3 +240,18 @@ def test_what_no_file_says_is_refused_with_a_way_out(tmp_path: Path, name):
 def test_wrong_units_in_known_names_are_refused_by_the_reader(tmp_path, lines, said):
     with pytest.raises(BadInput, match=said):
         read_csv(write_lines(tmp_path / "run.csv", lines), MOCAP)
+
+
+def test_a_depth_that_may_be_a_height_is_what_that_of_another_file_is(tmp_path):
+    deep = [f"{0.1 * k:.1f},{-1.0 - 0.01 * k:.2f}" for k in range(100)]
+    shallow = [f"{0.1 * k:.1f},{0.05 - 0.004 * k:.3f}" for k in range(100)]
+    one = look_into_csv(write_lines(tmp_path / "a.csv", ["time_s,depth_m", *deep]), tmp_path / "a")
+    path = write_lines(tmp_path / "b.csv", ["time_s,depth_m", *shallow])
+    alone = look_into_csv(path, tmp_path / "b").tracks[0].export.channels["depth"].value
+    beside = look_into_csv(path, tmp_path / "c", one.units).tracks[0].export.channels["depth"].value
+    np.testing.assert_allclose(beside, -alone)
+
+
+def test_labels_that_change_while_one_body_moves_on_are_no_bodies(tmp_path):
+    rows = [f"{HEAD},tracked", *(f"{row},{k % 2}" for k, row in enumerate(ROWS))]
+    assert look_into_csv(write_lines(tmp_path / "run.csv", rows), tmp_path).tracks

@@ -16,6 +16,15 @@ def absent(pulses: Array) -> Array:
     return np.isin(pulses, NONE)
 
 
+def without_pulse(pulses: Array) -> tuple[Array, tuple[str, ...]]:
+    """Pulses of outputs where none stands for a thruster at rest, and a sentence if any does."""
+    none = absent(pulses)
+    if not none.any():
+        return pulses, ()
+    said = f"{int(none.sum())} outputs without a pulse stand for no command."
+    return np.where(none, CENTER, pulses), (said,)
+
+
 def to_commands(pulses: Array) -> Array:
     """Commands of pulses."""
     return (pulses - CENTER) / SPAN

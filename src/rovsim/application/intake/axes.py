@@ -103,7 +103,7 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
     ]
     return "", (
         f"commanded {', '.join(told)} of the file's body (likeness {score:.2f}): the rigid body is "
-        "turned, make it anew along the vehicle's axes"
+        "turned: make it anew along the vehicle's axes, or write the columns of a csv along them"
     )
 
 

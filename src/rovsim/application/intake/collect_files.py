@@ -8,9 +8,9 @@ from rovsim.application.intake.one_unit import list_others
 from rovsim.application.intake.together import put_together
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import counted
+from rovsim.measurement.recording.one_run import SeveralRuns
 from rovsim.measurement.survey import Contents, gather, look
 from rovsim.measurement.survey.csv_files import UnknownColumns
-from rovsim.measurement.survey.repeats import SeveralRuns
 from rovsim.measurement.survey.sizes import Key, Unit, UnknownUnit
 
 ASKED = (UnknownUnit, SeveralRuns)  # errors that stop init for a file of a folder, too
@@ -48,7 +48,8 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         raise RovsimError("\n".join(bad))
     found = list(every.values())
     left_out = tuple(
-        f"{path.name} is left out: {refused[path].found}. {refused[path].remedy}".rstrip()
+        f"{path.name}{_place(refused[path])} is left out: {refused[path].found}. "
+        f"{refused[path].remedy}".rstrip()
         for path in inside
         if path in refused
     )
@@ -63,6 +64,12 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         if isinstance(refused.get(path), UnknownColumns)
     ]
     return CollectedFiles(runs, logs, left_out, apart, tuple(unknown))
+
+
+def _place(error: BadInput) -> str:
+    """The line and column of an error, in brackets; empty where it tells none."""
+    place = error.where.partition(", ")[2]
+    return f" ({place})" if place else ""
 
 
 def _look_into_all(
@@ -119,8 +126,8 @@ def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: obj
         held = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
     alike: dict[tuple[str, str], list[str]] = {}
     for error in refused:
-        name = Path(error.where.split(",")[0]).name
-        alike.setdefault((error.found, error.remedy), []).append(name)
+        name = Path(error.where.partition(", ")[0]).name
+        alike.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
     told = [
         f"{', '.join(names[:MOST_TOLD])}: {found}"
         for (found, _), names in [*alike.items()][:MOST_TOLD]

@@ -6,6 +6,7 @@ from typing import Sequence
 
 import numpy as np
 
+from rovsim import AXES
 from rovsim.application.intake.axes import Axes, find_axes
 from rovsim.application.intake.bodies import Body, find_body, track_of
 from rovsim.application.intake.choice import Choice, choose
@@ -18,6 +19,12 @@ from rovsim.application.intake.vehicles import Fit, fitting
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.survey import Contents
+
+OTHER_LOG = "Run init for each kind of log, with another out=."
+ATTITUDE = (
+    "If these are measured angles, name them after their unit: roll_deg, pitch_deg, yaw_deg, or "
+    "roll_rad …; they are then read beside the rest of the run."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +119,7 @@ def _check_same(first: CommandFile, log: CommandFile) -> None:
             f"{', '.join(first.drive.columns)}",
             where=log.path,
             expected="the same columns in every log of commands",
-            remedy="Run init for each kind of log, with another out=.",
+            remedy=ATTITUDE if set(log.drive.columns) <= set(AXES[3:]) else OTHER_LOG,
         )
 
 

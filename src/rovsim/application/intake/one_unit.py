@@ -24,6 +24,8 @@ def list_others(
             told[key].append((path, unit))
     again: dict[Path, dict[Key, Unit]] = defaultdict(dict)
     for key, units in told.items():
+        if len({u.factor for _, u in units if u.sure}) > 1 and not any(u.shared for _, u in units):
+            continue  # each file has its own
         first, unit = _first(key, units)
         others = [path for path, own in units if unit.sure and own.factor != unit.factor]
         for path in (*others, *_asking(key, refused, unit.sure)):

@@ -122,7 +122,8 @@ def _first_asked(facts: Facts) -> CommandCandidate:
 def _kinds(facts: Facts) -> dict[str, str]:
     """Kinds to choose from: columns that are named after axes are one of two."""
     of_axes = ("demand", "wrench")
-    return {name: KINDS[name] for name in (of_axes if facts.kind_asked else KINDS)}
+    asked = facts.kind_asked and _first_asked(facts).kind in of_axes
+    return {name: KINDS[name] for name in (of_axes if asked else KINDS)}
 
 
 def _columns(facts: Facts, draft: Draft) -> list[str] | str:

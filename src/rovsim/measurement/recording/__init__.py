@@ -11,13 +11,14 @@ commands_csv  commands in columns
 rosbag2       ROS 2 bags
 ardupilot     ArduPilot logs
 table         columns of numbers in text
-units_row     a line of units below the names
+units         of columns, behind their names or in a line below
 times         a column of times
 dates         times that are dates
 foreign       errors of foreign libraries as one message
 channels      each kind of measurement at its own times
 commands      logged values become commands
 joined        several files of one run
+one_run       times that begin anew: two recordings
 tidying       sorted by time, each time once
 reading       from the files of a run to a recording
 repeated      poses that are those of the line before

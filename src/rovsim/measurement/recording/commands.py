@@ -89,8 +89,13 @@ def guess_unit(low: float, high: float) -> str:
     size = max(-low, high)
     if size <= ALLOWED["normalized"][1]:
         return "shares, kind normalized or demand"
+    if low >= 1e-3 * ALLOWED["pwm"][0] and high <= 1e-3 * ALLOWED["pwm"][1]:
+        return "pulses in ms: times 1000 they are of kind pwm"
     if size <= PERCENT:
-        return "percent: divide them by 100, then they are shares"
+        return (
+            "percent: divide them by 100, then they are shares; or newtons: divide them by the "
+            "thrust at full command, or add them up to a wrench on the vehicle"
+        )
     if low < 0.0 and size <= ABOUT_REST:
         return (
             "pulses less 1500 us: add 1500; or revolutions per minute: convert them to shares "

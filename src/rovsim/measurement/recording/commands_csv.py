@@ -36,10 +36,26 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
     time, value = times(table, places[0]), numbers(table, places[1:])
     own = slice(len(log.names))
+    value[:, own], silent = _without_pulse(value[:, own], log)
     value[:, own], held = _held(time, value[:, own])
     value, radio = _of_a_radio(value, log)
-    notes = (*radio, *held)
+    notes = (*silent, *radio, *held)
     return as_commands(time, value, log, place, {"cut_lines": cut}, pulses=bool(radio), notes=notes)
+
+
+def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
+    """Values (m, c) where outputs without a pulse stand for no command, if all others are pulses.
+
+    Zeros among other numbers are no such thing, and what those are is said when they are refused.
+    """
+    pulses = value[:, ~np.array(log.turned)]
+    given = pulses[np.isfinite(pulses) & ~pwm.absent(pulses)]
+    low, high = ALLOWED["pwm"][:2]
+    if log.kind != "pwm" or not len(given) or given.min() < low or given.max() > high:
+        return value, ()
+    value = value.copy()
+    value[:, ~np.array(log.turned)], notes = pwm.without_pulse(pulses)
+    return value, notes
 
 
 def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:

@@ -32,6 +32,7 @@ from rovsim.measurement.recording.table import (
     Lines,
     column_places,
     csv_lines,
+    is_table,
     numbers,
     without_cut_line,
 )
@@ -234,7 +235,7 @@ def _near_misses(names: list[str]) -> tuple[str, ...]:
 
 def _recognised(head: bytes) -> bool:
     lines = head_lines(head)
-    return len(lines) > 1 and bool(re.search(r"[,;\t]", lines[0]))
+    return len(lines) > 1 and (bool(re.search(r"[,;\t]", lines[0])) or is_table(head))
 
 
 MOCAP_READER = MocapReader("csv", read_csv, (Signature(_recognised),), general=True)

@@ -9,8 +9,10 @@ from numpy import ndarray as Array
 
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 TIME_OF_DAY = re.compile(r"\d\d:\d\d:\d\d")
-# As people and spreadsheets write them: 27.11.2026, 11/27/2026 1:02 PM, 1:02:03 pm.
-ANY_SPELLING = re.compile(r"\d{1,4}([/.-])\d{1,2}\1\d{1,4}\b.*|\d{1,2}:\d\d\b.*")
+# As people, MATLAB and spreadsheets write them: 27.11.2026, 11/27/2026 1:02 PM, 27-Nov-2026.
+ANY_SPELLING = re.compile(
+    r"\d{1,4}([/.-])\d{1,2}\1\d{1,4}\b.*|\d{1,2}-[A-Za-z]{3}-\d{2,4}\b.*|\d{1,2}:\d\d\b.*"
+)
 DAY = 86_400.0  # s
 
 

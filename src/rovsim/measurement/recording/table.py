@@ -11,9 +11,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.files import read_text
 from rovsim.measurement.recording.dates import is_date
-from rovsim.measurement.recording.units_row import with_units
+from rovsim.measurement.recording.signature import decoded
+from rovsim.measurement.recording.units import with_units
 
-MISSING = {"", "na", "n/a", "null", "none", "-"}  # words for "not measured", in any case
+MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-"}  # words for "not measured", in any case
 # What loggers write where a sensor gave nothing; believed where no other value comes near.
 FILLERS = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
 NEAR = 0.5  # of a filler: a column that reaches so far may mean it
@@ -23,6 +24,7 @@ LIKE_TIME = re.compile(
     r"|unnamed.*|index|t|t[\W_]+.*|.*time.*|.*stamp.*|secs?|seconds|utc.*|clock.*|elapsed.*|date.*",
     re.IGNORECASE,
 )
+FRAMES = {"frame", "frames", "frame_no", "frame_number", "frame number"}
 AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
 
 
@@ -62,8 +64,8 @@ class Lines:
 def csv_lines(path: Path) -> Lines:
     """Lines of a csv file below its line of column names.
 
-    Commas separate, else semicolons or tabs; then a comma in a number is a decimal point. Remarks
-    (#), a line of units and further lines of the same names are no data.
+    Commas separate, or semicolons or tabs, and then a comma in a number is a decimal point; else
+    blanks. Remarks (#), quotes, a line of units and further lines of the same names are no data.
 
     Raises:
         BadInput: the file is empty.
@@ -78,14 +80,44 @@ def csv_lines(path: Path) -> Lines:
             expected="a line of column names and lines of numbers",
             remedy="Export the run again.",
         )
+    lines = [line.replace('"', "") for line in lines] if _is_quoted(lines[header]) else lines
     head = lines[header].lstrip("# ")
-    separator = next((s for s in ",;\t" if s in head), ",")
+    separator = find_separator(head, next((x for x in lines[header + 1 :] if x.strip()), ""))
+    if separator == " ":
+        lines, separator = [",".join(line.lstrip("# ").split()) for line in lines], ","
+        head = lines[header]
     names = [cell.strip().strip('"') for cell in head.rstrip(f" {separator}").split(separator)]
     rows = [line if line != lines[header] else "" for line in lines]  # of files put end to end
     if separator != ",":
         rows = [line.replace(",", ".") for line in rows]
     names, below = with_units(names, rows, header, separator)
     return split_lines(path, rows, below, names, separator, ended=text.endswith("\n"))
+
+
+def find_separator(head: str, below: str) -> str:
+    """What separates the cells of a line of names and of the line below it."""
+    fitting = [s for s in ",;\t" if head.count(s)]
+    # last the comma: names may have as many ("x, m") as the numbers below have decimal ones
+    alike = [s for s in reversed(fitting) if head.count(s) == below.count(s)]
+    if fitting:
+        return (alike or fitting)[0]
+    return " " if len(head.split()) == len(below.split()) > 1 else ","
+
+
+def is_table(head: bytes) -> bool:
+    """Whether text begins with a line of names, and numbers below it, with blanks between them."""
+    lines = (decoded(head) or "").split("\n")
+    header = find_header(lines)
+    if header is None:
+        return False
+    names, *rows = [line.lstrip("# ").split() for line in lines[header:] if line.strip()]
+    numeric = [all(map(_is_number, row)) for row in rows[:1]]
+    return numeric == [True] and len(names) == len(rows[0]) > 1 and not any(map(_is_number, names))
+
+
+def _is_quoted(head: str) -> bool:
+    """Whether every name stands in quotes, and so every cell may."""
+    return bool(re.fullmatch(r'[#\s]*"[^"]*"(\s*[,;\t]\s*"[^"]*")+\s*', head))
 
 
 def find_header(lines: Sequence[str]) -> int | None:
@@ -97,7 +129,7 @@ def find_header(lines: Sequence[str]) -> int | None:
     first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
     before = [n for n in filled if first is None or n < first]
     begins = "" if first is None else re.split(r"[,;\t]", lines[first])[0]
-    if first is None or (before and (_is_number(begins) or is_date(begins))):
+    if first is None or (before and (_is_number(begins.split(" ")[0]) or is_date(begins))):
         return before[-1] if before else first
     return first
 
@@ -168,15 +200,32 @@ def no_time(path: Path, names: list[str]) -> BadInput:
         for k, name in enumerate(names)
     ]
     likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]
-    remedy = f"Give the column of the times the name {TIME}."
-    if likely:
-        remedy = f"Did you mean {' or '.join(likely)}? If it holds the times, name it {TIME}."
     return BadInput(
         f"no column '{TIME}', but {', '.join(told)}",
         where=f"{path}, column names",
         expected=f"a column {TIME}: seconds, dates or times of day (ISO 8601)",
-        remedy=remedy,
+        remedy=_how_to_name_times(names, likely),
     )
+
+
+def _how_to_name_times(names: Sequence[str], likely: Sequence[str]) -> str:
+    if halves := find_halves(names):
+        return f"Write one column {TIME} = {halves[0]} + 1e-9 * {halves[1]}."
+    if likely:
+        return f"Did you mean {' or '.join(likely)}? If it holds the times, name it {TIME}."
+    if any(name.lower() in FRAMES for name in names):
+        return f"Write a column {TIME}: the frame divided by the rate of the cameras in Hz."
+    return f"Give the column of the times the name {TIME}."
+
+
+def find_halves(names: Sequence[str]) -> tuple[str, str] | None:
+    """Columns of whole seconds and of the nanoseconds beyond them, as stamps of ROS come apart."""
+    for name in names:
+        if found := re.fullmatch(r"(.*?)n(ano)?sec(ond)?s?", name, re.IGNORECASE):
+            whole = re.compile(re.escape(found[1]) + r"sec(ond)?s?", re.IGNORECASE)
+            if other := next((n for n in names if whole.fullmatch(n)), None):
+                return other, name
+    return None
 
 
 def numbers(table: Lines, columns: list[int]) -> Array:
@@ -240,7 +289,7 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
 def bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
     """The error of a cell that holds something else than expected."""
     place = f"{table.path}, line {line}, column '{table.names[column]}'"
-    if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:", cell):
+    if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:|\d\d?-[A-Za-z]{3}-\d{2,4}", cell):
         return BadInput(
             f"{cell!r} is a date or a time of day",
             where=place,

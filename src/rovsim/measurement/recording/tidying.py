@@ -9,6 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy
+from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.readers import CommandExport, Export
 from rovsim.measurement.recording.repeated import without_repeated
 
@@ -22,7 +23,10 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
 
     Raises:
         BadInput: neither poses nor a channel of two samples.
+        SeveralRuns: times begin anew.
     """
+    for time in (export.time[export.found], *(c.time for c in export.channels.values())):
+        check_one_run(time, path)
     channels, unsorted, duplicates = tidy(export.channels)
     counts = {**export.counts, "unsorted": unsorted, "duplicates": duplicates}
     if not export.found.any() and any(len(c.time) > 1 for c in channels.values()):
@@ -88,6 +92,7 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
 
     Raises:
         BadInput: no line is left.
+        SeveralRuns: times begin anew.
     """
     if not len(log.time):
         raise BadInput(
@@ -96,6 +101,7 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
             expected="at least one line with a time and every column",
             remedy="Export the commands again, or take the run out of 'runs'.",
         )
+    check_one_run(log.time, path)
     order = np.argsort(log.time, kind="stable")
     time = log.time[order]
     keep = order[np.diff(time, append=np.inf) > 0]

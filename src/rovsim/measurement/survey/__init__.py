@@ -10,10 +10,11 @@ csv_files      in csv files
 other_numbers  their columns of numbers that are no measured channel
 headings       csv files whose columns have other names or units: a copy with ours
 command_names  what names say of commands: forces and moments, sticks, other units
-column_names   our channels in other words, and units behind them
+column_names   our channels in other words
 sizes          units that the size of the numbers tells
+time_units     that of times
 starts         when recordings began, by the headers of their files
-repeats        times that repeat: several runs in one file, stamps that are too coarse
+repeats        several runs or bodies in one file, stamps that are too coarse
 quaternions    numbered columns that may be one
 grid           rough velocities on an even clock, to compare recordings with
 timing         rates, jitter, gaps

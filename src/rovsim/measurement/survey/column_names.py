@@ -1,16 +1,16 @@
-"""What columns of csv files are called: our channels in other words, and units behind them."""
+"""What columns of csv files are called: our channels in other words."""
 
 import re
-
-import numpy as np
+from collections import defaultdict
+from typing import Iterator, Sequence
 
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
-from rovsim.measurement.recording.table import Lines
+from rovsim.measurement.recording.table import TIME, Lines
+from rovsim.measurement.recording.units import TIMES, split_unit
 
-DEGREE = np.pi / 180.0
 # Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
 FORMS = {
-    "time_s": "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
+    TIME: "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
     "rostime",
     **{
         ours: f"{letter}|p{letter}|pos_?{letter}|position_?{letter}|(pose_)*position_{letter}|"
@@ -30,28 +30,51 @@ FORMS = {
 FORMS["roll_rad"] += "|phi"
 FORMS["pitch_rad"] += "|theta"
 FORMS["yaw_rad"] += "|psi|heading"
-UNITS = {
-    "mm": 1e-3, "cm": 1e-2, "m": 1.0, "deg": DEGREE, "degrees": DEGREE, "rad": 1.0, "radians": 1.0,
-    "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9,
-    "m_s": 1.0, "mm_s": 1e-3, "deg_s": DEGREE, "rad_s": 1.0,
-}  # fmt: skip
+# What a topic of ROS with poses has behind its name.
+IN_POSES = (
+    (POSITION, r"(.*_pose)_position_([xyz])"),
+    (QUATERNION, r"(.*_pose)_orientation_([wxyz])"),
+)
 
 
-def in_words(name: str) -> str:
-    """A name in lower case, underscores in place of blanks, dots, slashes and brackets."""
-    return re.sub(r"[\s.\[\](){}/]+", "_", name.strip().lower()).strip("_")
+def find_columns(lines: Lines) -> dict[str, int]:
+    """Places of our channels in a file, by our names.
+
+    Our own name goes before it without the unit, that before other words, these in the order of the
+    file, and a topic of ROS comes last: where there are several, nobody can tell which is meant.
+    """
+    names = list(map(split_unit, lines.names))
+    found = ((ours, next(_places(ours, lines, names), None)) for ours in FORMS)
+    return _of_a_topic(names) | {ours: place for ours, place in found if place is not None}
 
 
-def split_unit(name: str) -> tuple[str, str]:
-    """A name without its unit, in lower case with underscores, and the unit."""
-    text = in_words(name.strip().lstrip("%"))
-    for unit in sorted(UNITS, key=len, reverse=True):
-        if text.endswith(f"_{unit}"):
-            return text.removesuffix(f"_{unit}"), unit
-    return text, ""
+def _places(ours: str, lines: Lines, names: Sequence[tuple[str, str]]) -> Iterator[int]:
+    """Places of the columns that may be one of our channels, the likeliest first."""
+    yield from (k for k, name in enumerate(lines.names) if name == ours)
+    fitting = [k for k, (_, unit) in enumerate(names) if not unit or _fits(ours, unit)]
+    own = split_unit(ours)[0]
+    yield from (k for k in fitting if names[k][0] == own)
+    yield from (k for k in fitting if re.fullmatch(FORMS[ours], names[k][0]))
+
+
+def _fits(ours: str, unit: str) -> bool:
+    return (unit in TIMES) == (ours == TIME)
+
+
+def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:
+    """Places of whole positions and quaternions of the one topic that has them."""
+    found: dict[str, int] = {}
+    for group, form in IN_POSES:
+        topics: dict[str, dict[str, int]] = defaultdict(dict)
+        for k, (stem, _) in enumerate(names):
+            if part := re.fullmatch(form, stem):
+                topics[part[1]][next(n for n in group if part[2] in n.split("_")[0])] = k
+        whole = [places for places in topics.values() if len(places) == len(group)]
+        found |= whole[0] if len(whole) == 1 else {}
+    return found
 
 
 def find_unit(lines: Lines, ours: str) -> str:
     """The unit behind the name of a channel of ours; empty where it has none."""
-    found = [split_unit(name) for name in lines.names]
-    return next((unit for stem, unit in found if re.fullmatch(FORMS[ours], stem) and unit), "")
+    place = find_columns(lines).get(ours)
+    return "" if place is None else split_unit(lines.names[place])[1]

@@ -1,28 +1,29 @@
 """What the names of columns say of commands: forces and moments, sticks, units that are none."""
 
 import re
-from typing import Iterable, Mapping, Sequence
+from typing import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.measurement.recording.commands import guess_unit
-from rovsim.measurement.survey.column_names import in_words
+from rovsim.measurement.recording.units import in_words
 
 # Names in lower case with underscores, without their units.
 WRENCH = dict(
     zip(
         AXES,
-        [rf"(.*_)?({word})_?{axis}" for word in ("f|force", "m|moment|torque") for axis in "xyz"],
+        [rf"(.*_)?({word})_?{axis}" for word in ("f|force", "m|t|moment|torque") for axis in "xyz"],
         strict=True,
     )
 )
+SNAME = dict(zip(AXES, "xyzkmn", strict=True))  # X Y Z K M N (SNAME 1950)
 FORCE = r"_?(n|nm|n_m|n\*m)"
 NO_SHARE = re.compile(r".*[\W_](n|nm|n_m|%|percent|pct|rpm)\W*", re.IGNORECASE)
 OF_A_FORCE = re.compile(r".*[\W_]n\W*", re.IGNORECASE)
 POSE = re.compile(
-    r"(^|[^a-z])(p?[xyz]|q[wxyz]|roll|pitch|yaw|heading|lat|lon|alt(itude)?|depth|position|"
+    r"(?!tau)(^|[^a-z])(p?[xyz]|q[wxyz]|roll|pitch|yaw|heading|lat|lon|alt(itude)?|depth|position|"
     r"orientation|east|north|up)([^a-z]|$)",
     re.IGNORECASE,
 )
@@ -30,22 +31,30 @@ STICKS = ("x", "y", "z", "r")  # of MAVLink's MANUAL_CONTROL
 FULL_STICK = 1000.0
 
 
-def find_wrench(names: Iterable[str]) -> dict[str, str]:
-    """Columns by the axis along or about which they push: Fx, Mz, wrench.force.x, surge [N].
+def find_wrench(names: Collection[str]) -> dict[str, str]:
+    """Columns by the axis along or about which they push: Fx, Mz, wrench.force.x, surge [N], tau_k.
 
     Nothing without two of them, one a force: mx, my, mz alone may be a magnetic field.
     """
+    own = {stem(name): name for stem in (in_words, _without_force) for name in names}
+    for form in ("{}", "tau_{}", "tau{}"):
+        if all(form.format(letter) in own for letter in SNAME.values()):
+            return {axis: own[form.format(letter)] for axis, letter in SNAME.items()}
     found: dict[str, str] = {}
-    for name in names:
-        text = in_words(name)
-        stem = re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
-        axis = stem if stem in AXES and stem != text else None
+    for stem, name in own.items():
+        axis = stem if stem in AXES and stem != in_words(name) else None
         axis = axis or next((a for a, form in WRENCH.items() if re.fullmatch(form, stem)), None)
         if axis:
             found.setdefault(axis, name)
     if len(found) < 2 or not set(AXES[:3]) & found.keys():
         return {}
     return {axis: found[axis] for axis in AXES if axis in found}
+
+
+def _without_force(name: str) -> str:
+    """A name in lower case with underscores, without a unit of forces or moments."""
+    text = in_words(name)
+    return re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
 
 
 def has_other_unit(name: str) -> bool:

@@ -9,11 +9,13 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.commands import ALLOWED, PERCENT, guess_unit
 from rovsim.measurement.recording.csv import KNOWN, read_csv
+from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.table import (
     TIME,
     Lines,
@@ -30,11 +32,13 @@ from rovsim.measurement.survey.command_names import (
 from rovsim.measurement.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.measurement.survey.headings import rewritten
 from rovsim.measurement.survey.other_numbers import Columns, find_numbers, find_sparse, read_others
-from rovsim.measurement.survey.repeats import SeveralRuns, check_one_run, tell_repeats
+from rovsim.measurement.survey.repeats import check_unmixed, tell_repeats
 from rovsim.measurement.survey.sizes import Key, Unit, Units
 
 RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
 THOUSANDTHS = 1050.0  # how far shares of a full stick reach that were multiplied by 1000
+NEAR_HALF = 0.1  # of commands whose medians lie so near to it
+HALF = "numbers within 0 and 1 about 0.5; if 0.5 is at rest, write 2 x - 1 and normalized"
 EXPECTED = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
 
 
@@ -54,12 +58,11 @@ def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = 
     place, notes = rewritten(path, scratch, units)
     try:
         return replace(_look(path, place, notes), units=units.found)
-    except (UnknownColumns, SeveralRuns):
-        raise
     except BadInput as error:  # of a copy that is gone when its owner reads this
+        if place == path:
+            raise
         where = error.where.replace(str(place), f"{path}, read as a copy with other columns")
-        where = error.where if place == path else where
-        raise BadInput(
+        raise type(error)(
             error.found, where=where, expected=error.expected, remedy=error.remedy
         ) from None
 
@@ -67,10 +70,12 @@ def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = 
 def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     """What `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
-    check_one_run(replace(lines, path=path))
+    check_unmixed(replace(lines, path=path))
     known = [name for name in lines.names if name in KNOWN]
     others = read_others(lines)
     drive = _drive(lines, others)
+    if drive is not None:
+        check_one_run(drive.time[np.isfinite(drive.value).any(axis=1)], path)
     unknown = "" if drive else _unknown(others)
     if not known and drive is None:
         raise _nothing(path, lines, unknown)
@@ -170,6 +175,7 @@ def _commands(
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
+    value = pwm.without_pulse(value)[0] if kind == "pwm" else value
     rest = {name: column for name, column in columns.items() if name not in chosen}
     return CommandCandidate(
         "csv",
@@ -180,7 +186,7 @@ def _commands(
         said,
         auxiliary=voltage,
         rest=rest,
-        asked=kind == "wrench",
+        asked=kind == "wrench" or said == HALF,
     )
 
 
@@ -210,19 +216,30 @@ def _kind(columns: dict[str, Array]) -> tuple[LoggedKind | None, list[str], str]
     plain = {name: value for name, value in columns.items() if not has_other_unit(name)}
     pulses = [name for name in plain if within(columns[name], "pwm")]
     if pulses:
-        low, high = find_range([columns[name] for name in pulses])
+        given = [value[~pwm.absent(value)] for value in map(columns.__getitem__, pulses)]
+        low, high = find_range(given)
         return "pwm", ordered(pulses), f"all from {low:.0f} to {high:.0f}: pulses in us"
     shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
+        if _rests_at_half([columns[name] for name in shares]):
+            return "normalized", ordered(shares), HALF
         return "normalized", ordered(shares), "all within -1 and 1"
     numbered = [name for name in columns if re.search(r"\d$", name)]
     return None, ordered(numbered), _sizes([columns[name] for name in numbered])
+
+
+def _rests_at_half(values: list[Array]) -> bool:
+    """Whether shares lie within 0 and 1, about the middle: then 0.5 may be at rest."""
+    low, high = find_range(values)
+    usual = float(np.median([np.nanmedian(value) for value in values]))
+    return low >= 0.0 and high <= 1.0 and low < 0.5 < high and abs(usual - 0.5) < NEAR_HALF
 
 
 def within(value: Array, kind: LoggedKind) -> bool:
     """Whether a column can be of that kind, by the size of its numbers."""
     low, high = ALLOWED[kind][:2]
     known = value[np.isfinite(value)]
+    known = known[~pwm.absent(known)] if kind == "pwm" else known
     return bool(len(known) and known.min() >= low and known.max() <= high)
 
 

@@ -14,21 +14,25 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
-from rovsim.measurement.recording.csv_checks import LONGEST_STEP, is_height
+from rovsim.measurement.recording.csv_checks import is_height
 from rovsim.measurement.recording.table import (
     Lines,
     csv_lines,
     find_filler,
+    find_halves,
+    no_time,
     numbers,
     without_cut_line,
 )
-from rovsim.measurement.recording.times import LATEST, dates, times
-from rovsim.measurement.survey.column_names import FORMS, UNITS, split_unit
-from rovsim.measurement.survey.command_names import STICKS, are_sticks
+from rovsim.measurement.recording.times import dates, times
+from rovsim.measurement.recording.units import DEGREE, FACTORS, split_unit
+from rovsim.measurement.survey.column_names import find_columns
+from rovsim.measurement.survey.command_names import STICKS, are_sticks, find_wrench
 from rovsim.measurement.survey.quaternions import check_quaternion
-from rovsim.measurement.survey.sizes import Units, find_by_size
+from rovsim.measurement.survey.sizes import Unit, Units, find_by_size
+from rovsim.measurement.survey.time_units import find_time_unit
 
-SHORTEST_STEP = 2e-4  # s between two lines of any recording
+HALF_TURN = 180.0  # degrees
 
 
 @dataclass(frozen=True)
@@ -86,31 +90,33 @@ def _cell(text: str, column: Column | None, filler: float | None) -> str:
         return text
     if value == filler:
         return ""
+    if column.ours in EULER[:2] and column.factor == DEGREE and abs(value) > HALF_TURN:
+        value = (value + HALF_TURN) % (2.0 * HALF_TURN) - HALF_TURN  # 359 degrees for -1
     return text if column.factor == 1.0 else repr(value * column.factor)
 
 
 def _columns(lines: Lines, units: Units) -> list[Column]:
     """Columns that are ours under another name or unit."""
-    plain = {k: split_unit(name) for k, name in enumerate(lines.names)}
-    places = {
-        ours: k
-        for ours, form in FORMS.items()
-        for k, (stem, _) in plain.items()
-        if lines.names[k] == ours or (ours not in lines.names and re.fullmatch(form, stem))
-    }
+    unit_at = [split_unit(name)[1] for name in lines.names]
+    places = find_columns(lines)
     _drop_ambiguous(places, lines)
+    if lines.names[places.get("time_s", 0)] in (find_halves(lines.names) or ()):
+        raise no_time(lines.path, lines.names)
     if "time_s" not in places:
         return []
     place = places["time_s"]
     dated = dates(lines, place)
     if dated is not None:
         times(without_cut_line(lines, [place])[0], place)  # refuses what is no date among them
-    time, said = _time(lines, place, plain[place][1]) if dated is None else (1.0, " from dates")
-    columns = [Column("time_s", place, time, said)]
-    seconds = _values(lines, place) * time if dated is None else dated
+    seconds, factor, said = dated, 1.0, " from dates"
+    if seconds is None:
+        value = _values(lines, place)
+        factor, said = find_time_unit(lines, place, value, unit_at[place], units)
+        seconds = value * factor
+    columns = [Column("time_s", place, factor, said)]
     for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
         here = {ours: places[ours] for ours in group if ours in places}
-        columns += _group(lines, here, {k: plain[k][1] for k in here.values()}, seconds, units)
+        columns += _group(lines, here, {k: unit_at[k] for k in here.values()}, seconds, units)
     return columns
 
 
@@ -124,7 +130,10 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
     dropped |= renamed & set(EULER) if whole else bare if demanded else set()
     for group in (LINEAR, ANGULAR):
         dropped |= set() if all(name in places for name in group) else renamed & set(group)
-    if set(POSITION) <= renamed and _of_a_stick(lines, places):
+    pushing = {lines.names[places[n]] for n in renamed & set(POSITION)}
+    if pushing & set(find_wrench(lines.names).values()) or (
+        set(POSITION) <= renamed and _of_a_stick(lines, places)
+    ):
         dropped |= set(POSITION)
     for name in dropped & set(places):
         del places[name]
@@ -153,27 +162,6 @@ def _raw(lines: Lines, place: int) -> Array:
         return np.full(len(lines), np.nan)
 
 
-def _time(lines: Lines, place: int, unit: str) -> tuple[float, str]:
-    """Factor to seconds of the times, and how it is known."""
-    value = _values(lines, place)
-    if not np.isfinite(value).any():
-        times(lines, place)  # says what they are
-    step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
-    named = lines.names[place] == "time_s"
-    if named and step < LONGEST_STEP and not np.nanmax(np.abs(value), initial=0.0) > LATEST:
-        return 1.0, ""
-    if unit and not named:
-        return UNITS[unit], f" in {unit}"
-    late = float(np.nanmax(np.abs(value), initial=0.0))
-    for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
-        if late > size:
-            return UNITS[name], f" in {name} since 1970, by its size"
-    if SHORTEST_STEP <= step < LONGEST_STEP or not step > 0.0:
-        return 1.0, " in s, by its steps"
-    name = "ms" if step < 1e3 * LONGEST_STEP else "us" if step < 1e6 * LONGEST_STEP else "ns"
-    return UNITS[name], f" in {name}, by its steps"
-
-
 def _group(
     lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
 ) -> list[Column]:
@@ -185,20 +173,29 @@ def _group(
     value = np.stack([_values(lines, place) for place in here.values()], axis=1)
     if names[0] in QUATERNION:
         return [Column(n, p, 1.0, "") for n, p in here.items()]
-    if names[0] == "depth_m" and is_height(value[:, 0]):
-        return _turned(lines, here, units)
+    if names[0] == "depth_m":
+        return [_depth(lines, here, units, value[:, 0], told)]
     factor, said = find_by_size(lines, here, value, time, told)
     return [
-        Column(n, p, UNITS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
+        Column(n, p, FACTORS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
         for n, p in here.items()
     ]
 
 
-def _turned(lines: Lines, here: dict[str, int], units: dict[int, str]) -> list[Column]:
-    """A height for a depth: its sign is turned."""
+def _depth(
+    lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, told: Units
+) -> Column:
+    """A depth; where it is a height in this file, or in another, its sign is turned."""
     ((ours, place),) = here.items()
-    factor, unit = UNITS.get(units[place], 1.0), units[place]
-    return [Column(ours, place, -factor, f"{_of(unit)} with its sign turned, for it is negative")]
+
+    def decide() -> Unit:
+        if is_height(value):
+            return Unit(-1.0, " with its sign turned, for it is negative", True)
+        return Unit(1.0, "", is_height(-value))
+
+    sign = told.settle((lines.names[place],), decide)
+    factor = sign.factor * FACTORS.get(units[place], 1.0)
+    return Column(ours, place, factor, f"{_of(units[place])}{sign.said}")
 
 
 def _of(unit: str) -> str:

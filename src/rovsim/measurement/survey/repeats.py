@@ -1,51 +1,85 @@
-"""Times that repeat: several runs in one file, or stamps that are too coarse."""
+"""Several runs or bodies in one file, and times that repeat since their stamps are too coarse."""
 
-from itertools import pairwise
-from typing import Sequence
+from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.csv import KNOWN
+from rovsim.measurement.recording.csv import KNOWN, POSITION
+from rovsim.measurement.recording.one_run import SeveralRuns, find_begins
 from rovsim.measurement.recording.table import TIME, Lines, numbers, without_cut_line
 from rovsim.measurement.recording.times import times
 
-BACK = 1.0  # s: lines that are merely out of order step back less
 MANY = 0.1  # share of the lines whose time another has
+LABELS = 20  # runs or bodies in one file
+GLANCE = 1000  # lines that tell whether a column may hold labels
+MIXED = 0.25  # of the lines are of another body than the line before
+APART = 10.0  # times as far as a body moves from one of its lines to its next
 
 
-class SeveralRuns(BadInput):
-    """A file that holds several runs, one after the other."""
-
-
-def check_one_run(lines: Lines) -> None:
-    """Refuse a file whose times begin anew wherever another column changes.
+def check_unmixed(lines: Lines) -> None:
+    """Refuse a file whose times begin anew, or that jumps to and fro, as another column changes.
 
     Raises:
-        SeveralRuns: it is one.
+        SeveralRuns: it holds several runs, or several bodies.
     """
     time = _times(lines)
-    begins = [0, *(np.flatnonzero(np.diff(time) < -BACK) + 1)]
-    if len(begins) < 2:
-        return
-    cells = [lines.cells(row) for row in range(len(time))]
+    begins = find_begins(time)
+    for name, labels in _labels(lines, len(time)):
+        changes = np.flatnonzero(labels[1:] != labels[:-1]) + 1
+        if len(begins) > 1 and set(begins[1:]) <= set(changes) and len(changes) < 2 * len(begins):
+            raise _several(lines, "runs", "its times begin anew where", name, labels[begins])
+        if len(changes) > MIXED * len(labels) and _jumps(lines, labels):
+            own = [label for label in dict.fromkeys(labels) if label]
+            raise _several(lines, "bodies", "it jumps from one to another where", name, own)
+
+
+def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
+    """Columns (count,) of few words or numbers, that are no measurement, by their names."""
     for place, name in enumerate(lines.names):
         if name in (*KNOWN, TIME):
             continue
-        values = [row[place].strip() if place < len(row) else "" for row in cells]
-        changes = [k + 1 for k, (a, b) in enumerate(pairwise(values)) if a != b]
-        if set(begins[1:]) <= set(changes) and len(changes) < 2 * len(begins):
-            raise _several(lines, name, [values[k] for k in begins])
+        glance = {_cell(lines, row, place) for row in range(min(count, GLANCE))}
+        if len(glance) > LABELS:
+            continue
+        labels = np.array([_cell(lines, row, place) for row in range(count)])
+        if 1 < len(set(labels)) <= LABELS:
+            yield name, labels
 
 
-def _several(lines: Lines, name: str, values: Sequence[str]) -> SeveralRuns:
-    told = ", ".join(values[:6]) + (" …" if len(values) > 6 else "")
+def _cell(lines: Lines, row: int, place: int) -> str:
+    cells = lines.cells(row)
+    return cells[place].strip(' "') if place < len(cells) else ""
+
+
+def _jumps(lines: Lines, labels: Array) -> bool:
+    """Whether positions jump where the labels (n,) change, and do not where these are the same."""
+    places = [lines.names.index(name) for name in POSITION if name in lines.names]
+    if not places:
+        return False
+    try:
+        value = numbers(without_cut_line(lines, places)[0], places)[: len(labels)]
+    except BadInput:
+        return False
+    labels = labels[: len(value)]
+    far = np.linalg.norm(np.diff(value, axis=0), axis=1)[labels[1:] != labels[:-1]]
+    own = [np.linalg.norm(np.diff(value[labels == k], axis=0), axis=1) for k in set(labels)]
+    near = np.concatenate(own)
+    if not (np.isfinite(far).any() and np.isfinite(near).any()):
+        return False
+    return float(np.nanmedian(far)) > APART * float(np.nanmedian(near))
+
+
+def _several(
+    lines: Lines, what: str, how: str, name: str, labels: Sequence[str] | Array
+) -> SeveralRuns:
+    told = ", ".join(labels[:6]) + (" …" if len(labels) > 6 else "")
     return SeveralRuns(
-        f"{len(values)} runs in one file: its times begin anew where '{name}' changes ({told})",
+        f"{len(labels)} {what} in one file: {how} '{name}' changes ({told})",
         where=lines.path,
-        expected="one run a file",
-        remedy=f"Split it by '{name}', a file for each run, and a log of commands likewise.",
+        expected="one run and one body a file",
+        remedy=f"Split it by '{name}', a file for each, and a log of commands by its runs.",
     )
 
 

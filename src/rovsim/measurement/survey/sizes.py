@@ -11,7 +11,8 @@ from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import EULER, POSITION
 from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
 from rovsim.measurement.recording.table import Lines
-from rovsim.measurement.survey.column_names import DEGREE, find_unit, split_unit
+from rovsim.measurement.recording.units import DEGREE, split_unit
+from rovsim.measurement.survey.column_names import find_unit
 
 # Sizes that no vehicle reaches in a tank or a bay.
 FARTHEST = 1000.0  # m
@@ -31,11 +32,14 @@ class Unit:
     """A unit that the size of numbers tells: the factor to ours, and how it is known.
 
     `sure`: no numbers of another unit would look like these; small ones may be of either.
+    `shared`: columns of these names have it in all files. Times need not: those of the cameras may
+    be in s and those of a microcontroller in ms.
     """
 
     factor: float
     said: str
     sure: bool
+    shared: bool = True
 
 
 @dataclass(frozen=True)
@@ -77,15 +81,18 @@ def find_by_size(
     """
     names, own = list(here), [lines.names[place] for place in here.values()]
     named = all(name in lines.names or find_unit(lines, name) for name in names)
+    said: tuple[str, ...]
     if names[0] in POSITION:
         said, judge = ("mm", "cm"), _metres
     elif names[0] in EULER:
-        said, judge = ("deg", "degrees"), _radians
+        said, judge = ("deg",), _radians
     else:
         return 1.0, ""
     if named and any(split_unit(name)[1] in said for name in own):
         return 1.0, ""
     key = tuple(own)
+    if not np.isfinite(value).any():
+        return 1.0, ""
 
     def decide() -> Unit:
         return judge(_Columns(lines, key, names, value, time, named))

@@ -1,10 +1,12 @@
 """Which format a file has, by what stands in it and not by its name."""
 
+import re
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.recording.signature import HEAD, Signature, decoded, head_lines
+from rovsim.measurement.recording.table import is_table
 
 AS_CSV = "docs/formats.md lists the columns"
 # First bytes of files that people take for recordings, and what to do about them.
@@ -16,6 +18,8 @@ KNOWN = {
     b"\x93NUMPY": ("a NumPy array", f"Save it as csv: {AS_CSV}."),
     b"\x89PNG": ("a picture", "Name a recording."),
     b"%PDF": ("a PDF", "Name a recording."),
+    b"\xff\xfe": ("text in UTF-16", "Save it as UTF-8."),
+    b"\xfe\xff": ("text in UTF-16", "Save it as UTF-8."),
     b"ULog": (
         "a log of PX4",
         "Turn it into csv with `ulog2csv` of pyulog, and join what was measured and what was sent "
@@ -79,7 +83,7 @@ def _refuse_known(path: Path, head: bytes) -> None:
     if head.startswith(ZIP):
         size = int.from_bytes(head[26:28], "little")
         known = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
-    if told := known[0] if known else _known_text(head_lines(head)):
+    if told := known[0] if known else None if is_table(head) else _known_text(head_lines(head)):
         raise BadInput(told[0], where=path, expected=FORMATS, remedy=told[1])
 
 
@@ -113,10 +117,20 @@ def _is_tum(line: str) -> bool:
         return False
 
 
+def _begins_as_text(head: bytes) -> bool:
+    """Whether bytes begin with lines of text, and a NUL comes later."""
+    text = decoded(head.partition(b"\0")[0]) or ""
+    return "\n" in text and all(c.isprintable() or c in "\r\n\t" for c in text)
+
+
 def _unknown(path: Path, head: bytes) -> BadInput:
-    lines, remedy = head_lines(head), "Export the run in one of these formats."
+    lines, remedy = head_lines(head), f"Export the run as {FORMATS}."
     if decoded(head) is None:
         found = "binary data of no known kind"
+        if _begins_as_text(head):
+            found, remedy = "text with NUL bytes in it, as after a power cut", "Remove these bytes."
+    elif len(lines) == 1 and re.search(r"[,;\t]", lines[0]):
+        found, remedy = "a line of column names, and no data below", "Export the run again."
     elif lines:
         found = f"text that starts with {lines[0].strip()[:40]!r}"
     else:

@@ -75,11 +75,9 @@ def _series(held: ArduPilotLog, wanted: str) -> tuple[Series, str]:
 
 def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
     """Values (m, c) with 0 and 65535 taken for what they mean, as in a bag of mavros."""
-    none = pwm.absent(value)
-    if wanted == "RC" or not none.any():
-        return np.where(none, np.nan, value), ()
-    said = f"{int(none.sum())} outputs without a pulse stand for no command."
-    return np.where(none, pwm.CENTER, value), (said,)
+    if wanted != "RC":
+        return pwm.without_pulse(value)
+    return np.where(pwm.absent(value), np.nan, value), ()
 
 
 COMMAND_READER = CommandReader("ardupilot", read_commands)

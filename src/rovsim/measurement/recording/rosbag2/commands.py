@@ -83,14 +83,10 @@ def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
 
     An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
     """
-    value = found.value
-    none = pwm.absent(value)
-    if not none.any():
-        return value, ()
-    if found.kind.endswith("RCOut"):
-        said = f"{found.topic}: {int(none.sum())} outputs without a pulse stand for no command."
-        return np.where(none, pwm.CENTER, value), (said,)
-    return np.where(none, np.nan, value), ()
+    if not found.kind.endswith("RCOut"):
+        return np.where(pwm.absent(found.value), np.nan, found.value), ()
+    value, notes = pwm.without_pulse(found.value)
+    return value, tuple(f"{found.topic}: {note}" for note in notes)
 
 
 def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:

@@ -1,0 +1,50 @@
+"""Times that begin anew: two recordings, one after the other in a file."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+
+BACK = 1.0  # s: lines that are merely out of order step back less
+FEWEST, SHARE = 10, 0.05  # samples of a part: of so many, and of so many of all
+COMMON = 0.5  # of the shorter part: a clock that was set back tells little of the time twice
+
+
+class SeveralRuns(BadInput):
+    """A file that holds several runs, or several bodies line by line."""
+
+
+def find_begins(time: Array) -> Array:
+    """Where (k,) times (n,) s step back and begin anew, the first sample among them."""
+    return np.concatenate([[0], np.flatnonzero(np.diff(time) < -BACK) + 1])
+
+
+def check_one_run(time: Array, path: Path) -> None:
+    """Refuse times (n,) s, in the order of the file, that begin anew and run on beside the first.
+
+    Sorted by time, two such runs would alternate from sample to sample.
+
+    Raises:
+        SeveralRuns: they do.
+    """
+    begins = find_begins(time)
+    parts = np.split(time, begins[1:])
+    if len(parts) < 2 or min(map(len, parts)) < max(FEWEST, SHARE * len(time)):
+        return
+    for before, after in pairwise(parts):
+        low, high = max(before.min(), after.min()), min(before.max(), after.max())
+        if high - low > COMMON * min(np.ptp(before), np.ptp(after)):
+            break
+    else:
+        return
+    told = " and ".join(f"{len(part)} samples" for part in parts)
+    raise SeveralRuns(
+        f"{len(parts)} runs in one file: its times begin anew ({told})",
+        where=path,
+        expected="one run a file",
+        remedy="Split it where the times step back, a file for each run, and a log of commands "
+        "likewise.",
+    )

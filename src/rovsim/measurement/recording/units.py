@@ -1,0 +1,81 @@
+"""Units behind the names of columns, or in a line of their own below, as loggers write them."""
+
+import re
+from typing import Sequence
+
+import numpy as np
+
+DEGREE = np.pi / 180.0
+# Times each the number is ours: s, m, rad and their quotients.
+TIMES = {"h": 3600.0, "min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+FACTORS = {
+    **TIMES,
+    "m": 1.0, "cm": 1e-2, "mm": 1e-3, "rad": 1.0, "deg": DEGREE,
+    "m_s": 1.0, "cm_s": 1e-2, "mm_s": 1e-3, "rad_s": 1.0, "deg_s": DEGREE,
+}  # fmt: skip
+UNCONVERTED = {"m_s2", "v"}  # read as they are
+SPELT = {
+    "hours": "h", "minutes": "min", "mins": "min", "sec": "s", "secs": "s", "second": "s",
+    "seconds": "s", "milliseconds": "ms", "msec": "ms", "microseconds": "us", "usec": "us",
+    "nanoseconds": "ns", "nsec": "ns", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
+    "millimetre": "mm", "millimetres": "mm", "millimeter": "mm", "millimeters": "mm",
+    "centimetre": "cm", "centimetres": "cm", "centimeter": "cm", "centimeters": "cm",
+    "radian": "rad", "radians": "rad", "degree": "deg", "degrees": "deg", "°": "deg",
+    "m/s": "m_s", "mps": "m_s", "cm/s": "cm_s", "mm/s": "mm_s", "rad/s": "rad_s", "rads": "rad_s",
+    "deg/s": "deg_s", "°/s": "deg_s", "°_s": "deg_s", "dps": "deg_s",
+    "m/s2": "m_s2", "m/s^2": "m_s2", "m/s²": "m_s2",
+}  # fmt: skip
+# Units of a line below the names that say nothing of a measured channel.
+OTHER = {
+    "", "-", "1", "%", "us", "n", "nm", "n m", "n*m", "a", "pa", "mbar", "bar", "hz", "rpm",
+}  # fmt: skip
+OF_TIMES = re.compile(r"t|.*(time|stamp).*", re.IGNORECASE)
+MICRO = str.maketrans("µμ", "uu")
+
+
+def find_unit_of(text: str) -> str:
+    """The unit that a text is, as `FACTORS` and `UNCONVERTED` call it; empty where it is none."""
+    text = text.strip().strip('"[]()').strip().lower().translate(MICRO)
+    text = SPELT.get(text, text)
+    return text if text in FACTORS or text in UNCONVERTED else ""
+
+
+def split_unit(name: str) -> tuple[str, str]:
+    """A name without its unit, in lower case with underscores, and the unit."""
+    text = in_words(name.strip().lstrip("%")).translate(MICRO)
+    for unit in _LONGEST_FIRST:
+        if text.endswith(f"_{unit}"):
+            return text.removesuffix(f"_{unit}"), SPELT.get(unit, unit)
+    return text, ""
+
+
+_LONGEST_FIRST = sorted((*FACTORS, *SPELT), key=len, reverse=True)
+
+
+def in_words(name: str) -> str:
+    """A name in lower case, underscores in place of blanks, dots, slashes and brackets."""
+    return re.sub(r"[\s.,\[\](){}/]+", "_", name.strip().lower()).strip("_")
+
+
+def with_units(
+    names: Sequence[str], lines: Sequence[str], header: int, separator: str
+) -> tuple[list[str], int]:
+    """Names with the units of the line below, if it holds units, and after which line data begin.
+
+    `time` over `s` becomes `time_s`; a name that ends in its unit stays as it is.
+    """
+    below = next((n for n in range(header + 1, len(lines)) if lines[n].strip()), None)
+    if below is None:
+        return list(names), header
+    cells = [cell.strip().strip('"[]()').lower() for cell in lines[below].split(separator)]
+    units = [find_unit_of(cell) for cell in cells]
+    told = [u or c.translate(MICRO) in OTHER - {"1"} for u, c in zip(units, cells, strict=True)]
+    if not any(cells) or not all(told):
+        return list(names), header
+    known = units + [""] * len(names)
+    return [_ended(name, unit) for name, unit in zip(names, known, strict=False)], below
+
+
+def _ended(name: str, unit: str) -> str:
+    pulses = unit == "us" and not OF_TIMES.fullmatch(name)
+    return name if not unit or pulses or split_unit(name)[1] == unit else f"{name}_{unit}"
