@@ -211,3 +211,18 @@ def test_millimetres_in_a_column_of_metres_are_refused(tmp_path):
     check_plausible(tmp_path, time, swim)
     with pytest.raises(BadInput, match="mm or cm"):
         check_plausible(tmp_path, time, {name: 1e3 * x for name, x in swim.items()})
+
+
+LAKE = "tank.tank={x: [0, 200], y: [0, 200], z: [0, 30]}"
+
+
+@pytest.mark.parametrize("vehicle", ["remus100", "cybership2", "otter"])
+def test_nothing_is_said_of_vehicles_that_cannot_push_sideways(tmp_path, vehicle):
+    out = tmp_path / vehicle
+    main(["tank", "tank=tiny", f"tank.vehicle={vehicle}", LAKE, "tank.duration=40", f"out={out}"])
+    assert not any(doubts(out, k) for k in range(len(load_campaign(out).runs)))
+    if vehicle == "otter":
+        recording, _ = read_recording(load_campaign(out), load_campaign(out).runs[0].id)
+        turned = np.diag([-1.0, -1.0, 1.0])
+        backwards = replace(recording, position=recording.position @ turned)
+        assert find_doubts(backwards, load_campaign_vehicle(load_campaign(out)))

@@ -6,6 +6,7 @@ Good enough to tell axes, clocks and files by correlation; no replay (no Corioli
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim import AXES
 from rovsim.core.run import Commands
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
@@ -21,6 +22,11 @@ def wrench(vehicle: Vehicle, commands: Commands) -> Array:
     """Static body wrench (m, 6) of each logged line: N, N m, FRD."""
     model = nominal(vehicle)
     return Drive.by(model, model.thrust_path.at(commands, 0.0, 1.0), 1.0).wrench
+
+
+def can_push_sideways(vehicle: Vehicle) -> bool:
+    """Whether its thrusters push it sideways; else it slips and turns as its own speed makes it."""
+    return bool(np.abs(nominal(vehicle).body.B[AXES.index("sway")]).max(initial=0.0) > 0.0)
 
 
 def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
