@@ -149,6 +149,19 @@ BAD = {  # what is replaced, by what: what the message says
     ("-p.force", "'much'"): "returns",
     ("-p.force, 0.0,", "-p.force,"): "six numbers",
     ("Hose(Wrench)", "Hose(Coefficients)"): "has no 'enter'",
+    ("scale=1.0),)", "scale=1.0))"): "tuple of Parameter",  # the comma that makes a tuple
+    ("scale=1.0", "scale='10'"): "and numbers",
+    ('"N", "c"', 'None, "c"'): "texts for name, unit",
+    ('"N", "c"', '"", "c"'): "'1' for none",
+    ("scale=1.0", "scale=1.0, fitted=False"): "no parameter is fitted",
+    ('id = "hose"', 'id = "hose"; requires = "thruster"'): "'requires' is 'thruster'.*thrusters",
+    ('id = "hose"', 'id = "hose"; starts = ()'): r"'starts' is \(\)",
+    ('id = "hose"', 'id = "hose"; starts = ({"force": 1.0})'): "'starts' is .*tuple of mappings",
+    ('id = "hose"', 'id = "hose"; starts = ({"farce": 1.0},)'): "'starts' names farce",
+    ('id = "hose"', 'id = "hose"; symbols = ("Y", "force")'): "'symbols' is .*tuple of pairs",
+    ('id = "hose"', 'id = "hose"; telling = ("farce",)'): "'telling' is .*: force",
+    ('id = "hose"', 'id = "hose"; channels = ("voltage")'): "'channels' is 'voltage'",
+    ("        return -p.force", "        import math\n        return -p.force"): "does not compile",
 }
 
 
@@ -176,3 +189,8 @@ def test_missing_files_and_twins_are_refused(tmp_path):
     with pytest.raises(BadInput, match="'hose' is taken"):
         load_catalogue([tmp_path / "a b.py", tmp_path / "b,c.py"])
     assert "hose" in load_catalogue([tmp_path / "b,c.py"])
+
+
+def test_a_misspelt_key_of_the_study_is_refused():
+    with pytest.raises(BadInput, match=r"unknown key 'campain'.*Did you mean 'campaign'"):
+        Study({"campain": "somewhere"}).check()

@@ -10,7 +10,7 @@ from filelock import FileLock, Timeout
 from rovsim.application.provenance import digest, imports_of, own_digest, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, compose, select
-from rovsim.core.errors import BadInput
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BASELINES
@@ -29,6 +29,7 @@ HELD: dict[Path, FileLock] = {}  # until the process ends
 PHYSICS = ("refitted", EFFECTS)
 # What a script imports to be run at all; the values of its settings are parameters of its rule.
 SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
+CONFIG = ("campaign", "overrides", "effects_file")  # keys of Snakemake's
 DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 
 
@@ -232,6 +233,10 @@ class Study:
         Raises:
             BadInput: a campaign that cannot be used, no train or no test run, an unknown residual.
         """
+        for key in self.config:
+            if key not in CONFIG:
+                found = f"unknown key '{key}'"
+                raise unlisted(key, CONFIG, found=found, where="snakemake --config")
         for split in ("train", "test"):
             if not self.runs(split):
                 raise BadInput(

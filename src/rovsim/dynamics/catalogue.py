@@ -75,8 +75,19 @@ def built_in() -> Catalogue:
     """The effects of this package: every module of `rovsim.dynamics.effects`."""
     for module in pkgutil.iter_modules(effects.__path__):
         importlib.import_module(f"{effects.__name__}.{module.name}")
-    own = (c for c in _concrete(Effect) if c.__module__.startswith(f"{effects.__name__}."))
-    return Catalogue({cls.id: cls for cls in own})
+    found: dict[str, type[Effect]] = {}
+    for cls in _concrete(Effect):
+        if not cls.__module__.startswith(f"{effects.__name__}."):
+            continue
+        if found.get(cls.id, cls) is not cls:
+            raise BadInput(
+                f"the id '{cls.id}' is that of {found[cls.id].__module__} as well",
+                where=cls.__module__,
+                expected="an id that no other effect has",
+                remedy="Give the new effect an id of its own.",
+            )
+        found[cls.id] = cls
+    return Catalogue(found)
 
 
 def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:

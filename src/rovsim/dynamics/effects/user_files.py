@@ -2,7 +2,6 @@
 
 import hashlib
 import inspect
-import keyword
 import os
 import re
 import sys
@@ -12,14 +11,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Mapping
 
-import numpy as np
-
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
-from rovsim.dynamics.effects.base import Effect, Parameter, Wrench
+from rovsim.dynamics.effects.base import Effect, Wrench
+from rovsim.dynamics.effects.declarations import TEXTS, find_faults
 
 GUIDE = "docs/your_own_effect.md shows a complete one."
-TEXTS = ("equation", "neglects", "source")
 
 
 def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]]:
@@ -93,36 +90,16 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
         raise _refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
     if cls.id in taken:
         raise _refused(f"the id '{cls.id}' is taken", where, "an id that no other effect has")
-    _check_parameters(cls, where)
+    for found, expected in find_faults(cls):
+        raise _refused(found, where, expected)
     if issubclass(cls, Wrench):
         _check_kernel(cls, where)
-
-
-def _check_parameters(cls: type[Effect], where: str) -> None:
-    if not all(isinstance(p, Parameter) for p in cls.parameters):
-        raise _refused(
-            "'parameters' holds something else",
-            where,
-            "a tuple of Parameter(name, unit, symbol, …)",
-        )
-    names = [p.name for p in cls.parameters]
-    for p in cls.parameters:
-        usable = p.name.isidentifier() and not keyword.iskeyword(p.name) and p.name[0] != "_"
-        inside = np.isnan(p.default) or p.low <= p.default <= p.high
-        if not (usable and inside and p.scale > 0) or names.count(p.name) > 1:
-            raise _refused(
-                f"parameter '{p.name}' is {p}",
-                where,
-                "a name of its own, low <= default <= high, and a scale above 0",
-            )
-    for start in cls.starts:
-        cls(**start)
 
 
 def _check_kernel(cls: type[Wrench], where: str) -> None:
     """Compile the kernel alone: its errors are then short, and not those of the whole engine."""
     from numba import types
-    from numba.core.errors import NumbaError
+    from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
     from rovsim.dynamics.engine.compiled import inlined
     from rovsim.dynamics.engine.reading import example_reading
@@ -136,7 +113,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     channels = cls.named_channels()(*(0.0 for _ in cls.channels)) if cls.channels else 0.0
     try:
         kernel(example_reading(channels) if cls.reads() else EXAMPLE, p)
-    except (NumbaError, TypeError) as error:
+    except (NumbaError, UnsupportedBytecodeError, TypeError) as error:
         raise _refused(
             f"'wrench' does not compile: {_reason(str(error))}",
             where,

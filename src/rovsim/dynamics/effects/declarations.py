@@ -1,0 +1,68 @@
+"""What a class has to declare to be an effect: each of it of the right kind, before it is used."""
+
+import keyword
+from numbers import Real
+from typing import Any, Iterator, Mapping, get_args
+
+import numpy as np
+
+from rovsim.dynamics.effects.base import Effect, Requirement, Wrench
+from rovsim.dynamics.effects.parameters import Parameter
+
+TEXTS = ("equation", "neglects", "source")
+NUMBERS = ("low", "high", "default", "scale", "resolution")
+
+
+def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
+    """What is wrong with what a complete class declares, and what was expected; best one by one."""
+    yield from _find_shapes(cls)
+    for parameter in cls.parameters:
+        yield from _find_in_parameter(parameter, [p.name for p in cls.parameters])
+    if not any(p.fitted for p in cls.parameters):
+        yield "no parameter is fitted", "at least one that a diagnosis may fit"
+    names = {p.name for p in cls.parameters}
+    for start in cls.starts:
+        if not set(start) <= names:
+            told = ", ".join(sorted(set(start) - names))
+            yield f"'starts' names {told}", f"its parameters: {', '.join(sorted(names))}"
+    if not set(cls.telling) <= names:
+        yield f"'telling' is {cls.telling}", f"some of its parameters: {', '.join(sorted(names))}"
+
+
+def _find_shapes(cls: type[Effect]) -> Iterator[tuple[str, str]]:
+    """Declarations that are no tuples, most of them for want of a comma, or hold something else."""
+    if not _holds(cls.parameters, Parameter):
+        yield "'parameters' holds something else", "a tuple of Parameter(name, unit, symbol, …)"
+    if not cls.starts or not _holds(cls.starts, Mapping):
+        yield f"'starts' is {cls.starts!r}", "a tuple of mappings: ({'name': value},)"
+    if not _holds(cls.symbols, tuple) or not all(len(s) == 2 for s in cls.symbols):
+        yield f"'symbols' is {cls.symbols!r}", "a tuple of pairs: (('Y', 'the force'),)"
+    if not _holds(cls.telling, str):
+        yield f"'telling' is {cls.telling!r}", "a tuple of names: ('name',)"
+    if cls.requires not in get_args(Requirement):
+        yield f"'requires' is {cls.requires!r}", f"one of {', '.join(get_args(Requirement))}"
+    if issubclass(cls, Wrench):
+        named = _holds(cls.channels, str) and all(map(_is_name, cls.channels))
+        if not named:
+            yield f"'channels' is {cls.channels!r}", "a tuple of names: ('voltage',)"
+
+
+def _holds(value: Any, kind: type) -> bool:
+    return isinstance(value, tuple) and all(isinstance(one, kind) for one in value)
+
+
+def _is_name(text: str) -> bool:
+    return text.isidentifier() and not keyword.iskeyword(text) and not text.startswith("_")
+
+
+def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, str]]:
+    texts = all(isinstance(text, str) and text for text in (p.name, p.unit, p.symbol))
+    values = [getattr(p, name) for name in NUMBERS]
+    if not texts or not all(isinstance(value, Real) for value in values):
+        expected = "texts for name, unit ('1' for none) and symbol, and numbers"
+        yield f"parameter '{p.name}' is {p}", expected
+        return
+    inside = np.isnan(p.default) or p.low <= p.default <= p.high
+    if not (_is_name(p.name) and inside and p.scale > 0.0) or names.count(p.name) > 1:
+        expected = "a name of its own, low <= default <= high, and a scale above 0"
+        yield f"parameter '{p.name}' is {p}", expected
