@@ -101,7 +101,7 @@ def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight()
     base = fit(alike()).hypothesis.base
     law = Selected(Term(Law(c1=1.0), ("c1", "x")), {"c1": 0.1, "x": 0.1}, 1.0, 0.5)
     found = TrainDiagnosis(base, UsableRuns((), (), (), (), 60.0), fit(alike()), selected=(law,))
-    plan = "plan a flight with `rovsim design 'know=[law.c1,law.x]'`."
+    plan = "plan a flight with `rovsim design campaign=DIR model=FILE 'know=[law.c1,law.x]'`."
     assert advise(found, [], [], built_in()) == f"To be surer of law: {plan}"
     own = Catalogue({**built_in(), "law": Law})
     known = advise(found, [], [["law.c1", "law.x"]], own)

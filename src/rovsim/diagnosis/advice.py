@@ -75,8 +75,8 @@ def advise(
         )
         both = ",".join(groups[0][:2])
         parts.append(
-            f"`rovsim design 'between=[{both}]'` plans such a flight, for a vehicle that can stay "
-            "in one place."
+            f"`rovsim design campaign=DIR 'between=[{both}]'` plans such a flight, for a vehicle "
+            "that can stay in one place."
         )
     if joint:
         parts.append(_apart(joint, catalogue, diagnosis.base.vehicle.thruster_names))
@@ -151,5 +151,5 @@ def _confirm(diagnosis: TrainDiagnosis) -> str:
 
 def _how(effect: type[Effect], parameters: Sequence[str]) -> str:
     """What reveals an effect; where a user's own does not say, a flight that is planned for it."""
-    asked = f"plan a flight with `rovsim design 'know=[{','.join(parameters)}]'`."
-    return effect.revealed_by or asked
+    command = f"rovsim design campaign=DIR model=FILE 'know=[{','.join(parameters)}]'"
+    return effect.revealed_by or f"plan a flight with `{command}`."

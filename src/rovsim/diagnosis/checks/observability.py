@@ -19,11 +19,10 @@ from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
+from rovsim.dynamics.effects.parameters import REFERENCE_MASS
 from rovsim.dynamics.vehicle import Vehicle
 
 DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
-# kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
-SCALED_FOR = 13.5
 OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
 LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # without a log of them, not observable
 
@@ -38,7 +37,7 @@ def list_not_observable(
     workspace = selection.workspace
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
-    larger = max(1.0, vehicle.rigid_body.mass / SCALED_FOR)
+    larger = max(1.0, vehicle.rigid_body.mass / REFERENCE_MASS)
     shown = find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger)
     if selection.best.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.requires == "thrusters"]

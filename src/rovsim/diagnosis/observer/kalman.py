@@ -15,6 +15,10 @@ from rovsim.diagnosis.observer.axis_kernels import (
     solve_steady_state,
 )
 
+# s: a slow error of calibrated cameras lasts as long as the vehicle takes to leave the place where
+# the calibration errs.
+TYPICAL_BIAS_TIME = 0.5
+
 
 class AxisErrorDynamics(NamedTuple):
     """How an error of one axis goes on: v' = -`damping` v - `stiffness` p, in 1/s and 1/s2."""
@@ -49,7 +53,7 @@ class AxisNoise(NamedTuple):
     correlation_time: float
     measurement_std: float
     bias_std: float = 0.0
-    bias_correlation_time: float = 0.5
+    bias_correlation_time: float = TYPICAL_BIAS_TIME
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,15 +71,11 @@ def select_columns(H: Array, b: Array, penalty: float) -> Reduction:
         chosen.append(best)
         if worth[best] < penalty:
             break
-    while len(chosen) > 1:
-        x = solve(H[np.ix_(chosen, chosen)], b[chosen])
-        variance = np.diag(solve(H[np.ix_(chosen, chosen)], np.eye(len(chosen))))
-        weakest = int(np.argmin(x**2 / variance))
-        if x[weakest] ** 2 / variance[weakest] >= penalty:
-            break
-        chosen.pop(weakest)
-    x = -solve(H[np.ix_(chosen, chosen)], b[chosen])
-    return Reduction(float(-b[chosen] @ x), tuple(chosen), x)
+    x, worth = _fit_columns(H, b, chosen)
+    while len(chosen) > 1 and worth.min() < penalty:
+        chosen.pop(int(np.argmin(worth)))
+        x, worth = _fit_columns(H, b, chosen)
+    return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
 
 
 def eliminate_columns(H: Array, b: Array, penalty: float) -> Reduction:
@@ -90,14 +86,18 @@ def eliminate_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """
     chosen = [j for j in range(len(b)) if H[j, j] > 0.0]
     while chosen:
-        own = H[np.ix_(chosen, chosen)]
-        x, variance = solve(own, b[chosen]), np.diag(solve(own, np.eye(len(chosen))))
-        worth = x**2 / variance
-        weakest = int(np.argmin(worth))
-        if worth[weakest] >= penalty:
+        x, worth = _fit_columns(H, b, chosen)
+        if worth.min() >= penalty:
             return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
-        chosen.pop(weakest)
+        chosen.pop(int(np.argmin(worth)))
     return Reduction(0.0, (), np.empty(0))
+
+
+def _fit_columns(H: Array, b: Array, chosen: list[int]) -> tuple[Array, Array]:
+    """What (k,) chosen columns take of b beside each other, and what each is worth (k,)."""
+    own = H[np.ix_(chosen, chosen)]
+    x = solve(own, b[chosen])
+    return x, x**2 / np.diag(solve(own, np.eye(len(chosen))))
 
 
 def _worth(H: Array, b: Array, chosen: list[int]) -> Array:

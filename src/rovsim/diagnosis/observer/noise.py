@@ -21,7 +21,13 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.autoregression import Autoregression
 from rovsim.diagnosis.observer.axis_kernels import filter_kept
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisFilter, AxisNoise, design_filter
+from rovsim.diagnosis.observer.kalman import (
+    TYPICAL_BIAS_TIME,
+    AxisErrorDynamics,
+    AxisFilter,
+    AxisNoise,
+    design_filter,
+)
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.engine.parallel import on_cores
 from rovsim.simulation.noise_draws import NoiseDraws
@@ -61,7 +67,7 @@ class Noise:
     correlation_time: Array
     measurement_std: Array
     bias_std: Array = field(default_factory=lambda: np.zeros(6))
-    bias_correlation_time: Array = field(default_factory=lambda: np.full(6, 0.5))
+    bias_correlation_time: Array = field(default_factory=lambda: np.full(6, TYPICAL_BIAS_TIME))
     autoregression: Autoregression | None = None
     drift: DriftingCurrent | None = None
 

@@ -9,7 +9,12 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize
 
 from rovsim.diagnosis.observer.axis_kernels import misfit
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisFilter, AxisNoise
+from rovsim.diagnosis.observer.kalman import (
+    TYPICAL_BIAS_TIME,
+    AxisErrorDynamics,
+    AxisFilter,
+    AxisNoise,
+)
 from rovsim.diagnosis.observer.noise import Noise, RunFilters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 
@@ -19,9 +24,8 @@ MIN_CORRELATION_TIME, TYPICAL_CORRELATION_TIME, MAX_CORRELATION_TIME = 0.2, 1.0,
 CORRELATION_TIME_LOG_STD = 0.7  # of log T: a factor of two either way
 
 
-# A slow error of calibrated cameras is no larger than their noise from frame to frame, and lasts as
-# long as the vehicle takes to leave the place where the calibration errs.
-TYPICAL_BIAS_TIME, BIAS_TIME_LOG_STD = 0.5, 0.7  # s, and of its log
+# A slow error of calibrated cameras is no larger than their noise from frame to frame.
+BIAS_TIME_LOG_STD = 0.7  # of its correlation time: a factor of two either way
 FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
 MIN_LR_OF_BIAS = 12.0  # two more numbers, and sure of it on six axes
 
@@ -178,7 +182,7 @@ def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[A
     def cost(x: Array) -> float:
         return _cost(axis, AxisNoise(*np.exp(x)))
 
-    guess = white._replace(bias_std=white.measurement_std, bias_correlation_time=0.5)
+    guess = white._replace(bias_std=white.measurement_std, bias_correlation_time=TYPICAL_BIAS_TIME)
     first = white if white.bias_std else guess
     x, least = _descend(cost, np.log(first))
     if white.bias_std:

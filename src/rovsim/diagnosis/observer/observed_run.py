@@ -146,7 +146,7 @@ class ObservedRun(Steps):
 
     @cached_property
     def reading_kinds(self) -> Array:
-        """What is read of each axis (6,), as `kalman` numbers it: poses, bin means, or sums."""
+        """What is read of each axis (6,), numbered as in `axis_kernels`: poses, means or sums."""
         if self.motion.binned:
             return np.full(6, BIN_MEAN)
         measured = self.motion.measured

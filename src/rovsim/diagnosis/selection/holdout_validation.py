@@ -20,6 +20,7 @@ from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import STATED
+from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread
@@ -34,7 +35,6 @@ CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
 MIN_WINDOWS = 2  # one tells nothing of chance
 REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
 LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
-MIN_SPREAD = 1e-3  # m/s, rad/s: an axis that hardly moves does not count
 
 
 def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:

@@ -7,6 +7,8 @@ import numpy as np
 
 from rovsim import AXES
 
+# kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
+REFERENCE_MASS = 13.5
 STAMP = 0.001  # s: command logs are stamped in whole milliseconds
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.parameters import REFERENCE_MASS, Signature
 
-# Where the fit of a payload begins on a BlueROV2 Heavy (13.5 kg): kg, m from its middle.
-START, REACH, HEAVY = 0.3, 0.15, 13.5
+# Where the fit of a payload begins on a BlueROV2 Heavy: kg, m from its middle.
+START, REACH = 0.3, 0.15
 PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
 
@@ -86,5 +86,5 @@ class Payload(Coefficients):
 @cache
 def _on_a_vehicle_of(mass: float) -> type[Payload]:
     """With starts that suit a vehicle of so many kg: as on a BlueROV2 Heavy, but for its size."""
-    size = mass / HEAVY
+    size = mass / REFERENCE_MASS
     return Payload.adapted(starts=_places(START * size, REACH * size ** (1.0 / 3.0)))

@@ -216,6 +216,13 @@ class LeftTank(BadInput):
 def _stay_inside(state: Array, tank: Array, t: float) -> None:
     if np.all((state[:3] > tank[:, 0]) & (state[:3] < tank[:, 1])):
         return
+    if not np.isfinite(state).all():
+        raise BadInput(
+            f"the state is no number after {t:.1f} s: a force was none, or grew without bound",
+            where="tank",
+            expected="effects that give finite forces at every state",
+            remedy="Look for a division by zero in effects of your own, or hide weaker ones.",
+        )
     raise LeftTank(
         f"the vehicle left the tank after {t:.1f} s",
         where="tank",
