@@ -32,6 +32,8 @@ from rovsim.learning.learner import (
 from rovsim.learning.learner import settings_of as stored_settings
 from rovsim.learning.posterior_variance import EXACT, decompose_exact, rbf
 from rovsim.learning.scaling import fit_scaling
+from rovsim.reporting.figures.palette import is_learned, looks
+from rovsim.reporting.wording import explain_model, title
 
 # the fewest rounds with which a learner still learns: these tests are about promises, not skill
 QUICK = {
@@ -447,7 +449,7 @@ def library_from(arrays, settings):
     return lambda X: rbf(scaling.apply(X), Z, np.full(Z.shape[1], 3.0)) @ arrays["weights"]
 
 
-LEARNER = Learner(RidgeSettings, fit, library_from, shrinkage=0.1)
+LEARNER = Learner("ridge", "a ridge", RidgeSettings, fit, library_from, shrinkage=0.1)
 '''
 
 
@@ -471,6 +473,10 @@ def test_a_learner_is_one_file(ridge, tmp_path):
     with pytest.raises(BadInput, match="no variance"):
         read_residual(description, tmp_path).posterior(new)
     test_identical_rows_are_learnt("ridge")
+    assert title("effects+ridge_6dof") == "effects + ridge (6-DoF)"
+    assert "a ridge that learned the rest" in explain_model("ridge_3dof")
+    assert is_learned("ridge_3dof")
+    assert len({look.color for look in looks(["ridge_3dof", "effects", "gp_3dof"]).values()}) == 3
 
 
 def test_however_noisy_a_process_has_a_variance():

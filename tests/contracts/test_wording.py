@@ -202,6 +202,8 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
     steps = {"nominal": 1.0, "+lift": 0.5, "+current": 0.23, "effects+gp_6dof": 0.24}
     said = residual_sentences(errors, steps)
     assert "But the effects alone lower it by 77\u202f%." in said
+    said = residual_sentences(errors, steps | {"knn_6dof": float("nan")})
+    assert "KNN (6-DoF) has no value: a replay came to no end." in said
     said = residual_sentences(errors, steps | {"effects+gp_6dof": 0.22})
     assert not any("effects alone" in sentence for sentence in said)
     law = {"nominal": 1.0, "+lift": 0.75, "+proposed_effect": 0.25, "effects+gp_6dof": 0.8}

@@ -68,6 +68,7 @@ class Trained:
 class Learner:
     """A way to learn a residual.
 
+    `title` is what people call it, `meaning` the same in full ("a Gaussian process").
     `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual accelerations
     Y (n, 6). `library_from(arrays, settings)` rebuilds the library's own prediction from
     `Trained.arrays`, without pickle; `posterior_from(arrays, settings, fast)` its mean and
@@ -75,6 +76,8 @@ class Learner:
     where all rows agree: one that is regularised keeps away from what it was told.
     """
 
+    title: str
+    meaning: str
     settings: type[LearnerSettings]
     fit: Callable[..., Trained]
     library_from: Callable[[Mapping[str, Array], Any], Predict]
@@ -82,7 +85,7 @@ class Learner:
     shrinkage: float = 0.0
 
 
-def learners() -> dict[str, Learner]:
+def learners() -> Mapping[str, Learner]:
     """Every learner by kind: what the modules of `rovsim.learning.learners` declare."""
     package = rovsim.learning.learners
     names = [module.name for module in pkgutil.iter_modules(package.__path__)]

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT
-from rovsim.reporting.figures.palette import FAMILIES, Look, family
+from rovsim.reporting.figures.palette import Look, family_look
 from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import ConditionTable, ModelConditions
@@ -50,7 +50,7 @@ class LadderChart:
 def chart_ladder(ladder: Ladder) -> LadderChart:
     """The bars of a ladder."""
     bars = tuple(
-        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), FAMILIES[family(s.model)])
+        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), family_look(s.model))
         for s in ladder.models
     )
     floor = or_nan(ladder.noise_floor)

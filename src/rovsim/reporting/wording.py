@@ -2,10 +2,13 @@
 
 import math
 import re
-from typing import Iterable, Sequence
+from typing import TYPE_CHECKING, Iterable, Mapping, Sequence
 
 from rovsim.core.signs import minus
 from rovsim.results.diagnosis import PROPOSED
+
+if TYPE_CHECKING:
+    from rovsim.learning.learner import Learner
 
 LONGEST = 40  # letters of a name before its middle is left out
 # The study's own models; a user's keep the name of their file.
@@ -22,13 +25,7 @@ MEANINGS = {
     "effects": "nominal, and the effects that the diagnosis selected",
     "noise_floor": "what a perfect model would show, because the measurement is noisy",
 }
-LEARNERS = {  # id: what people say, and in full
-    "knn": ("KNN", "nearest neighbours"),
-    "gp": ("GP", "a Gaussian process"),
-    "svgp": ("sparse GP", "a sparse Gaussian process"),
-}
 CONTROLS = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
-LEARNED = re.compile(rf"(?:(.*)\+)?({'|'.join(LEARNERS)})_({'|'.join(CONTROLS)})")
 STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder
 # The one error by which models are ranked (`windows_2s` in files), wherever it is shown.
 ERROR = "2 s error"
@@ -46,6 +43,18 @@ IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no
 MOST = 8  # names told of many: a line of run ids
 
 
+def list_learners() -> Mapping[str, "Learner"]:
+    """Every learner by kind, with what people call it."""
+    from rovsim.learning.learner import learners  # imports Numba, which most sentences need not
+
+    return learners()
+
+
+def _learned() -> re.Pattern[str]:
+    """Names of the study's models with a residual: BASE+KIND_CONTROL."""
+    return re.compile(rf"(?:(.*)\+)?({'|'.join(list_learners())})_({'|'.join(CONTROLS)})")
+
+
 def short(name: str, length: int = LONGEST) -> str:
     """Return `name`, its middle left out where it is longer than `length` letters."""
     if len(name) <= length:
@@ -55,9 +64,9 @@ def short(name: str, length: int = LONGEST) -> str:
 
 def title(model: str, length: int = LONGEST) -> str:
     """Return a model's name as people say it: `effects+knn_6dof` is "effects + KNN (6-DoF)"."""
-    if learned := LEARNED.fullmatch(model):
-        base, learner, control = learned.groups()
-        said = f"{LEARNERS[learner][0]} ({CONTROLS[control]})"
+    if learned := _learned().fullmatch(model):
+        base, kind, control = learned.groups()
+        said = f"{list_learners()[kind].title} ({CONTROLS[control]})"
         return short(f"{base} + {said}" if base else said, length)
     if effect := STEP.fullmatch(model):
         return short(f"+ {effect[1]}", length)
@@ -66,12 +75,13 @@ def title(model: str, length: int = LONGEST) -> str:
 
 def explain_model(model: str) -> str:
     """What a model of the study is; nothing of one that its user made."""
-    if learned := LEARNED.fullmatch(model):
-        base, learner, control = learned.groups()
+    if learned := _learned().fullmatch(model):
+        base, kind, control = learned.groups()
         of = "" if control == "all" else f" under {CONTROLS[control]} control"
+        meaning = list_learners()[kind].meaning
         return (
-            f"{title(base or 'nominal')}, and {LEARNERS[learner][1]} that learned the rest of the "
-            f"acceleration from the train runs{of}"
+            f"{title(base or 'nominal')}, and {meaning} that learned the rest of the acceleration "
+            f"from the train runs{of}"
         )
     if model == f"+{PROPOSED}":
         return "the proposed equation, and the effects that act beside it"

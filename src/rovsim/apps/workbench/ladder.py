@@ -17,6 +17,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.learning.learner import learners
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
 from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, significant, title
@@ -24,7 +25,6 @@ from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder
 
 TITLE, QUESTION = "Ladder", "How far down does the error go?"
-KINDS = {"knn": "nearest neighbours (KNN)", "gp": "Gaussian process (GP)"}
 
 
 async def show(bench: Workbench, place: Place) -> None:
@@ -73,10 +73,10 @@ def _train(bench: Workbench) -> None:
     with ui.row().classes("controls"):
         on = ui.select(titled(physical), label="On top of", value=physical[-1]).classes("control")
         on.props("outlined dense")
-        for kind, name in KINDS.items():
+        for kind, one in learners().items():
             train = jobs.Beginning(
                 bench,
-                f"Train {name}",
+                f"Train {one.meaning} ({one.title})",
                 on_click=lambda _, k=kind: jobs.start_training(bench, k, on.value),
             )
             train.props("outline no-caps")

@@ -39,9 +39,10 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
+from rovsim.learning.learner import learners
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import VELOCITY_UNITS, unit
-from rovsim.reporting.wording import LEARNERS, listed, significant, title
+from rovsim.reporting.wording import listed, significant, title
 from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import Metrics
@@ -267,7 +268,8 @@ def _values(model: Model) -> dict[tuple[str, str], str]:
             called = name_parameter(effect.id, name, model.vehicle.thruster_names)
             found[effect.id, called] = interval(value)
     if (learned := model.residual) is not None:
-        kind, _ = LEARNERS.get(learned.kind, (learned.kind, ""))
+        learner = learners().get(learned.kind)
+        kind = learned.kind if learner is None else learner.title
         found["learned residual", ""] = f"{kind}, {learned.points} points"
     return found
 

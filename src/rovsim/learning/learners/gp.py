@@ -148,4 +148,4 @@ def _condition(model: Any, Z: Array, T: Array) -> None:
     model.set_train_data(torch.as_tensor(Z), torch.as_tensor(T), strict=False)
 
 
-LEARNER = Learner(GpSettings, fit, library_from, posterior_from)
+LEARNER = Learner("GP", "a Gaussian process", GpSettings, fit, library_from, posterior_from)

@@ -94,4 +94,4 @@ def library_from(arrays: Mapping[str, Array], settings: KnnSettings) -> Predict:
     return lambda X: np.asarray(library.predict(scaling.apply(X)))
 
 
-LEARNER = Learner(KnnSettings, fit, library_from)
+LEARNER = Learner("KNN", "nearest neighbours", KnnSettings, fit, library_from)

@@ -182,4 +182,6 @@ def _posterior_variances(model: Any, arrays: Mapping[str, Array]) -> list[Poster
     ]
 
 
-LEARNER = Learner(SvgpSettings, fit, library_from, posterior_from)
+LEARNER = Learner(
+    "sparse GP", "a sparse Gaussian process", SvgpSettings, fit, library_from, posterior_from
+)

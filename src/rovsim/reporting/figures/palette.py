@@ -9,6 +9,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 
+from rovsim.reporting.wording import list_learners
+
 Dash = str | tuple[float, tuple[float, ...]]
 Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
@@ -55,7 +57,8 @@ FAMILIES = {
     "commanded": Look("#666666", "-"),
     "noise_floor": Look("#555555", (0, (8, 3))),
 }
-RESIDUALS = ("svgp", "knn", "gp")
+# Of learners that have no colour of their own, in the order of their names.
+FURTHER = (Look(SKY, (0, (5, 1, 1, 1))), Look(OLIVE, (0, (4, 1, 2, 1))))
 
 # Members of a family differ by lightness, dash and hatch: (share of white or black, dash, hatch).
 # A share of white is less where the colour would be too light to be seen.
@@ -73,10 +76,24 @@ def family(name: str) -> str:
     if name in FAMILIES:
         return name
     words = re.split(r"[^a-z0-9]+", name.lower())
-    for kind in RESIDUALS:
+    for kind in list_learners():
         if kind in words:
             return kind
     return "nominal" if words[0] in ("nominal", "refitted") else "effects"
+
+
+def is_learned(name: str) -> bool:
+    """Whether a model has a residual, by its name."""
+    return family(name) in list_learners()
+
+
+def family_look(name: str) -> Look:
+    """What all models of a family have in common."""
+    kind = family(name)
+    if kind in FAMILIES:
+        return FAMILIES[kind]
+    further = sorted(set(list_learners()) - set(FAMILIES))
+    return FURTHER[further.index(kind) % len(FURTHER)]
 
 
 def looks(names: Iterable[str]) -> dict[str, Look]:
@@ -89,14 +106,14 @@ def looks(names: Iterable[str]) -> dict[str, Look]:
         while (kind, member) in taken and member < 40:
             member += 1
         taken.add((kind, member))
-        found[name] = _variant(FAMILIES[kind], member)
+        found[name] = _variant(family_look(name), member)
     return found
 
 
 def _member(name: str) -> int:
     if name in FAMILIES:
         return 0
-    if re.match(r"(effects|\+)", name) and family(name) in RESIDUALS:
+    if re.match(r"(effects|\+)", name) and is_learned(name):
         return 2
     return 1 if "3dof" in name or family(name) == "nominal" else 0
 

@@ -1,14 +1,14 @@
 """The report's summary in plain language. A sentence says only what its numbers show."""
 
 import math
-from typing import Mapping
+from typing import Mapping, Sequence
 
 import numpy as np
 from pandas import DataFrame, Series
 
 from rovsim import AXES
 from rovsim.core.horizons import HORIZON
-from rovsim.reporting.figures.palette import RESIDUALS, family
+from rovsim.reporting.figures.palette import family, is_learned
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.units import VELOCITY_UNITS
@@ -139,10 +139,11 @@ def quiet_sentences(quality: Mapping[str, Quality]) -> list[str]:
 
 def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[str]:
     """Say which learned residual lowers the nominal error most, where, and where it does not."""
-    if not any(family(name) in RESIDUALS for name in (*errors.index, *steps)):
+    if not any(is_learned(name) for name in (*errors.index, *steps)):
         return []
     ratios, measure = _overall(errors, steps)
-    learned = {n: r for n, r in ratios.items() if family(n) in RESIDUALS and math.isfinite(r)}
+    every = {name: ratio for name, ratio in ratios.items() if is_learned(name)}
+    learned = {name: ratio for name, ratio in every.items() if math.isfinite(ratio)}
     if not learned:
         return ["No learned residual can be compared with the nominal model on the test runs."]
     best = min(learned, key=lambda name: learned[name])
@@ -151,12 +152,20 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
         *_effects_alone(ratios, learned[best]),
         *_per_axis(relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
+        *_without_value([title(name) for name in every if name not in learned]),
     ]
+
+
+def _without_value(names: Sequence[str]) -> list[str]:
+    if not names:
+        return []
+    verb = "has" if len(names) == 1 else "have"
+    return [f"{listed(names)} {verb} no value: a replay came to no end."]
 
 
 def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, float], str]:
     """One error per model, relative to nominal, and what it measures."""
-    if steps.get("nominal") and any(family(name) in RESIDUALS for name in steps):
+    if steps.get("nominal") and any(is_learned(name) for name in steps):
         ratios = {name: value / steps["nominal"] for name, value in steps.items()}
         return ratios, f"the {ERROR}"
     rows = relate(errors)
