@@ -11,7 +11,7 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import TrackingSettings, compose
 from rovsim.application.tracking.runs import ranking, tell_ranking, track
-from rovsim.apps.cli.sweep import choose_out, name_run
+from rovsim.apps.cli.sweep import check_sweep, choose_out, name_run
 from rovsim.core.errors import BadInput
 
 
@@ -19,6 +19,31 @@ def tracked(name):
     settings = TrackingSettings(uri="sqlite:///results/mlflow.db", artifacts="results/mlflow")
     track(settings, experiment="tank", name=name, tags={}, params={"k": 5}, scores={}, files=[])
     return settings
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("residual.kk=1,3", "no key 'residual.kk'.*Did you mean 'residual.k'"),
+        ("contrl=3dof,6dof", "no key 'contrl'.*Did you mean 'control'"),
+        ("residual=knn,gpp", "no residual 'gpp'"),
+        ("residual.k=1,abc", "'k' is 'abc'"),
+        ("residual.k=range(0,2)", "'k' is 0"),
+    ],
+)
+def test_a_sweep_is_checked_before_its_first_run(word, said):
+    with pytest.raises(BadInput, match=said):
+        check_sweep(["command=train", word, "seed=1,2"])
+
+
+def test_several_values_without_a_sweep_say_how_to_begin_one():
+    with pytest.raises(BadInput, match=r"several values \(residual.k=1,3\).*Add -m"):
+        compose(["command=train", "residual.k=1,3"])
+
+
+def test_keys_are_those_of_the_chosen_option():
+    with pytest.raises(BadInput, match=r"Did you mean 'residual.iterations'"):
+        compose(["residual=gp", "residual.iteration=3"])
 
 
 def test_a_database_that_was_being_made_is_made_anew(tmp_path, monkeypatch):

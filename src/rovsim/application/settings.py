@@ -167,13 +167,14 @@ def _allow_unlisted(word: str) -> str:
 
 def _refused(overrides: Sequence[str], message: str) -> BadInput:
     """What is wrong with an override that Hydra refused, and what was probably meant."""
+    chosen = [word for word in overrides if _is_choice(word)]
     for word in overrides:
         key, _, value = word.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
         if options and value not in options:
             return unlisted(value, options, found=f"there is no {key} '{value}'", where=word)
         if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
-            known = _keys()
+            known = _keys(chosen)
             if key not in known and key in message:
                 return BadInput(
                     f"there is no key '{key}'",
@@ -181,6 +182,14 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
                     expected="a key of conf/config.yaml",
                     remedy=nearest(key, known),
                 )
+    if message.startswith("Ambiguous value"):
+        word = next((word for word in overrides if word in message), overrides[0])
+        return BadInput(
+            f"several values ({word})",
+            where=f"overrides {' '.join(overrides)}",
+            expected="one value of each key",
+            remedy="Add -m: then each value is a run of a sweep; or put a list into brackets.",
+        )
     return BadInput(
         message.split("\n")[0].removeprefix("LexerNoViableAltException: ").rstrip("."),
         where=f"overrides {' '.join(overrides)}",
@@ -189,12 +198,18 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
     )
 
 
-def _keys() -> list[str]:
-    """Every key of the default configuration, dotted, and every group."""
+def _is_choice(word: str) -> bool:
+    """Whether an override chooses one of a group's options."""
+    key, _, value = word.partition("=")
+    return value in conf_names(key) if key else False
+
+
+def _keys(chosen: Sequence[str]) -> list[str]:
+    """Every key of the configuration with these options, dotted, and every group."""
     from rovsim.core.mappings import flattened
 
     groups = [path.name for folder in conf_folders() for path in folder.iterdir() if path.is_dir()]
-    return [*groups, *flattened(compose([]).model_dump(mode="json"))]
+    return [*groups, *flattened(compose(chosen).model_dump(mode="json"))]
 
 
 def settings_of(composed: Any) -> Settings:

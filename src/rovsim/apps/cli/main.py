@@ -77,6 +77,9 @@ def _run(command: str, overrides: list[str], sweep: bool) -> None:
 
     whole = [f"command={command}", *overrides]
     if sweep:
+        from rovsim.apps.cli.sweep import check_sweep
+
+        check_sweep(whole)
         require_taken(command, overrides)
         _sweep(whole)
         return

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Sequence
 
-from rovsim.application.settings import Settings, settings_of
+from rovsim.application.settings import Settings, compose, settings_of
 from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import RovsimError
@@ -23,6 +23,34 @@ def job(composed: Any) -> None:
         run_command(settings.model_copy(update={"out": out}))
     except RovsimError as error:
         complain(str(error))
+
+
+def check_sweep(overrides: Sequence[str]) -> None:
+    """Compose the run of each value, the others at their first, before any of them begins.
+
+    Raises:
+        BadInput: one of the values cannot be used.
+    """
+    first: list[str] = []
+    others: list[tuple[int, str]] = []
+    for word in overrides:
+        key, values = word.partition("=")[0], _list_values(word)
+        others += [(len(first), f"{key}={value}") for value in values[1:]]
+        first.append(f"{key}={values[0]}" if values else word)
+    for run in (first, *([*first[:k], word, *first[k + 1 :]] for k, word in others)):
+        compose(run).learner  # noqa: B018 - its settings are checked when they are asked for
+
+
+def _list_values(word: str) -> list[str]:
+    """The values that an override sweeps over; none where it has one, or cannot be read."""
+    from hydra.core.override_parser.overrides_parser import OverridesParser
+    from hydra.errors import OverrideParseException
+
+    try:
+        parsed = OverridesParser.create().parse_override(word)
+    except OverrideParseException:
+        return []  # composed as it is, it is refused
+    return list(parsed.sweep_string_iterator()) if parsed.is_sweep_override() else []
 
 
 def choose_out(given: str | None, own: str, name: str) -> str:
