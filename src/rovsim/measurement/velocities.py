@@ -7,23 +7,22 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, log, multiply, unrotate
-from rovsim.measurement.recording.channels import Channels
-from rovsim.measurement.recording.csv_checks import FASTEST, FASTEST_TURN
+from rovsim.measurement.recording.channels import Channel
+from rovsim.measurement.recording.csv_checks import LIMITS
 from rovsim.measurement.recording.readers import Export
 from rovsim.measurement.recording.recording import Recording
 
-USUAL = 90.0  # percentile
 WINDOW = 0.5  # s, over which poses and velocities are compared: slower than noise
 FEWEST = 20  # windows
 EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion tells nothing
 ALIKE, UNLIKE = 0.9, 0.6  # cosine between velocities and what poses say
 OTHER_SIZE = 1.3  # times: a sensor's scale is never so far off
-UNITS = {
-    "linear": ((100.0, "cm/s"), (1000.0, "mm/s")),
-    "angular": ((180.0 / np.pi, "deg/s"),),
+UNITS = {  # by channel: factors of sensors' units
+    "velocity": ((100.0, "cm/s"), (1000.0, "mm/s")),
+    "rates": ((180.0 / np.pi, "deg/s"),),
 }
 NEAR_UNIT = 0.15  # off the factor of a unit
-NAMES = {"linear": "velocities", "angular": "rates"}
+SAID = {"velocity": "velocities", "rates": "rates"}
 
 
 class _Both(NamedTuple):
@@ -46,32 +45,26 @@ def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
 
 def find_impossible(of: Recording | Export) -> str | None:
     """Say so where velocities or rates are usually faster than any vehicle's; None where not."""
-    fastest = {"velocity": (FASTEST, "m/s", "mm/s"), "rates": (FASTEST_TURN, "rad/s", "deg/s")}
-    beside = {} if of.nu is None else {"velocity": of.nu[:, :3], "rates": of.nu[:, 3:]}
-    channels = {name: own.value for name, own in of.channels.items()}
-    for name, value in (beside | channels).items():
-        if name not in fastest or not np.isfinite(value).any():
-            continue
-        most, ours, other = fastest[name]
-        usual = float(np.nanpercentile(np.abs(value), USUAL))
-        if usual > most:
-            return f"too fast: {name} of {usual:.3g} {ours}, {most:g} at most: are they {other}?"
+    for name, limit in LIMITS.items():
+        for value in (_beside_poses(of).get(name), getattr(of.channels.get(name), "value", None)):
+            if value is not None and (usual := limit.beyond(value)):
+                most = f"{limit.fastest:g} at most: are they {limit.others[0]}?"
+                return f"too fast: {name} of {usual:.3g} {limit.unit}, {most}"
     return None
+
+
+def _beside_poses(of: Recording | Export) -> dict[str, Array]:
+    """Velocities and rates (n, 3) that came with the poses."""
+    return {} if of.nu is None else {"velocity": of.nu[:, :3], "rates": of.nu[:, 3:]}
 
 
 def _measured(of: Recording | Export) -> dict[str, Array]:
     """Velocities and rates (n, 3) at the times of the poses, of those that there are."""
-    if of.nu is not None:
-        return {"linear": of.nu[:, :3], "angular": of.nu[:, 3:]}
-    return {
-        kind: _at(of.channels, name, of.time)
-        for kind, name in (("linear", "velocity"), ("angular", "rates"))
-        if name in of.channels
-    }
+    channels = {name: _at(of.channels[name], of.time) for name in LIMITS if name in of.channels}
+    return channels | _beside_poses(of)
 
 
-def _at(channels: Channels, name: str, time: Array) -> Array:
-    own = channels[name]
+def _at(own: Channel, time: Array) -> Array:
     return np.stack(
         [np.interp(time, own.time, c, left=np.nan, right=np.nan) for c in own.value.T], axis=1
     )
@@ -88,7 +81,7 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
     good = lasts[:, 0] < 2.0 * WINDOW + 2.0 * np.median(np.diff(time))
     if good.sum() < FEWEST:
         return None
-    if kind == "linear":
+    if kind == "velocity":
         world = (position[k:] - position[:-k]) / lasts
         body = unrotate(attitude[k // 2 : len(attitude) - k + k // 2], world)
     else:
@@ -104,7 +97,7 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
 
 
 def _judge(kind: str, both: _Both) -> str:
-    what, alike = NAMES[kind], _cosine(both.measured, both.body)
+    what, alike = SAID[kind], _cosine(both.measured, both.body)
     if alike > ALIKE:
         return _judge_size(kind, both)
     in_world = _cosine(both.measured, both.world)
@@ -136,10 +129,10 @@ def _judge_size(kind: str, both: _Both) -> str:
     if 1.0 / OTHER_SIZE < size < OTHER_SIZE:
         return ""
     unit = next((u for f, u in UNITS[kind] if abs(size / f - 1.0) < NEAR_UNIT), "")
-    ours = "m/s" if kind == "linear" else "rad/s"
+    ours = LIMITS[kind].unit
     said = f"they are {unit}, not {ours}." if unit else f"are they {ours}?"
     return (
-        f"The {NAMES[kind]} are {size:.3g} times what the poses beside them say: {said} Name "
+        f"The {SAID[kind]} are {size:.3g} times what the poses beside them say: {said} Name "
         "their columns after their unit, or correct them."
     )
 

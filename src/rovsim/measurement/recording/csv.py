@@ -15,6 +15,8 @@ from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.csv_checks import (
+    ANGULAR,
+    LINEAR,
     POSITION,
     check_plausible,
     doubt_order,
@@ -40,7 +42,6 @@ from rovsim.measurement.recording.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]
-LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]
 EXTRA = {  # kind of channel -> columns, beside poses and velocities
     "depth": ["depth_m"],
     "specific_force": ["ax_m_s2", "ay_m_s2", "az_m_s2"],

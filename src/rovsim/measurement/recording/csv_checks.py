@@ -1,7 +1,7 @@
 """What the numbers of a csv cannot be, whatever its columns are called: one message, no guess."""
 
 from pathlib import Path
-from typing import Mapping, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -13,11 +13,30 @@ LONGEST_STEP = 5.0  # s between two lines of any recording
 POSITION = ["x_m", "y_m", "z_m"]
 FASTEST = 30.0  # m/s: 58 kn, the fastest ship (HSC Francisco, 2013)
 FASTEST_TURN = 10.0  # rad/s: more than one and a half turns a second
-# Columns of a kind, what no vehicle reaches, our unit and what it may be instead.
-MOVING = (
-    (("u_m_s", "v_m_s", "w_m_s"), FASTEST, "m/s", "mm_s or cm_s"),
-    (("p_rad_s", "q_rad_s", "r_rad_s"), FASTEST_TURN, "rad/s", "deg_s"),
-)
+USUAL = 90.0  # percentile
+LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]
+
+
+class Limit(NamedTuple):
+    """What no vehicle usually reaches, in our unit, and units in which sensors often tell it."""
+
+    columns: list[str]
+    fastest: float
+    unit: str
+    others: tuple[str, ...]
+
+    def beyond(self, value: Array) -> float | None:
+        """The usual size of a velocity or rate (n, c), its 90th percentile, if none can be so."""
+        if not np.isfinite(value).any():
+            return None
+        usual = float(np.nanpercentile(np.abs(value), USUAL))
+        return usual if usual > self.fastest else None
+
+
+LIMITS = {  # by channel
+    "velocity": Limit(LINEAR, FASTEST, "m/s", ("mm/s", "cm/s")),
+    "rates": Limit(ANGULAR, FASTEST_TURN, "rad/s", ("deg/s",)),
+}
 TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
 ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
 DEEP = 0.5  # m
@@ -73,16 +92,16 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
             "rad, within a quarter turn",
             RENAME.format("pitch_deg", "rad"),
         )
-    for names, fastest, unit, other in MOVING:
-        own = np.stack([values[name] for name in names if name in values] or [np.zeros(0)])
-        usual = float(np.nanpercentile(np.abs(own), 90)) if np.isfinite(own).any() else 0.0
-        if usual > fastest:
+    for limit in LIMITS.values():
+        own = [values[name] for name in limit.columns if name in values]
+        if own and (usual := limit.beyond(np.stack(own))):
+            name, others = limit.columns[0], [other.replace("/", "_") for other in limit.others]
             raise _refused(
                 path,
-                names[0],
-                f"values of {usual:.3g} {unit}: {other}?",
-                unit,
-                RENAME.format(names[0].split("_")[0] + "_" + other.split()[0], unit),
+                name,
+                f"values of {usual:.3g} {limit.unit}: {' or '.join(others)}?",
+                limit.unit,
+                RENAME.format(f"{name[0]}_{others[0]}", limit.unit),
             )
     depth = values.get("depth_m", np.zeros(0))
     if is_height(depth):
