@@ -57,6 +57,13 @@ def as_commands(
     return CommandExport(time[whole], value, KIND[log.kind], counts, notes, auxiliary)
 
 
+def are_pulses(value: Array) -> bool:
+    """Whether numbers of any shape are pulses in us: all that are known, and some are."""
+    low, high, _ = ALLOWED["pwm"]
+    given = value[np.isfinite(value) & ~pwm.absent(value)]
+    return bool(len(given) and given.min() >= low and given.max() <= high)
+
+
 def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:
     low, high, expected = ALLOWED[unit]
     beyond = ((value < low) | (value > high)) & ~np.array(log.turned)

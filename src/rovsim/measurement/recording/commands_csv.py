@@ -10,7 +10,7 @@ from rovsim import AXES
 from rovsim.core import pwm
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.commands import ALLOWED, as_commands, as_logged
+from rovsim.measurement.recording.commands import are_pulses, as_commands, as_logged
 from rovsim.measurement.recording.readers import CommandExport, CommandReader
 from rovsim.measurement.recording.table import column_places, csv_lines, numbers, without_cut_line
 from rovsim.measurement.recording.times import times
@@ -49,9 +49,7 @@ def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...
     Zeros among other numbers are no such thing, and what those are is said when they are refused.
     """
     pulses = value[:, ~np.array(log.turned)]
-    given = pulses[np.isfinite(pulses) & ~pwm.absent(pulses)]
-    low, high = ALLOWED["pwm"][:2]
-    if log.kind != "pwm" or not len(given) or given.min() < low or given.max() > high:
+    if log.kind != "pwm" or not are_pulses(pulses):
         return value, ()
     value = value.copy()
     value[:, ~np.array(log.turned)], notes = pwm.without_pulse(pulses)
@@ -81,9 +79,7 @@ def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:
 def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
     """Values (m, c) whose demands may be pulses, and what to say about it; else as they are."""
     own = value[:, : len(log.names)]
-    given = own[np.isfinite(own) & ~pwm.absent(own)]
-    low, high = ALLOWED["pwm"][:2]
-    if log.kind != "demand" or not len(given) or given.min() < low or given.max() > high:
+    if log.kind != "demand" or not are_pulses(own):
         return value, ()
     said = "The demands are pulses in us, read as (pulse - 1500) / 400."
     heave = log.axis_numbers.index(HEAVE) if HEAVE in log.axis_numbers else None

@@ -13,7 +13,7 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.commands import ALLOWED, PERCENT, guess_unit
+from rovsim.measurement.recording.commands import ALLOWED, PERCENT, are_pulses, guess_unit
 from rovsim.measurement.recording.csv import KNOWN, read_csv
 from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.table import (
@@ -237,9 +237,10 @@ def _rests_at_half(values: list[Array]) -> bool:
 
 def within(value: Array, kind: LoggedKind) -> bool:
     """Whether a column can be of that kind, by the size of its numbers."""
+    if kind == "pwm":
+        return are_pulses(value)
     low, high = ALLOWED[kind][:2]
     known = value[np.isfinite(value)]
-    known = known[~pwm.absent(known)] if kind == "pwm" else known
     return bool(len(known) and known.min() >= low and known.max() <= high)
 
 
