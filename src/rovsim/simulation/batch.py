@@ -6,7 +6,7 @@ the kernels take, and in which order, is known to this module and the engine alo
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import Sequence, TypeVar
+from typing import Any, Sequence, TypeVar
 
 import numpy as np
 from numpy import ndarray as Array
@@ -143,11 +143,7 @@ class Batch:
             starts.jobs(stops - rows + 1),
             time,
             stride,
-            self._constants,
-            self._inputs(drives),
-            self._parameters,
-            self._residual,
-            self._place,
+            *self._world(drives),
             out,
         )
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
@@ -195,11 +191,7 @@ class Batch:
             times,
             states,
             memory,
-            self._constants,
-            self._inputs([drive]),
-            self._parameters,
-            self._residual,
-            self._place,
+            *self._world([drive]),
             out,
         )
         return out
@@ -212,11 +204,7 @@ class Batch:
             memory,
             t,
             h,
-            self._constants,
-            self._inputs([drive]),
-            self._parameters,
-            self._residual,
-            self._place,
+            *self._world([drive]),
         )
 
     def advance_by_heun(
@@ -234,14 +222,15 @@ class Batch:
             t,
             h,
             pushes,
-            self._constants,
-            self._inputs([drive]),
-            self._parameters,
-            self._residual,
-            self._place,
+            *self._world([drive]),
             out,
         )
         return out
+
+    def _world(self, drives: Sequence[Drive]) -> tuple[Any, ...]:
+        """Physics, commands, learned residual and walls, in the order that kernels take them in."""
+        inputs = self._inputs(drives)
+        return self._constants, inputs, self._parameters, self._residual, self._place
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
         """The drives of models as kernels take them; one that serves several is there once."""
