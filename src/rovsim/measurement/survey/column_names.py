@@ -72,9 +72,3 @@ def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:
         whole = [places for places in topics.values() if len(places) == len(group)]
         found |= whole[0] if len(whole) == 1 else {}
     return found
-
-
-def find_unit(lines: Lines, ours: str) -> str:
-    """The unit behind the name of a channel of ours; empty where it has none."""
-    place = find_columns(lines).get(ours)
-    return "" if place is None else split_unit(lines.names[place])[1]

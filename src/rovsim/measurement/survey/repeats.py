@@ -37,20 +37,22 @@ def check_unmixed(lines: Lines) -> None:
 
 def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
     """Columns (count,) of few words or numbers, that are no measurement, by their names."""
-    for place, name in enumerate(lines.names):
-        if name in (*KNOWN, TIME):
-            continue
-        glance = {_cell(lines, row, place) for row in range(min(count, GLANCE))}
-        if len(glance) > LABELS:
-            continue
-        labels = np.array([_cell(lines, row, place) for row in range(count)])
-        if 1 < len(set(labels)) <= LABELS:
-            yield name, labels
+    places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN, TIME)]
+    glance = _cells(lines, min(count, GLANCE), places)
+    few = [k for k, column in zip(places, glance, strict=True) if len(set(column)) <= LABELS]
+    for place, column in zip(few, _cells(lines, count, few), strict=True):
+        if 1 < len(set(column)) <= LABELS:
+            yield lines.names[place], np.array(column)
 
 
-def _cell(lines: Lines, row: int, place: int) -> str:
-    cells = lines.cells(row)
-    return cells[place].strip(' "') if place < len(cells) else ""
+def _cells(lines: Lines, count: int, places: Sequence[int]) -> list[list[str]]:
+    """Cells of the first lines, a list for each of these columns."""
+    columns: list[list[str]] = [[] for _ in places]
+    for row in range(count if places else 0):
+        cells = lines.cells(row)
+        for place, column in zip(places, columns, strict=True):
+            column.append(cells[place].strip(' "') if place < len(cells) else "")
+    return columns
 
 
 def _jumps(lines: Lines, labels: Array) -> bool:

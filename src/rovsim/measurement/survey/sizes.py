@@ -12,7 +12,6 @@ from rovsim.measurement.recording.csv import EULER, POSITION
 from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
 from rovsim.measurement.recording.table import Lines
 from rovsim.measurement.recording.units import DEGREE, split_unit
-from rovsim.measurement.survey.column_names import find_unit
 
 # Sizes that no vehicle reaches in a tank or a bay.
 FARTHEST = 1000.0  # m
@@ -80,7 +79,7 @@ def find_by_size(
         UnknownUnit: the columns name no unit, or a wrong one, and their numbers allow two.
     """
     names, own = list(here), [lines.names[place] for place in here.values()]
-    named = all(name in lines.names or find_unit(lines, name) for name in names)
+    named = all(a == b or split_unit(b)[1] for a, b in zip(names, own, strict=True))
     said: tuple[str, ...]
     if names[0] in POSITION:
         said, judge = ("mm", "cm"), _metres
@@ -90,9 +89,9 @@ def find_by_size(
         return 1.0, ""
     if named and any(split_unit(name)[1] in said for name in own):
         return 1.0, ""
-    key = tuple(own)
     if not np.isfinite(value).any():
         return 1.0, ""
+    key = tuple(own)
 
     def decide() -> Unit:
         return judge(_Columns(lines, key, names, value, time, named))

@@ -83,7 +83,9 @@ def _refuse_known(path: Path, head: bytes) -> None:
     if head.startswith(ZIP):
         size = int.from_bytes(head[26:28], "little")
         known = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
-    if told := known[0] if known else None if is_table(head) else _known_text(head_lines(head)):
+    if not known and not is_table(head):
+        known = [text] if (text := _known_text(head_lines(head))) else []
+    for told in known:
         raise BadInput(told[0], where=path, expected=FORMATS, remedy=told[1])
 
 
