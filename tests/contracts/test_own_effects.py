@@ -1,5 +1,6 @@
 """A user's own effect: the page that explains it works as printed, and mistakes are explained."""
 
+import inspect
 import json
 import re
 import shlex
@@ -13,12 +14,17 @@ from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import load_catalogue
+from rovsim.dynamics.effects import base
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.trials import TRIALS, try_on
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.results.diagnosis import Diagnosis, Proposal
 from said import unfolded
 from small_study import ROOT
 from synthetic_study import diagnosis
 
 PAGE = (Path(__file__).parents[2] / "docs" / "your_own_effect.md").read_text(encoding="utf-8")
+VEHICLES = [path.stem for path in (ROOT / "conf" / "vehicle").glob("*.yaml")]
 
 
 def blocks(kind):
@@ -179,6 +185,71 @@ def test_a_mistake_is_one_message(change, tmp_path, capsys):
     assert text.startswith("rovsim: ")
     assert text.count("rovsim: ") == 1
     assert not (tmp_path / "out").exists()
+
+
+OTHER_KINDS = {  # kind, its method: what the message says
+    ("Coefficients", "def enter(self, body): body.lineer[0] += 1"): "line 11: 'enter' fails",
+    ("Coefficients", "def enter(self, body): body.linear = 1"): "'enter' returns .*as they are",
+    ("StochasticCurrent", "def draw(self, ticks, dt, random): return 1"): "'draw' returns 1",
+    ("CommandTiming", "def effective_time(self, time): return -time"): "increasing",
+    ("DemandTransform", "def mixer_demand(self, demand): return demand[0]"): r"array \(6,\)",
+    ("CommandTransform", "def thruster_command(self, command): pass"): "returns None",
+    ("ThrustScaling", "def scaled_force(self, force, t): return force"): "TypeError",
+    ("ThrustCurveShape", "def reshaped_force(self, force, full): return force / 0"): "NaN or inf",
+    ("ThrusterDynamics", "def respond(self, force, h, state): return force"): "state to go on",
+    ("FrameMisalignment", "def transforms(self): return 0.1"): "two Rigid",
+    ("MeasurementFilter", "def time_constants(self): return 0.1"): "tuple of seconds",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.actuators.force[8])",
+    ): "8 forces",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.actuators.command[-9])",
+    ): "8 com",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.actuators.inflow[8][0])",
+    ): "8 pl",
+}
+OTHER_KIND = """
+from rovsim.dynamics.effects import base
+from rovsim.dynamics.engine.compiled import inlined
+
+class Hose(base.KIND):
+    "A hose drags behind."
+    id = "hose"
+    equation, neglects, source = "X = -c", "all else", "a test"
+    parameters = (base.Parameter("force", "N", "c", scale=1.0),)
+
+    METHOD
+
+@inlined
+def six(x):
+    return x, 0.0, 0.0, 0.0, 0.0, 0.0
+"""
+
+
+@pytest.mark.parametrize("wrong", OTHER_KINDS, ids=lambda wrong: f"{wrong[0]}-{wrong[1][-9:]}")
+@pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
+def test_every_kind_is_tried_before_it_is_used(wrong):
+    kind, method = wrong
+    Path("hose.py").write_text(OTHER_KIND.replace("KIND", kind).replace("METHOD", method))
+    known, vehicle = load_catalogue([Path("hose.py")]), load_vehicle("bluerov2_heavy")
+    with pytest.raises(BadInput, match=OTHER_KINDS[wrong]):
+        known.on(vehicle)
+
+
+def test_there_are_trials_of_every_kind():
+    kinds = {cls for cls in vars(base).values() if inspect.isclass(cls) and issubclass(cls, Effect)}
+    assert set(TRIALS) == kinds - {Effect}
+
+
+@pytest.mark.parametrize("vehicle", VEHICLES)
+def test_the_catalogue_passes_them_on_every_vehicle(vehicle):
+    there = load_vehicle(vehicle)
+    for cls in load_catalogue().on(there).values():
+        try_on(cls, there)
 
 
 def test_missing_files_and_twins_are_refused(tmp_path):

@@ -1,5 +1,7 @@
 """The path from a logged command to a force, each stage against a hand formula."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -127,6 +129,20 @@ def test_play_may_grow_and_be_computed_in_pieces():
         force, state = play.respond(piece, 0.05, state)
         parts.append(force)
     np.testing.assert_array_equal(np.concatenate(parts), whole)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 8, 12])
+def test_each_thruster_of_a_vehicle_has_a_gain(count):
+    gain = ThrusterGain.on(SimpleNamespace(thruster_count=count))
+    names = [f"t{i + 1}" for i in range(count)]
+    assert [p.name for p in gain.parameters] == [*names, "all"]
+    own = 1.0 + np.arange(count)
+    force = gain(**dict(zip(names, own, strict=True)), all=0.5).scaled_force(
+        np.ones((3, count)), EDGES[:3], 2.0
+    )
+    np.testing.assert_array_equal(force, np.tile(0.5 * own, (3, 1)))
+    with pytest.raises(BadInput, match=f"unknown parameter 't{count + 1}'"):
+        gain(**{f"t{count + 1}": 0.5})
 
 
 def test_gain_asymmetry_sag_and_deadband():

@@ -11,6 +11,7 @@ from typing import Iterable, Iterator, Mapping, Sequence
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics import effects
 from rovsim.dynamics.effects.base import Effect, Wrench
+from rovsim.dynamics.effects.trials import try_on
 from rovsim.dynamics.effects.user_files import check_effects, read_effects
 from rovsim.dynamics.vehicle import Vehicle
 
@@ -37,8 +38,15 @@ class Catalogue(Mapping[str, type[Effect]]):
         return tuple(cls for cls in self.values() if issubclass(cls, Wrench))
 
     def on(self, vehicle: Vehicle) -> "Catalogue":
-        """The same effects with the parameters and starts that they have on a vehicle."""
-        return Catalogue({name: cls.on(vehicle) for name, cls in self.items()}, self.files)
+        """The same effects with the parameters and starts that they have on a vehicle.
+
+        Raises:
+            BadInput: somebody's own effect fails on it.
+        """
+        there = {name: cls.on(vehicle) for name, cls in self.items()}
+        for name in there.keys() - built_in().keys():
+            try_on(there[name], vehicle)
+        return Catalogue(there, self.files)
 
     def find(self, name: str) -> type[Effect]:
         """The effect with this id.

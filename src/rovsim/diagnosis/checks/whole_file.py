@@ -37,7 +37,7 @@ from rovsim.diagnosis.selection.nominal_terms import mark_gain, share_of_file
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.diagnosis.selection.whole_file_fit import know_file, mark_new
-from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
+from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
@@ -107,8 +107,9 @@ def _name_gain(whole: Fit) -> set[str]:
 
 def _share_gains(h: Hypothesis) -> Array:
     """What each parameter (k,) has in the mean gain of the thrusters."""
-    own = [f"{ThrusterGain.id}.{name}" for name in THRUSTERS]
-    single = np.isin(h.parameter_names, own) / max(1, h.base.vehicle.thruster_count)
+    count = h.base.vehicle.thruster_count
+    own = [f"{ThrusterGain.id}.{name}" for name in name_gains(count)]
+    single = np.isin(h.parameter_names, own) / max(1, count)
     return np.where(mark_gain(h), 1.0, single)
 
 

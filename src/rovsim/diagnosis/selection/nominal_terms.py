@@ -57,7 +57,7 @@ def doubt_gain(h: Hypothesis) -> float:
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
     """How far the vehicle file may be off in what it states there, in scales of the parameter."""
-    if effect is ThrusterGain:
+    if effect.id == ThrusterGain.id:
         return GAIN / parameter.scale
     return max(1.0, share_of_file(base, effect, parameter))
 

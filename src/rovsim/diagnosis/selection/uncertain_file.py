@@ -48,7 +48,9 @@ def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
             continue
         each = zip(block.derivatives, block.candidate.term().parameters, strict=True)
         for column, parameter in each:
-            if effect is not ThrusterGain or parameter.name in ONE_GAIN:  # one thruster's: a fault
+            if (
+                effect.id != ThrusterGain.id or parameter.name in ONE_GAIN
+            ):  # one thruster's: a fault
                 spread = spread_of_file(base, effect, parameter)
                 numbers.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
     return numbers
@@ -132,7 +134,7 @@ def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     To first order. Without the gain of the thrusters: any other number left out would seem to fix
     the common scale, and the gain would follow it away from what the file says.
     """
-    numbers = [n for n in list_numbers(workspace) if n.candidate.effect is not ThrusterGain]
+    numbers = [n for n in list_numbers(workspace) if n.candidate.effect.id != ThrusterGain.id]
     own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
     reduction = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
     h = current.hypothesis

@@ -23,7 +23,7 @@ from rovsim.diagnosis.selection.nominal_terms import (
 from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import THRUSTERS, ThrusterGain
+from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 
 
 def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit | None:
@@ -65,7 +65,7 @@ def mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
 def free_rest(h: Hypothesis) -> Hypothesis:
     """With all free that the file states; each thruster's own gain where several differ."""
     fitted = set(h.parameter_names)
-    for effect in (built_in()[name] for name in STATED):
+    for effect in (built_in()[name].on(h.base.vehicle) for name in STATED):
         left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
         if left:
             h = h.with_term(Term(effect(), left))
@@ -73,9 +73,9 @@ def free_rest(h: Hypothesis) -> Hypothesis:
 
 
 def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
-    if effect is not ThrusterGain:
+    if effect.id != ThrusterGain.id:
         return [p.name for p in effect.parameters if p.fitted]
-    own = THRUSTERS[: h.base.vehicle.thruster_count]
+    own = name_gains(h.base.vehicle.thruster_count)
     selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in own)
     return (*ONE_GAIN, *own) if selected >= SEVERAL else ONE_GAIN
 

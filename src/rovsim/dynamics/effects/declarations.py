@@ -6,11 +6,18 @@ from typing import Any, Iterator, Mapping, get_args
 
 import numpy as np
 
+from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.base import Effect, Requirement, Wrench
 from rovsim.dynamics.effects.parameters import Parameter
 
 TEXTS = ("equation", "neglects", "source")
+GUIDE = "docs/your_own_effect.md shows a complete one."
 NUMBERS = ("low", "high", "default", "scale", "resolution")
+
+
+def refused(found: str, where: object, expected: str) -> BadInput:
+    """Of somebody's own effect: what was found, and what was expected."""
+    return BadInput(found, where=where, expected=expected, remedy=GUIDE)
 
 
 def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:

@@ -1,5 +1,6 @@
 """What happens between a command that has arrived and a thruster's force."""
 
+from functools import cache
 from typing import Iterable, Sequence
 
 import numpy as np
@@ -9,15 +10,28 @@ from numpy import ndarray as Array
 from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import (
+    Actuated,
     Coefficients,
     CommandTransform,
+    Effect,
     Parameter,
     ThrusterDynamics,
     ThrustScaling,
 )
 from rovsim.dynamics.effects.parameters import STAMP, Signature
 
-THRUSTERS = tuple(f"t{i}" for i in range(1, 9))
+USUAL_COUNT = 8  # thrusters that the catalogue lists: those of a BlueROV2 Heavy
+
+
+def name_gains(count: int) -> tuple[str, ...]:
+    """What files call the gains of so many thrusters, in the vehicle file's order."""
+    return tuple(f"t{i}" for i in range(1, count + 1))
+
+
+def _gains(count: int) -> tuple[Parameter, ...]:
+    """A gain for each of so many thrusters, and the common one."""
+    names = (*name_gains(count), "all")
+    return tuple(Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1) for name in names)
 
 
 class ThrusterDeadband(CommandTransform):
@@ -44,7 +58,10 @@ class ThrusterDeadband(CommandTransform):
 
 
 class ThrusterGain(ThrustScaling):
-    """Thrusters stronger or weaker than the published curve; negative means reversed wiring."""
+    """Thrusters stronger or weaker than the published curve; negative means reversed wiring.
+
+    A parameter for each thruster of the vehicle, and one for all.
+    """
 
     steady = True
     id = "thruster_gain"
@@ -65,16 +82,25 @@ class ThrusterGain(ThrustScaling):
         "changes."
     )
     signature = Signature({"all": 0.7}, "surge", "surge thrust")
-    parameters = tuple(
-        Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1)
-        for name in (*THRUSTERS, "all")
-    )
+    parameters = _gains(USUAL_COUNT)
+
+    @classmethod
+    def on(cls, vehicle: Actuated) -> type[Effect]:
+        """A gain for each thruster that there is."""
+        count = vehicle.thruster_count
+        return cls if count == USUAL_COUNT else _gain_of(count)
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Forces times each thruster's gain and the common one."""
-        each, own = np.ones(force.shape[1]), self.values[: len(THRUSTERS)][: force.shape[1]]
+        each, own = np.ones(force.shape[1]), self.values[:-1][: force.shape[1]]
         each[: len(own)] = own
         return force * (self["all"] * each)
+
+
+@cache
+def _gain_of(count: int) -> type[ThrusterGain]:
+    """With a parameter for each of so many thrusters."""
+    return ThrusterGain.adapted(parameters=_gains(count))
 
 
 class ThrustAsymmetry(ThrustScaling):
@@ -231,9 +257,10 @@ def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str
 
     In model files and results it is t3 in the vehicle file's order, for every vehicle alike.
     """
-    if effect != ThrusterGain.id or parameter not in THRUSTERS[: len(thrusters)]:
+    gains = name_gains(len(thrusters))
+    if effect != ThrusterGain.id or parameter not in gains:
         return parameter
-    name = thrusters[THRUSTERS.index(parameter)]
+    name = thrusters[gains.index(parameter)]
     return parameter if name == parameter else f"{name} ({parameter})"
 
 

@@ -11,12 +11,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Mapping
 
-from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
-from rovsim.dynamics.effects.declarations import TEXTS, find_faults
-
-GUIDE = "docs/your_own_effect.md shows a complete one."
+from rovsim.dynamics.effects.declarations import TEXTS, find_faults, refused
+from rovsim.dynamics.effects.kernels import compiled_alone
 
 
 def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]]:
@@ -41,13 +39,13 @@ def _run(path: Path, text: str) -> ModuleType:
     try:
         exec(compile(text, str(path), "exec"), vars(module))
     except SyntaxError as error:
-        raise _refused(f"{error.msg}", f"{path}, line {error.lineno}", "valid Python") from None
+        raise refused(f"{error.msg}", f"{path}, line {error.lineno}", "valid Python") from None
     except Exception as error:
         lines = [
             f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)
         ]
         found = f"{type(error).__name__}: {error}"
-        raise _refused(found, f"{path}, line {lines[-1]}", "a file that runs by itself") from None
+        raise refused(found, f"{path}, line {lines[-1]}", "a file that runs by itself") from None
     return module
 
 
@@ -66,7 +64,7 @@ def check_effects(
         if inspect.isclass(value) and issubclass(value, Effect) and name in (None, value.__module__)
     ]
     if not classes:
-        raise _refused("declares no effect", where, "a class on top of Wrench or another kind")
+        raise refused("declares no effect", where, "a class on top of Wrench or another kind")
     found: dict[str, type[Effect]] = {}
     for cls in classes:
         _check(cls, f"{where}, class {cls.__name__}", {**taken, **found})
@@ -81,17 +79,17 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
     missing += sorted(cls.__abstractmethods__)
     if missing:
         what = ", ".join(f"'{name}'" for name in missing)
-        raise _refused(
+        raise refused(
             f"has no {what}",
             where,
             "a docstring, id, equation, neglects, source, parameters and the method of its kind",
         )
     if not re.fullmatch(r"[a-z][a-z0-9_]*", cls.id):
-        raise _refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
+        raise refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
     if cls.id in taken:
-        raise _refused(f"the id '{cls.id}' is taken", where, "an id that no other effect has")
+        raise refused(f"the id '{cls.id}' is taken", where, "an id that no other effect has")
     for found, expected in find_faults(cls):
-        raise _refused(found, where, expected)
+        raise refused(found, where, expected)
     if issubclass(cls, Wrench):
         _check_kernel(cls, where)
 
@@ -101,20 +99,19 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     from numba import types
     from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
-    from rovsim.dynamics.engine.compiled import inlined
     from rovsim.dynamics.engine.reading import example_reading
     from rovsim.dynamics.engine.types import EXAMPLE
 
     wrench = inspect.getattr_static(cls, "wrench")
     if not isinstance(wrench, staticmethod):
-        raise _refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
+        raise refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
     p = cls.named_parameters()(*(0.0 for _ in cls.parameters))
-    kernel = inlined(cls.wrench)
+    kernel = compiled_alone(cls)
     channels = cls.named_channels()(*(0.0 for _ in cls.channels)) if cls.channels else 0.0
     try:
         kernel(example_reading(channels) if cls.reads() else EXAMPLE, p)
     except (NumbaError, UnsupportedBytecodeError, TypeError) as error:
-        raise _refused(
+        raise refused(
             f"'wrench' does not compile: {_reason(str(error))}",
             where,
             "arithmetic on the numbers of `at` and `p`, functions of math, and if",
@@ -122,7 +119,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     made = kernel.nopython_signatures[0].return_type
     numbers = [isinstance(part, types.Number) for part in getattr(made, "types", ())]
     if len(numbers) != 6 or not all(numbers):
-        raise _refused(f"'wrench' returns {made}", where, "six numbers: X, Y, Z, K, M, N")
+        raise refused(f"'wrench' returns {made}", where, "six numbers: X, Y, Z, K, M, N")
 
 
 def _reason(text: str) -> str:
@@ -133,7 +130,3 @@ def _reason(text: str) -> str:
     ]
     line = re.search(r", line (\d+)", text)
     return (told[0].rstrip(":.") if told else plain[0]) + (f" (line {line[1]})" if line else "")
-
-
-def _refused(found: str, where: object, expected: str) -> BadInput:
-    return BadInput(found, where=where, expected=expected, remedy=GUIDE)

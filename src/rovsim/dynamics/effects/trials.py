@@ -1,0 +1,270 @@
+"""What somebody's own effect does, tried on a vehicle before anything is simulated with it.
+
+Each kind of effect has its trials here: what its methods are given, and what they must return.
+"""
+
+import traceback
+from functools import partial
+from typing import Any, Callable, Iterator, NamedTuple, Protocol
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import Rigid
+from rovsim.dynamics.body import Body
+from rovsim.dynamics.effects.base import (
+    Actuated,
+    Autopilot,
+    Coefficients,
+    CommandTiming,
+    CommandTransform,
+    DemandTransform,
+    Effect,
+    FrameMisalignment,
+    MeasurementFilter,
+    StochasticCurrent,
+    ThrustCurveShape,
+    ThrusterDynamics,
+    ThrustScaling,
+    Wrench,
+)
+from rovsim.dynamics.effects.declarations import refused
+from rovsim.dynamics.effects.kernels import compiled_alone
+
+INSTANTS = 5  # at which methods are tried, and states in which kernels are
+BEYOND = 64  # numbers before and after those of the actuators, of which nothing may depend
+TIME = np.arange(INSTANTS) / 10.0  # s
+DURATION = 60.0  # s of a recording
+FULL = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
+
+
+class Tried(Actuated, Protocol):
+    """What trials ask of a vehicle, beside what effects do."""
+
+    @property
+    def command_columns(self) -> tuple[str, ...]:
+        """What a log of thruster commands holds."""
+
+    def effects(self) -> tuple[Effect, ...]:
+        """Its nominal effects."""
+
+
+class Trial(NamedTuple):
+    """A call of a method, and whether its result is what was expected."""
+
+    method: str
+    call: Callable[[], Any]
+    expected: str
+    fits: Callable[[Any], bool]
+
+
+def try_on(cls: type[Effect], vehicle: Tried) -> None:
+    """Call what an effect declares, where its fits begin, with what this vehicle has.
+
+    Raises:
+        BadInput: a method fails, or returns something else than its kind does.
+    """
+    where = f"effect {cls.id}"
+    if cls.requires == "thrusters" and not vehicle.thruster_count:
+        return
+    for start in ({}, *cls.starts):
+        effect = cls(**start)
+        for trial in _list_trials(effect, vehicle):
+            try:
+                made = trial.call()
+                fits = trial.fits(made)
+            except Exception as error:  # whatever a user's code raises
+                found = f"'{trial.method}' fails with {type(error).__name__}: {error}"
+                raise refused(found, where + _line_of(error, cls), trial.expected) from None
+            if not fits:
+                raise refused(f"'{trial.method}' returns {_told(made)}", where, trial.expected)
+
+
+def _line_of(error: Exception, cls: type[Effect]) -> str:
+    """The line of its own module in which an effect failed."""
+    walked = traceback.walk_tb(error.__traceback__)
+    own = [line for frame, line in walked if frame.f_globals.get("__name__") == cls.__module__]
+    return f", line {own[-1]}" if own else ""
+
+
+def _list_trials(effect: Effect, vehicle: Tried) -> Iterator[Trial]:
+    """All trials of the kinds that an effect is of."""
+    for kind, trials in TRIALS.items():
+        if isinstance(effect, kind):
+            yield from trials(effect, vehicle)
+
+
+def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
+    body = Body(gravity=9.81)
+    for own in vehicle.effects():
+        if isinstance(own, Coefficients):
+            own.enter(body)
+    shapes = (body.M_RB.shape, body.M_A.shape, body.linear.shape, body.quadratic.shape)
+
+    def enter() -> Any:
+        e.enter(body)
+        return tuple(np.shape(one) for one in (body.M_RB, body.M_A, body.linear, body.quadratic))
+
+    yield Trial(
+        "enter", enter, f"matrices of the body as they are: {shapes}", lambda s: s == shapes
+    )
+
+
+def _try_current(e: StochasticCurrent, vehicle: Tried) -> Iterator[Trial]:
+    yield _array("draw", partial(e.draw, INSTANTS, 0.1, np.random.default_rng(0)), (INSTANTS, 3))
+
+
+def _try_timing(e: CommandTiming, vehicle: Tried) -> Iterator[Trial]:
+    yield Trial(
+        "effective_time",
+        partial(e.effective_time, TIME.copy()),
+        f"{INSTANTS} increasing instants for as many",
+        lambda made: _is_array(made, TIME.shape) and bool((np.diff(made) > 0.0).all()),
+    )
+
+
+def _try_demands(e: DemandTransform | Autopilot, vehicle: Tried) -> Iterator[Trial]:
+    yield _array("mixer_demand", partial(e.mixer_demand, _moving(6)), (INSTANTS, 6))
+
+
+def _try_autopilot(e: Autopilot, vehicle: Tried) -> Iterator[Trial]:
+    yield from _try_demands(e, vehicle)
+    yield _array(
+        "demanded_wrench", partial(e.demanded_wrench, _moving(6), np.ones(6)), (INSTANTS, 6)
+    )
+
+
+def _try_command(e: CommandTransform, vehicle: Tried) -> Iterator[Trial]:
+    command = _moving(vehicle.thruster_count)
+    yield _array("thruster_command", partial(e.thruster_command, command), command.shape)
+
+
+def _try_curve(e: ThrustCurveShape, vehicle: Tried) -> Iterator[Trial]:
+    force, full = _forces(vehicle), np.tile(FULL, vehicle.thruster_count)
+    yield _array("reshaped_force", partial(e.reshaped_force, force, full), force.shape)
+
+
+def _try_scaling(e: ThrustScaling, vehicle: Tried) -> Iterator[Trial]:
+    force = _forces(vehicle)
+    yield _array("scaled_force", partial(e.scaled_force, force, TIME, DURATION), force.shape)
+
+
+def _try_dynamics(e: ThrusterDynamics, vehicle: Tried) -> Iterator[Trial]:
+    force = _forces(vehicle)
+
+    def respond_twice() -> Any:
+        _, state = e.respond(force, 0.01, None)
+        return e.respond(force, 0.01, state)[0]
+
+    yield _array("respond", respond_twice, force.shape, "forces and a state to go on from; forces")
+
+
+def _try_frames(e: FrameMisalignment, vehicle: Tried) -> Iterator[Trial]:
+    def fits(made: Any) -> bool:
+        return (
+            isinstance(made, tuple)
+            and len(made) == 2
+            and all(
+                isinstance(one, Rigid) and _is_array(one.rotation, (4,)) and _is_array(one[1], (3,))
+                for one in made
+            )
+        )
+
+    yield Trial("transforms", e.transforms, "two Rigid, each a quaternion and a translation", fits)
+
+
+def _try_filter(e: MeasurementFilter, vehicle: Tried) -> Iterator[Trial]:
+    def fits(made: Any) -> bool:
+        return isinstance(made, tuple) and all(T >= 0.0 and np.isfinite(T) for T in made)
+
+    yield Trial("time_constants", e.time_constants, "a tuple of seconds", fits)
+
+
+def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
+    """Compiled code reads beyond an array without a word: what lies there must not matter."""
+    if not e.reads():
+        return
+    forces, commands = vehicle.thruster_count, len(vehicle.command_columns)
+    places = forces + len(vehicle.surface_names)
+    kernel, p = compiled_alone(type(e)), type(e).named_parameters()(*map(float, e.values))
+
+    def push() -> None:
+        for k in range(INSTANTS):
+            acting = np.random.default_rng(k).uniform(-1.0, 1.0, (5, max(places, commands)))
+            made = [
+                kernel(_reading(type(e), acting, (forces, commands, places), beyond), p)
+                for beyond in (np.nan, -1e9, 1e9)
+            ]
+            if not all(np.array_equal(made[0], one, equal_nan=True) for one in made):
+                raise IndexError("no such actuator")
+
+    expected = (
+        f"indices within the actuators of this vehicle: {forces} forces, {commands} commands, "
+        f"inflow at {places} places"
+    )
+    yield Trial("wrench", push, expected, lambda _: True)
+
+
+def _reading(cls: type[Wrench], acting: Array, have: tuple[int, int, int], beyond: float) -> Any:
+    """An instant as a kernel reads it; `acting` (5, k) forces, commands and inflow as they are."""
+    from rovsim.dynamics.engine.reading import Actuators, example_reading
+
+    forces, commands, places = have
+    channels = cls.named_channels()(*(1.0 for _ in cls.channels)) if cls.channels else 0.0
+    actuators = Actuators(
+        _surrounded(acting[0, :forces], beyond),
+        _surrounded(acting[1, :commands], beyond),
+        _surrounded(np.ascontiguousarray(acting[2:, :places].T), beyond),
+    )
+    return example_reading(channels)._replace(actuators=actuators)
+
+
+def _surrounded(values: Array, beyond: float) -> Array:
+    """The same values in a memory that holds something else before and after them."""
+    memory = np.full((BEYOND + len(values) + BEYOND, *values.shape[1:]), beyond)
+    memory[BEYOND : BEYOND + len(values)] = values
+    return memory[BEYOND : BEYOND + len(values)]
+
+
+def _array(
+    method: str, call: Callable[[], Any], shape: tuple[int, ...], expected: str = "an array"
+) -> Trial:
+    return Trial(method, call, f"{expected} {shape}", lambda made: _is_array(made, shape))
+
+
+def _is_array(made: Any, shape: tuple[int, ...]) -> bool:
+    """Whether something is finite numbers of a shape."""
+    return np.shape(made) == shape and bool(np.isfinite(np.asarray(made, float)).all())
+
+
+def _told(made: Any) -> str:
+    """What a method returned, in a few words."""
+    if isinstance(made, np.ndarray):
+        return f"an array {made.shape}" + ("" if np.isfinite(made).all() else " with NaN or inf")
+    return repr(made)
+
+
+def _moving(columns: int) -> Array:
+    """Demands or commands (INSTANTS, columns) from -1 to 1."""
+    return np.tile(np.linspace(-1.0, 1.0, INSTANTS)[:, None], columns)
+
+
+def _forces(vehicle: Tried) -> Array:
+    """Forces (INSTANTS, n) N that a vehicle's thrusters may have."""
+    return FULL[1][0] * _moving(vehicle.thruster_count)
+
+
+TRIALS: dict[type[Effect], Callable[[Any, Tried], Iterator[Trial]]] = {
+    Coefficients: _try_coefficients,
+    Wrench: _try_wrench,
+    StochasticCurrent: _try_current,
+    CommandTiming: _try_timing,
+    DemandTransform: _try_demands,
+    Autopilot: _try_autopilot,
+    CommandTransform: _try_command,
+    ThrustCurveShape: _try_curve,
+    ThrustScaling: _try_scaling,
+    ThrusterDynamics: _try_dynamics,
+    FrameMisalignment: _try_frames,
+    MeasurementFilter: _try_filter,
+}
