@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
 from rovsim.reporting.charts import chart_conditions, chart_ladder, find_varying_shares
-from rovsim.reporting.figures import SECTIONS, kind, kinds
+from rovsim.reporting.figures import SECTIONS, kind, kinds, read_kind, refuse_unknown
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
@@ -81,6 +81,37 @@ def test_what_is_read_of_it_is_what_it_declares(name):
     parameters = inspect.signature(found.draw).parameters.values()
     assert found.takes == tuple(one.name for one in parameters)
     assert found.needs == tuple(one.name for one in parameters if one.default is one.empty)
+
+
+FIGURE = """
+SECTION = "ladder"
+CAPTION = "What it shows."
+
+def draw(*, ladder):
+    pass
+"""
+MISTAKES = {  # what is replaced, by what: what the message says
+    ('SECTION = "ladder"', ""): "there is no SECTION.*one of verdict",
+    ('"ladder"', '"latter"'): "SECTION is 'latter'",
+    ('"What it shows."', "words()"): "CAPTION is no plain constant",
+    ('CAPTION = "What it shows."', ""): "there is no CAPTION",
+    ('CAPTION = "What', 'PLACE = "1"; CAPTION = "What'): "PLACE is '1'",
+    ("*, ladder", "ladder"): "by place",
+    ("def draw", "draw = 1 +"): "line 5",
+}
+
+
+@pytest.mark.parametrize("change", MISTAKES)
+def test_a_mistake_in_a_new_one_names_its_file(change, tmp_path):
+    path = tmp_path / "new.py"
+    path.write_text(FIGURE)
+    assert read_kind(path).needs == ("ladder",)
+    assert change[0] in FIGURE
+    path.write_text(FIGURE.replace(*change))
+    with pytest.raises(BadInput, match=f"new.py.*{MISTAKES[change]}"):
+        read_kind(path)
+    with pytest.raises(BadInput, match=r"ladder.py: 'draw' asks for latter\. Expected .*ladder"):
+        refuse_unknown(replace(kind("ladder"), needs=("latter",)), ["ladder"])
 
 
 def test_a_list_of_them_takes_no_matplotlib():

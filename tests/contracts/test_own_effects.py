@@ -115,8 +115,10 @@ def test_the_study_takes_it_and_sees_edits():
     assert "floor_cushion" in study.catalogue
     replay, smooth = (ROOT / "workflow" / "scripts" / f"{name}.py" for name in ("replay", "filter"))
     before = {script: study.code(script) for script in (replay, smooth)}
-    with Path("floor_cushion.py").open("a") as file:
-        file.write("# later\n")
+    text = Path("floor_cushion.py").read_text()
+    Path("floor_cushion.py").write_text(f"# a comment changes nothing\n{text}")
+    assert study.code(replay) == before[replay]
+    Path("floor_cushion.py").write_text(text.replace("scale=3.0", "scale=2.0"))
     assert study.code(replay) != before[replay]
     assert study.code(smooth) == before[smooth]
     assert Study({}).catalogue.files == ()

@@ -35,7 +35,7 @@ def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> st
     wanted = find_modules(*names)
     if without:
         wanted = {name for name in wanted if not f"{name}.".startswith(f"{without}.")}
-    return _digest([*map(_file, sorted(wanted)), *(described if wanted & {MODEL, VEHICLE} else ())])
+    return _digest(map(_file, sorted(wanted)), described if wanted & {MODEL, VEHICLE} else ())
 
 
 def imports_of(script: Path) -> list[str]:
@@ -59,14 +59,26 @@ def find_modules(*names: str) -> set[str]:
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:
     """Digest of a package's own modules, whatever they import, and of `described` (`digest`)."""
-    return _digest([*sorted(_file(package).parent.rglob("*.py")), *described])
+    return _digest(sorted(_file(package).parent.rglob("*.py")), described)
 
 
-def _digest(files: Sequence[Path]) -> str:
+def _digest(modules: Iterable[Path], described: Iterable[Path]) -> str:
     content = hashlib.sha256()
-    for path in files:
+    for path in modules:
         content.update(path.read_bytes())
+    for path in described:
+        content.update(
+            _without_comments(path.read_bytes()) if path.suffix == ".py" else path.read_bytes()
+        )
     return content.hexdigest()[:16]
+
+
+def _without_comments(source: bytes) -> bytes:
+    """What Python reads in an effect of somebody's own: a comment there changes no result."""
+    try:
+        return ast.dump(ast.parse(source)).encode()
+    except (SyntaxError, ValueError):
+        return source  # refused where it is read
 
 
 def _discovered(modules: set[str]) -> set[str]:

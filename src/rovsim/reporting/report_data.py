@@ -1,6 +1,6 @@
 """What figures and reports show: measured and predicted, by run and model, and all results."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, TypeVar
 
@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures import Kind, kind, kinds
+from rovsim.reporting.figures import Kind, kind, kinds, refuse_unknown
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
@@ -212,7 +212,11 @@ def list_run_figures() -> list[Kind]:
 
 
 def _is_of_run(figure: Kind) -> bool:
-    return set(figure.needs) <= vars(RunData).keys()
+    if set(figure.needs) <= vars(RunData).keys():
+        return True
+    own = (*(one.name for one in fields(ReportData)), *vars(ReportData))
+    refuse_unknown(figure, (name for name in own if not name.startswith("_")))
+    return False
 
 
 def describe(figure: str, run: str, data: ReportData | None = None) -> str:

@@ -18,13 +18,14 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping
 
-from rovsim.core.errors import unlisted
+from rovsim.core.errors import BadInput, unlisted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+GUIDE = "The docstring of rovsim.reporting.figures says what a figure declares."
 SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 
 
@@ -47,8 +48,12 @@ class Kind:
 
 @cache
 def kinds() -> dict[str, Kind]:
-    """Every figure found in this folder, by name, in the order of the report."""
-    found = [kind for path in Path(__file__).parent.glob("*.py") if (kind := _read(path))]
+    """Every figure found in this folder, by name, in the order of the report.
+
+    Raises:
+        BadInput: one of them does not declare what a figure does.
+    """
+    found = [kind for path in Path(__file__).parent.glob("*.py") if (kind := read_kind(path))]
     found.sort(key=lambda one: (SECTIONS.index(one.section), one.place, one.name))
     return {one.name: one for one in found}
 
@@ -65,17 +70,22 @@ def kind(name: str) -> Kind:
     return known[name]
 
 
-def _read(path: Path) -> Kind | None:
-    """The figure of a module; None where it only helps others to draw."""
+def read_kind(path: Path) -> Kind | None:
+    """The figure of a module; None where it only helps others to draw.
+
+    Raises:
+        BadInput: it does not declare what a figure does.
+    """
     draw, told = None, dict[str, Any](PLACE=1)
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in _parse(path).body:
         match node:
             case ast.FunctionDef(name="draw"):
                 draw = node.args
             case ast.Assign(targets=[ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name)]):
-                told[name] = ast.literal_eval(node.value)
+                told[name] = _constant(node.value, path, name)
     if draw is None:
         return None
+    _check(path, told, draw)
     takes = {one.arg: given for one, given in zip(draw.kwonlyargs, draw.kw_defaults, strict=True)}
     return Kind(
         path.stem,
@@ -85,3 +95,47 @@ def _read(path: Path) -> Kind | None:
         tuple(takes),
         tuple(name for name, given in takes.items() if given is None),
     )
+
+
+def _parse(path: Path) -> ast.Module:
+    try:
+        return ast.parse(path.read_text(encoding="utf-8"))
+    except SyntaxError as error:
+        raise _refused(path, f"line {error.lineno}: {error.msg}", "valid Python") from None
+
+
+def _constant(node: ast.expr, path: Path, name: str) -> Any:
+    """What a declaration says, without running it."""
+    try:
+        return ast.literal_eval(node)
+    except ValueError:
+        raise _refused(path, f"{name} is no plain constant", "a text or number as it is") from None
+
+
+def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
+    """Refuse a figure that does not say where and under which words it is shown."""
+    if told.get("SECTION") not in SECTIONS:
+        found = f"SECTION is {told['SECTION']!r}" if "SECTION" in told else "there is no SECTION"
+        raise _refused(path, found, f"one of {', '.join(SECTIONS)}")
+    if not (isinstance(told.get("CAPTION"), str) and told["CAPTION"]):
+        raise _refused(path, "there is no CAPTION", "one or two sentences")
+    if not isinstance(told["PLACE"], (int, float)):
+        raise _refused(path, f"PLACE is {told['PLACE']!r}", "a number")
+    if takes.args or takes.posonlyargs:
+        raise _refused(path, "'draw' takes what it asks for by place", "def draw(*, …)")
+
+
+def refuse_unknown(figure: Kind, known: Iterable[str]) -> None:
+    """Refuse a figure that cannot do without something that nobody has.
+
+    Raises:
+        BadInput: names what it asks for.
+    """
+    if strangers := [name for name in figure.needs if name not in (known := set(known))]:
+        path = Path(__file__).with_name(f"{figure.name}.py")
+        found = f"'draw' asks for {', '.join(strangers)}"
+        raise _refused(path, found, f"some of {', '.join(sorted(known))}")
+
+
+def _refused(path: Path, found: str, expected: str) -> BadInput:
+    return BadInput(found, where=path, expected=expected, remedy=GUIDE)
