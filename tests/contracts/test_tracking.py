@@ -36,6 +36,12 @@ def test_a_sweep_is_checked_before_its_first_run(word, said):
         check_sweep(["command=train", word, "seed=1,2"])
 
 
+def test_a_sweep_over_slurm_asks_for_one_first(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BadInput, match="no Slurm is on this machine"):
+        check_sweep(["command=train", "seed=1,2", "hydra/launcher=submitit_slurm"])
+
+
 def test_several_values_without_a_sweep_say_how_to_begin_one():
     with pytest.raises(BadInput, match=r"several values \(residual.k=1,3\).*Add -m"):
         compose(["command=train", "residual.k=1,3"])

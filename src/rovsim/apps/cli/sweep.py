@@ -1,13 +1,15 @@
 """One job of a Hydra multirun; importable, so that every launcher can send it to a worker."""
 
 from pathlib import Path
+from shutil import which
 from typing import Any, Sequence
 
 from rovsim.application.settings import Settings, compose, settings_of
 from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.dispatch import run_command
-from rovsim.core.errors import RovsimError
+from rovsim.core.errors import BadInput, RovsimError
 
+SLURM = "hydra/launcher=submitit_slurm"
 # What a run's name has without this, or what is the same in all of them.
 NAMED = ("command", "campaign", "residual", "control", "out", "output")
 
@@ -29,8 +31,9 @@ def check_sweep(overrides: Sequence[str]) -> None:
     """Compose the run of each value, the others at their first, before any of them begins.
 
     Raises:
-        BadInput: one of the values cannot be used.
+        BadInput: one of the values cannot be used, or Slurm is asked for and is not here.
     """
+    _check_launcher(overrides)
     first: list[str] = []
     others: list[tuple[int, str]] = []
     for word in overrides:
@@ -39,6 +42,17 @@ def check_sweep(overrides: Sequence[str]) -> None:
         first.append(f"{key}={values[0]}" if values else word)
     for run in (first, *([*first[:k], word, *first[k + 1 :]] for k, word in others)):
         compose(run).learner  # noqa: B018 - its settings are checked when they are asked for
+
+
+def _check_launcher(overrides: Sequence[str]) -> None:
+    """Whether there is a Slurm, where runs are to go to one: the launcher would look for `srun`."""
+    if SLURM in overrides and which("srun") is None:
+        raise BadInput(
+            "no Slurm is on this machine (there is no 'srun')",
+            where=SLURM,
+            expected="a node from which jobs can be sent",
+            remedy="Run it there, or leave that out: the sweep then runs here.",
+        )
 
 
 def _list_values(word: str) -> list[str]:
