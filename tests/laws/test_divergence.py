@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis import procedure
+from rovsim.diagnosis import explanation
 from rovsim.diagnosis.observer.divergence import ModelLost, require_finite
+from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
 
@@ -44,9 +45,9 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
     def lose_once(e):
         require_finite(next(lost, e))
 
-    monkeypatch.setattr(procedure, "require_finite", lose_once)
+    monkeypatch.setattr(explanation, "require_finite", lose_once)
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
-    found = procedure.diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
+    found = diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
     assert found.fit is not None
     assert found.usable.lost == {"a": pytest.approx(21.0, abs=0.1)}
     assert found.usable.seconds < 21.0

@@ -63,6 +63,6 @@ def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypat
     wrong = Smoothing(
         cutoff=1.5, std=0.01, lr_statistic=100.0, told=1.5, lowest=1.49, highest=1.51, frame=0.01
     )
-    monkeypatch.setattr("rovsim.diagnosis.procedure.find_smoothing", lambda base, runs: wrong)
+    monkeypatch.setattr("rovsim.diagnosis.explanation.find_smoothing", lambda base, runs: wrong)
     found = diagnose_train_runs(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
     assert found.verdict == "adequate"

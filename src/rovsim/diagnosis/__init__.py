@@ -5,7 +5,8 @@ selection        which effects explain that: candidates, search, fits, what else
 checks           what is asked of the answer: structure left, what is known, noise floor
 equations        a law for what is left, where one holds
 answer           what was selected, validated, at its final values, and what that leaves
-procedure        these, in order
+explanation      what explains the runs: observed, searched, settled
+procedure        the same, finished and named: a whole diagnosis
 train_diagnosis  what comes of it
 advice           what to record next
 result           what is written of it
