@@ -19,7 +19,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.replay import predict as replay
-from rovsim.simulation.windows import find_windows
+from rovsim.simulation.windows import find_windows, last_predicted
 
 WIDER = 1.5  # times: beyond what two fits of the same runs differ by
 AFTER = 5.0  # s, the longest window of a comparison
@@ -96,7 +96,7 @@ def measure_replay_error(
         if not spans:
             continue
         found = replay(model, motion, spans, question.signals, question.replay)
-        ends = np.array([b - 1 if motion.binned else b for _, b in spans])
+        ends = last_predicted(motion, spans)
         off = found.eta[ends, :3] - motion.eta[ends, :3]
         squares += list(np.sum(off**2, axis=1))
     known = np.array(squares)[np.isfinite(squares)] if squares else np.empty(0)

@@ -8,6 +8,7 @@ from rovsim.results.bands import Coverage
 from rovsim.results.base import ByAxis
 from rovsim.simulation.prediction import Band
 from rovsim.simulation.replay import Spans
+from rovsim.simulation.windows import last_predicted
 
 
 def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
@@ -20,7 +21,7 @@ def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
     """
     known = np.isfinite(band.nu).all(axis=(0, 2)) & motion.usable
     inside = (motion.nu >= band.nu[0]) & (motion.nu <= band.nu[1])
-    last = np.array([b - 1 if motion.binned else b for _, b in spans], int)
+    last = last_predicted(motion, spans)
     last = last[known[last]]
     return Coverage(
         points=int(known.sum()),

@@ -10,7 +10,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import or_none
 from rovsim.results.growth import Curve
 from rovsim.simulation.prediction import Prediction
-from rovsim.simulation.windows import find_windows
+from rovsim.simulation.windows import find_windows, predicted
 
 LONG = "5"  # s, of the windows
 BINS = 25  # of 0.2 s: wider than the spacing of bins that were recorded as means
@@ -49,7 +49,7 @@ class GrowthScore:
 def _age(motion: Motion, horizon: float) -> Array:
     """Time since the anchor of the window each sample belongs to, s."""
     age = np.full(len(motion.time), np.nan)
-    for a, b in find_windows(motion, horizon):
-        at = slice(a, b) if motion.binned else slice(a + 1, b + 1)
-        age[at] = motion.time[at] - motion.time[a]
+    for window in find_windows(motion, horizon):
+        at = predicted(motion, window)
+        age[at] = motion.time[at] - motion.time[window[0]]
     return age

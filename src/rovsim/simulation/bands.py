@@ -22,6 +22,7 @@ from rovsim.simulation.prediction import LEVEL, Band, Prediction
 from rovsim.simulation.replay import Case, Spans, predict_all
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
+from rovsim.simulation.windows import predicted
 
 # A draw falls below the i-th of n others with probability i / (n + 1): with 39 the ends of the band
 # are the second and the last but one.
@@ -120,8 +121,8 @@ def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
     """Position and angles (n, 6); the angle to the measured ones is steady within each window."""
     measured = to_euler(motion.eta[:, 3:])
     turned = short_way(to_euler(found.eta[:, 3:]) - measured)
-    for a, b in spans:
-        at = np.arange(a, b) if motion.binned else np.arange(a + 1, b + 1)
+    for window in spans:
+        at = predicted(motion, window)
         turned[at] = np.unwrap(turned[at], axis=0)
     return np.hstack([found.eta[:, :3], measured + turned])
 

@@ -1,8 +1,9 @@
 """Where replays start anew: windows of some seconds inside usable stretches."""
 
-from typing import Iterator
+from typing import Iterable, Iterator
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion
@@ -13,8 +14,8 @@ def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
 
     None where a window is shorter than half a sample.
 
-    Sampled: predictions are anchor+1 .. end. Binned: bins anchor .. end-1, whose number follows the
-    uneven clock: the next window starts at the bin that begins nearest to `seconds` later.
+    Of bins, whose number follows the uneven clock, the next window starts at the one that begins
+    nearest to `seconds` later.
     """
     for first, last in motion.segments():
         if motion.binned:
@@ -34,6 +35,17 @@ def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterato
         if end >= last:
             return
         anchor = end
+
+
+def predicted(motion: Motion, window: tuple[int, int]) -> slice:
+    """Samples or bins that a window predicts: not the sample that it begins with."""
+    anchor, end = window
+    return slice(anchor, end) if motion.binned else slice(anchor + 1, end + 1)
+
+
+def last_predicted(motion: Motion, windows: Iterable[tuple[int, int]]) -> Array:
+    """The last of them (w,) in each window."""
+    return np.array([predicted(motion, window).stop - 1 for window in windows], int)
 
 
 def find_whole(motion: Motion) -> list[tuple[int, int]]:

@@ -23,7 +23,7 @@ from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import undo_mocap_view
 from rovsim.simulation.unfiltered_motion import stage_outputs
 from rovsim.simulation.unmeasured_velocities import propagate_unmeasured_velocities
-from rovsim.simulation.windows import find_windows
+from rovsim.simulation.windows import find_windows, predicted
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +77,9 @@ class Windows:
     @property
     def compared(self) -> Array:
         """Samples or bins (n,) at which velocities are compared: not the sample it starts from."""
-        return np.concatenate([np.empty(0, int), *(self._compared(span) for span in self.spans)])
-
-    def _compared(self, span: tuple[int, int]) -> Array:
-        shift = 0 if self.run.motion.binned else 1
-        return np.arange(span[0] + shift, span[1] + shift)
+        every = np.arange(len(self.run.motion.time))
+        parts = [every[predicted(self.run.motion, span)] for span in self.spans]
+        return np.concatenate([np.empty(0, int), *parts])
 
     def compare(
         self, models: Sequence[Model], starts: Array | None = None, pushes: Array | None = None
@@ -147,12 +145,10 @@ class Windows:
     def _subtract_measured(self, count: int, nu: Sequence[Array]) -> Array:
         """Differences (m, n, 6) of velocities (m, steps + 1, 6) of each window."""
         each = zip(self.spans, nu, strict=True)
-        parts = [self._at_readings(span, v) - self._measured(span) for span, v in each]
+        motion = self.run.motion
+        parts = [self._at_readings(s, v) - motion.nu[predicted(motion, s)] for s, v in each]
         found = np.concatenate([np.empty((count, 0, 6)), *parts], axis=1)
         return np.where(self.run.axes, found, 0.0)
-
-    def _measured(self, span: tuple[int, int]) -> Array:
-        return self.run.motion.nu[self._compared(span)]
 
     def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
         """Velocities (m, k, 6) at the samples, or their means over the bins, of one window."""
