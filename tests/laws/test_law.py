@@ -7,7 +7,8 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law
 from rovsim.diagnosis.equations.products.as_effect import list_moved
-from rovsim.diagnosis.equations.products.library import Columns, LawTerm, list_body_terms, push_at
+from rovsim.diagnosis.equations.products.columns import Columns
+from rovsim.diagnosis.equations.products.library import LawTerm, list_body_terms, push_at
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.selection import choose_kinds, stay

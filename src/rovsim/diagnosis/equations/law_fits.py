@@ -10,15 +10,14 @@ from scipy.stats import chi2
 from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, get_law
-from rovsim.diagnosis.equations.products.library import Columns, Push, project, push
+from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, project
+from rovsim.diagnosis.equations.products.library import push
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.observed_run import ObservedRun, number_blocks
+from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
-
-BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
 
 Key = TypeVar("Key")
 
@@ -103,19 +102,7 @@ class LawFits:
         return best.beats(others)
 
     def project(
-        self, fit: Fit, candidates: Sequence[Any], middle: Array, push: Push = push
+        self, fit: Fit, candidates: Sequence[Any], middle: Array, wrenches: Wrenches = push
     ) -> Columns:
-        """All candidate terms against what a fit leaves; `middle`: see `library.push`."""
-        bank, noise = self.workspace.bank, fit.noise
-        white, J = bank.whiten(fit.seen.e, noise), bank.whiten(fit.seen.J, noise)
-        return project(
-            candidates,
-            fit.hypothesis.model,
-            bank,
-            white,
-            J,
-            bank.design_filters(noise),
-            number_blocks(bank.runs) % BLOCKS,
-            middle,
-            push,
-        )
+        """All candidate terms against what a fit leaves; see `columns.project`."""
+        return project(candidates, fit, self.workspace.bank, middle, wrenches)

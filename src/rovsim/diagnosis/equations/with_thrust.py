@@ -15,7 +15,7 @@ from rovsim import AXES
 from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
-from rovsim.diagnosis.equations.products.library import Columns
+from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.products import KERNEL
 from rovsim.diagnosis.equations.products.variables import (
     FORCES,

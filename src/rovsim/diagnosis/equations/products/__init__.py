@@ -1,7 +1,8 @@
 """Laws that are sums of products of what acts at the same instant.
 
 variables     of what terms may be made, and on what they act
-library       all terms, and how each would show
+library       all terms, and the wrench of each
+columns       how each would show
 search        which comes next
 selection     one after the other, each refitted with all else
 as_effect     a law as an effect of a hypothesis

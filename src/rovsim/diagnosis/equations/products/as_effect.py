@@ -8,7 +8,8 @@ from numpy import ndarray as Array
 
 from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
-from rovsim.diagnosis.equations.products.library import Columns, LawTerm, drag_of
+from rovsim.diagnosis.equations.products.columns import Columns
+from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
 from rovsim.diagnosis.equations.products.variables import DEEP, EAST, NEAR, NORTH, SWIRL
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun

@@ -1,4 +1,4 @@
-"""Candidate terms of an equation, and how each would show in what the model did not foresee.
+"""Candidate terms of an equation, and the wrench of each.
 
 Dimensions are kept since every coefficient has the unit that its term needs; what acts on the
 vehicle along its own axes must turn with the mirror of port and starboard as its axis does.
@@ -8,11 +8,10 @@ the engine has none before all forces are known.
 
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Callable, Iterator, Sequence
+from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.regressors import earlier_states
@@ -30,14 +29,11 @@ from rovsim.diagnosis.equations.products.variables import (
     WORLD,
     tabulate,
 )
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.noise import RunFilters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 
 SPACING, WIDTH = 1.0, 0.6  # m: places tried, and how wide each is; the fit moves both
 MOST_PLACES = 60
-NEGLIGIBLE = 1e-9  # of an axis' acceleration per newton
 
 
 @dataclass(frozen=True)
@@ -130,26 +126,6 @@ def middle_of(runs: Sequence[ObservedRun]) -> Array:
     return np.append(np.mean(path, axis=0), WIDTH)
 
 
-@dataclass(frozen=True, eq=False)
-class Columns:
-    """Terms, the size (c,) of each per unit coefficient, and inner products of what they do.
-
-    `products` (1 + c, 1 + c) of whitened innovations and the terms' columns, each of unit size;
-    what was fitted is projected out. One for all readings, and one `parts` for each block of time.
-    `middle` (4,): place NED m and width m of terms that have none of their own.
-    """
-
-    terms: tuple[Any, ...]
-    size: Array
-    parts: tuple[Array, ...]
-    middle: Array
-
-    @property
-    def products(self) -> Array:
-        """Over all blocks."""
-        return np.asarray(sum(self.parts))
-
-
 def drag_of(model: Model) -> tuple[Array, Array]:
     """Linear and quadratic drag (3,) of surge, sway and heave."""
     return model.body.linear[:3], model.body.quadratic[:3]
@@ -188,92 +164,3 @@ def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array)
             turning = -table[EAST, :, None] * R[:, 0, :] + table[NORTH, :, None] * R[:, 1, :]
             out[:, :3] = gain * value[:, None] * turning
     return wrenches
-
-
-def respond_to(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
-    """How wrenches (c, n, 6) would show in whitened settled innovations (6, c, m) of a run."""
-    accelerations = pushes @ model.body.M_inv.T
-    out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
-    whole = np.empty(pushes.shape[:2])
-    for i in np.flatnonzero(run.axes):
-        own = accelerations[:, :, i]
-        acts = np.flatnonzero(np.abs(own).max(axis=1) > NEGLIGIBLE)
-        if not len(acts):
-            continue
-        b, a = filters.filters[i].response
-        for first, last in run.innovation_segments:
-            whole[acts, first:last] = lfilter(b, a, own[acts, first:last], axis=1)
-        out[i, acts] = whole[acts][:, run.settled]
-    return out
-
-
-Push = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]  # as `push`
-
-
-def project(
-    terms: Sequence[Any],
-    model: Model,
-    bank: FilterBank,
-    white: Array,
-    fitted: Array,
-    run_filters: Sequence[RunFilters],
-    block: Array,
-    middle: Array,
-    push: Push = push,
-) -> Columns:
-    """Inner products of all terms' columns with what is left.
-
-    Args:
-        terms: the candidates.
-        model: what they are added to.
-        bank: the runs.
-        white: whitened innovations (6, m) of all runs.
-        fitted: derivatives (k, 6, m) of what was fitted, whose directions are left out.
-        run_filters: filters that made them white, one for each run.
-        block: number (m,) of the part of the runs that each lies in.
-        middle: see `push`.
-        push: wrenches of terms, if they are of another kind.
-    """
-    size = _measure_size(terms, model, bank.runs, middle, push)
-    acts = np.flatnonzero(size > 0.0)
-    kept = tuple(terms[int(k)] for k in acts)
-    rows = 1 + len(acts) + len(fitted)
-    parts = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
-    first = 0
-    for run, filters in zip(bank.runs, run_filters, strict=True):  # columns of one run at a time
-        pushes = push(kept, run, model, middle) / size[acts, None, None]
-        columns = respond_to(pushes, model, run, filters)
-        at = slice(first, first + columns.shape[2])
-        every = [white[:, None, at], columns, fitted[:, :, at].swapaxes(0, 1)]
-        whole = np.concatenate(every, axis=1, dtype=np.float32)
-        for k in np.unique(block[at]):
-            own = whole[:, :, block[at] == k]
-            parts[int(k)] += sum(axis @ axis.T for axis in own)
-        first = at.stop
-    own_parts = _without(list(parts.values()), 1 + len(acts))
-    return Columns(kept, size[acts], tuple(own_parts), middle)
-
-
-def _measure_size(
-    terms: Sequence[Any], model: Model, runs: Sequence[ObservedRun], middle: Array, push: Push
-) -> Array:
-    """Root mean square (c,) of the wrench of each term with a coefficient of 1, over all runs."""
-    square, count = np.zeros(len(terms)), 0
-    for run in runs:
-        own = push(terms, run, model, middle)
-        square, count = square + np.sum(own**2, axis=(1, 2)), count + own.shape[1]
-    return np.asarray(np.sqrt(square / count))
-
-
-def _without(parts: Sequence[Array], kept: int) -> list[Array]:
-    """Products (kept, kept) of each part, the directions behind those taken out as in the whole."""
-    whole = np.asarray(sum(parts))
-    if len(whole) == kept:
-        return list(parts)
-    H = whole[kept:, kept:]
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    along = -np.linalg.lstsq(
-        H / np.outer(scale, scale), whole[kept:, :kept] / scale[:, None], 1e-9
-    )[0]
-    T = np.vstack([np.eye(kept), along / scale[:, None]])
-    return [T.T @ part @ T for part in parts]

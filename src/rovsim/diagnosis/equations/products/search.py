@@ -13,7 +13,8 @@ from collections import Counter
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.equations.products.library import Columns, LawTerm
+from rovsim.diagnosis.equations.products.columns import Columns
+from rovsim.diagnosis.equations.products.library import LawTerm
 
 FIRST = 6  # the likeliest single terms
 KEPT = 150  # columns of the regression: those that explain most alone

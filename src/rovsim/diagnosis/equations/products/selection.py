@@ -13,8 +13,8 @@ from rovsim.diagnosis.equations.products.as_effect import (
     list_moved,
     place_of,
 )
+from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import (
-    Columns,
     Known,
     LawTerm,
     list_terms,
