@@ -6,7 +6,6 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import ThrustPath
-from rovsim.dynamics.effects.base import CommandTransform
 from rovsim.dynamics.model import Model
 
 GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
@@ -81,7 +80,7 @@ def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
     found = []
     for term, columns in zip(h.terms, h.columns, strict=True):
         for parameter, column in zip(term.parameters, columns, strict=True):
-            if isinstance(term.effect, CommandTransform) and parameter.resolution:
+            if parameter.threshold:
                 half = np.zeros(len(h.x))
                 half[column] = 0.5 * parameter.resolution / parameter.scale
                 found.append((h.at(h.x - half).model, h.at(h.x + half).model))

@@ -10,6 +10,7 @@ workspace            the runs, the columns, one noise for all; what is fitted al
 prior                what is known of parameters before the runs are looked at
 levenberg_marquardt  damped least squares
 fit                  the most likely parameters of a hypothesis, and their spread
+thresholds           where they may lie, which derivatives do not tell
 pruning              without what is not worth its penalty
 forward_selection    add, refit, swap, prune
 vehicle_file_steps   what the vehicle file explains as well as something rarer

@@ -23,6 +23,7 @@ from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
 from rovsim.diagnosis.selection.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.steady_current import prefer_steady
+from rovsim.diagnosis.selection.thresholds import place_thresholds
 from rovsim.diagnosis.selection.vehicle_file_steps import (
     add_file,
     fix_gain,
@@ -49,7 +50,11 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         level = sum(p.net_decrease > NEARLY_BEST_SHARE * left[0].net_decrease for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
         left = [p for p in left if p not in trying]
-        tried = [(workspace.fit(current.hypothesis.with_term(p.term)), p.term.id) for p in trying]
+        starts = (
+            place_thresholds(workspace, current.hypothesis.with_term(p.term), p.term)
+            for p in trying
+        )
+        tried = [(workspace.fit(start), p.term.id) for start, p in zip(starts, trying, strict=True)]
         for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
             if not _beats_chance(workspace, best, current, threshold):
                 break
@@ -95,6 +100,7 @@ def try_swaps(
             worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
             if worse < 0.0 or measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
                 start, worse = rest.hypothesis.with_term(p.term), HOPELESS_LR
+                start = place_thresholds(workspace, start, p.term)
                 trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
                 worse = workspace.score(current) - workspace.score(trial)
@@ -128,6 +134,15 @@ def _fit_if_likelier(workspace: SearchWorkspace, start: Hypothesis, current: Fit
     trial = prune(workspace, workspace.fit(start))
     likelier = workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP
     return trial if likelier else None
+
+
+def move_thresholds(workspace: SearchWorkspace, current: Fit) -> Fit:
+    """With each threshold elsewhere, where that is likelier beside what was found since."""
+    for term in current.hypothesis.terms:
+        moved = place_thresholds(workspace, current.hypothesis, term)
+        if moved is not current.hypothesis:
+            current = _fit_if_likelier(workspace, moved, current) or current
+    return current
 
 
 def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
@@ -174,7 +189,7 @@ def _add_and_swap(
         gained = workspace.score(more) - workspace.score(current)
         workspace = workspace.update_after(more)
         workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
-        again = free_shape(workspace, again)
+        again = free_shape(workspace, move_thresholds(workspace, again))
         swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gained)
         current, _ = try_swaps(workspace, again, 1, swap)  # the likeliest other name
     return workspace, current

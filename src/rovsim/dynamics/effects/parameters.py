@@ -21,6 +21,7 @@ class Parameter:
     than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
     only when asked for; but `shape`, once its effect is known to act, where the data determine it.
     `discrete`: it has a few values, one of which is right: they are tried.
+    `threshold`: commands or states are compared with it, so what changes with it does so in jumps.
     `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
@@ -35,6 +36,7 @@ class Parameter:
     fitted: bool = field(default=True, kw_only=True)
     shape: bool = field(default=False, kw_only=True)
     discrete: bool = field(default=False, kw_only=True)
+    threshold: bool = field(default=False, kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
 
     @property

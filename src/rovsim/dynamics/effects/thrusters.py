@@ -49,8 +49,14 @@ class ThrusterDeadband(CommandTransform):
     )
     signature = Signature({"width": 0.15}, "surge", "surge thrust")
     # two steps of a log in whole microseconds: between them no command changes sides
-    parameters = (Parameter("width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN),)
-    starts = ({"width": 0.03}, {"width": 0.07})  # ESCs stop at 0.06 (25 us)
+    parameters = (
+        Parameter(
+            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, threshold=True
+        ),
+    )
+    # ESCs stop at 0.06 (25 us). A quadratic curve has twice the force at the next start: of what a
+    # band between two of them does, the narrower one shows a fifth or more.
+    starts = tuple({"width": round(0.035 * 2.0 ** (k / 2.0), 3)} for k in range(6))
 
     def thruster_command(self, command: Array) -> Array:
         """Commands inside the band become zero."""
