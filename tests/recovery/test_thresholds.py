@@ -13,7 +13,7 @@ from small_study import ROOT
 QUADRATIC = {"quadratic": {"forward": 50.0, "reverse": 40.0}}
 
 
-@pytest.mark.parametrize("width", [0.16, 0.235])  # between two starts, and beyond the last one
+@pytest.mark.parametrize("width", [0.16, 0.235])
 def test_a_wide_dead_band(tmp_path, width):
     """It was `adequate`, and a curve, a gain and two more at a probability of one."""
     vehicle = yaml.safe_load((ROOT / "conf" / "vehicle" / "bluerov2_heavy.yaml").read_text())

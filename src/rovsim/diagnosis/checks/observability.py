@@ -24,6 +24,7 @@ from rovsim.dynamics.vehicle import Vehicle
 
 DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
 OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
+USUAL = 2.5  # scales of a threshold: ESCs stop at 0.06; that a band of 0.3 would show tells nothing
 LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # without a log of them, not observable
 
 
@@ -74,9 +75,11 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
     """The columns by any of which an effect shows, and how many scales are worth looking for."""
     candidate = block.candidate
     if block.secant is not None:
-        return [(block.secant, 1.0)]
+        given = candidate.start.given()
+        wide = any(p.size(given[p.name]) > USUAL * p.scale for p in candidate.thresholds)
+        return [] if wide else [(block.secant, 1.0)]
     units = {p.name: p.unit for p in candidate.effect.parameters}
-    each = zip(candidate.free, block.derivatives, strict=True)
+    each = zip(candidate.sloped, block.derivatives, strict=True)
     return [
         (column, larger if units[name].startswith(OF_SIZE) else 1.0)
         for name, column in each

@@ -80,7 +80,7 @@ def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
     found = []
     for term, columns in zip(h.terms, h.columns, strict=True):
         for parameter, column in zip(term.parameters, columns, strict=True):
-            if parameter.threshold:
+            if parameter.tried:
                 half = np.zeros(len(h.x))
                 half[column] = 0.5 * parameter.resolution / parameter.scale
                 found.append((h.at(h.x - half).model, h.at(h.x + half).model))

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.core.errors import BadInput
+from rovsim.core.run import Site
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import (
     Effect,
     MeasurementFilter,
+    Parameter,
     Requirement,
     StochasticCurrent,
     Wrench,
@@ -30,6 +32,16 @@ class Candidate:
         """Whether the start is the effect's absence: its columns can then be judged singly."""
         return not self.start.given()
 
+    @property
+    def thresholds(self) -> list[Parameter]:
+        """Free parameters that what happens is compared with."""
+        return [p for p in self.effect.parameters if p.tried and p.name in self.free]
+
+    @property
+    def sloped(self) -> tuple[str, ...]:
+        """Free parameters whose derivatives tell something: thresholds are tried instead."""
+        return tuple(k for k in self.free if k not in {p.name for p in self.thresholds})
+
     def term(self, free: Sequence[str] | None = None) -> Term:
         """The candidate as a term of a hypothesis, with all or only some parameters free."""
         return Term(self.start, self.free if free is None else tuple(free))
@@ -46,11 +58,21 @@ def list_candidates(
             continue  # told by camera.py and drifting_current.py
         if cls.requires not in means:
             continue
-        for values in cls.starts_at(site):
+        for values in _list_starts(cls, site):
             start = cls(**values)
             if _can_act(start, runs):
                 candidates.append(Candidate(cls, start, cls.free_at(values)))
     return candidates
+
+
+def _list_starts(cls: type[Effect], site: Site) -> list[dict[str, float]]:
+    """Where fits of an effect begin; thresholds at each value that is tried."""
+    starts = list(cls.starts_at(site))
+    for p in cls.parameters:
+        if p.tried:
+            every = [start | {p.name: value} for start in starts for value in p.tried]
+            starts = [start for k, start in enumerate(every) if start not in every[:k]]
+    return starts
 
 
 def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement]:

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.least_squares import Reduction, select_columns, solve_bounded
+from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 
 TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
@@ -35,13 +36,20 @@ def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], penalty: float)
     best: dict[str, Proposal] = {}
     for block in blocks:
         reduction = _predict_reduction(M, block, penalty)
-        candidate = block.candidate
-        term = candidate.term([candidate.free[j] for j in reduction.chosen])
+        term = _step(block.candidate, reduction)
         worth = reduction.ss_decrease - penalty * term.choices
         known = best.get(term.id)
         if known is None or worth > known.net_decrease:
-            best[term.id] = Proposal(term.at(term.x + reduction.x), worth)
+            best[term.id] = Proposal(term, worth)
     return sorted(best.values(), key=lambda one: -one.net_decrease)
+
+
+def _step(candidate: Candidate, reduction: Reduction) -> Term:
+    """A candidate with what was chosen of it free, where that leads; thresholds where they are."""
+    moved = dict(zip((candidate.sloped[j] for j in reduction.chosen), reduction.x, strict=True))
+    kept = [p.name for p in candidate.thresholds]
+    term = candidate.term([name for name in candidate.free if name in moved or name in kept])
+    return term.at(term.x + [moved.get(name, 0.0) for name in term.free])
 
 
 def _predict_reduction(M: Array, block: CandidateColumns, penalty: float) -> Reduction:
@@ -53,7 +61,7 @@ def _predict_reduction(M: Array, block: CandidateColumns, penalty: float) -> Red
     if block.secant is None:
         return select_columns(H, b, penalty)
     s = 1 + block.secant
-    low, high = block.candidate.term().reach(TRUSTED)
+    low, high = block.candidate.term(block.candidate.sloped).reach(TRUSTED)
     return solve_bounded(H, b + M[own, s], 2.0 * M[0, s] + M[s, s], low, high)
 
 

@@ -26,7 +26,7 @@ class CandidateColumns:
     """Which columns are a candidate's.
 
     `secant` is the change from absence to its start, None where it starts from its absence;
-    `derivatives`, one for each of its free parameters.
+    `derivatives`, one for each of its free parameters but thresholds.
     """
 
     candidate: Candidate
@@ -108,8 +108,8 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
     """The candidate's columns, from this one on."""
     if candidate.absent:
-        return CandidateColumns(candidate, None, tuple(range(first, first + len(candidate.free))))
-    own = range(first + 1, first + 1 + len(candidate.free))
+        return CandidateColumns(candidate, None, tuple(range(first, first + len(candidate.sloped))))
+    own = range(first + 1, first + 1 + len(candidate.sloped))
     return CandidateColumns(candidate, first, tuple(own))
 
 
@@ -117,7 +117,7 @@ def _columns(
     bank: FilterBank, base: Hypothesis, candidate: Candidate, absent: Sequence[Array]
 ) -> list[Array]:
     """The secant, if the start is not the effect's absence, and the derivatives (c, 6, n)."""
-    seen = bank.linearise(Hypothesis(base.model, (candidate.term(),)))
+    seen = bank.linearise(Hypothesis(base.model, (candidate.term(candidate.sloped),)))
     columns = _silence_curvature(bank, seen)
     if not candidate.absent:
         each = zip(seen.e, absent, seen.J, strict=True)

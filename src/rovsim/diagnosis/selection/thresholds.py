@@ -1,8 +1,7 @@
-"""Where a threshold may lie: looked for all along its range, for derivatives do not lead there.
+"""Where a threshold lies: tried, for derivatives do not lead there.
 
 What is just below a threshold acts at other moments than what is just above it, so that a small
-step tells nothing of a larger one: a fit moves by single lines of the log, and stops. But the sum
-of squares falls all the way to where the threshold is.
+step tells nothing of a larger one: a fit moves by single lines of the log, and stops.
 """
 
 import numpy as np
@@ -11,22 +10,19 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
-REACH = 10.0  # scales: how far from its absence a threshold is looked for
-COARSE, FINE = 2.0, 0.5  # resolutions between those that are tried first, and about the best
+ABOUT = np.arange(-2.0, 2.5, 0.5)  # resolutions from the best of those that are tried
 
 
 def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> Hypothesis:
     """A hypothesis with the thresholds of one of its terms where they explain most.
 
-    All else stays as it is.
+    Each value of its grid is tried, then what is about the best. All else stays as it is.
     """
     own = next(k for k, one in enumerate(h.terms) if one.id == term.id)
     for column, parameter in zip(h.columns[own], h.terms[own].parameters, strict=True):
-        if parameter.threshold:
-            grain = parameter.resolution / parameter.scale
-            away = np.arange(COARSE * grain, REACH, COARSE * grain)
-            h = _choose(workspace, h, column, h.absence[column] + away)
-            about = np.arange(-COARSE, COARSE + FINE, FINE) * grain
+        if parameter.tried:
+            h = _choose(workspace, h, column, np.array(parameter.tried) / parameter.scale)
+            about = ABOUT * parameter.resolution / parameter.scale
             h = _choose(workspace, h, column, h.x[column] + about)
     return h
 

@@ -78,7 +78,7 @@ class WhiteColumns:
         known = {
             (block.candidate.effect.id, name): column
             for block in reversed(self.beside(h).blocks)
-            for name, column in zip(block.candidate.free, block.derivatives, strict=True)
+            for name, column in zip(block.candidate.sloped, block.derivatives, strict=True)
         }
         names = [(term.id, name) for term in h.terms for name in term.free]
         both = [(k, known[name]) for k, name in enumerate(names) if name in known]

@@ -21,7 +21,8 @@ class Parameter:
     than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
     only when asked for; but `shape`, once its effect is known to act, where the data determine it.
     `discrete`: it has a few values, one of which is right: they are tried.
-    `threshold`: commands or states are compared with it, so what changes with it does so in jumps.
+    `tried`: values of a threshold, with which commands or states are compared: what changes with it
+    does so in jumps, and no derivative leads there.
     `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
     """
 
@@ -36,7 +37,7 @@ class Parameter:
     fitted: bool = field(default=True, kw_only=True)
     shape: bool = field(default=False, kw_only=True)
     discrete: bool = field(default=False, kw_only=True)
-    threshold: bool = field(default=False, kw_only=True)
+    tried: tuple[float, ...] = field(default=(), kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
 
     @property

@@ -34,6 +34,10 @@ def _gains(count: int) -> tuple[Parameter, ...]:
     return tuple(Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1) for name in names)
 
 
+# ESCs stop at 0.06 (25 us); five times that is more than anybody would fly with.
+WIDTHS = tuple(round(0.01 * k, 2) for k in range(1, 31))
+
+
 class ThrusterDeadband(CommandTransform):
     """A thruster that does not start below a small command; above it the curve is unchanged."""
 
@@ -51,12 +55,10 @@ class ThrusterDeadband(CommandTransform):
     # two steps of a log in whole microseconds: between them no command changes sides
     parameters = (
         Parameter(
-            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, threshold=True
+            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, tried=WIDTHS
         ),
     )
-    # ESCs stop at 0.06 (25 us). A quadratic curve has twice the force at the next start: of what a
-    # band between two of them does, the narrower one shows a fifth or more.
-    starts = tuple({"width": round(0.035 * 2.0 ** (k / 2.0), 3)} for k in range(6))
+    starts = ({"width": 0.03}, {"width": 0.07})
 
     def thruster_command(self, command: Array) -> Array:
         """Commands inside the band become zero."""
