@@ -26,7 +26,7 @@ help:
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
-	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations|laboratory"
+	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations|laboratory|strong"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make docs    the documentation as a site that works offline: site/index.html"
 	@echo "make setup   the environment alone"

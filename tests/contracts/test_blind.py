@@ -98,6 +98,17 @@ def test_laboratories_have_everything_at_once():
         assert ("colour_noise" in one.tank["camera"]) != ("pose_filter" in one.names)
 
 
+def test_strong_cases_hide_what_others_do_in_a_larger_size():
+    usual = {c.id: c for c in suite("quick", "development")}
+    for one in suite("strong", "development"):
+        one.settings()
+        (large,), (small,) = one.hidden, usual[f"single/{one.names[0]}/0"].hidden
+        build = built_in()[large.effect]
+        off = [build(**entry.values).values - build().values for entry in (large, small)]
+        assert (np.abs(np.nan_to_num(off[0])) >= np.abs(np.nan_to_num(off[1]))).all()
+        assert large.values != small.values
+
+
 def test_laws_lie_outside_the_catalogue():
     cases = suite("equations", "development")
     assert len({c.id for c in cases}) == len(cases) == 55

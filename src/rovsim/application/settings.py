@@ -59,7 +59,9 @@ class BlindSettings(Section):
     """The blind benchmark: which cases, who flies and who answers."""
 
     simulator: Literal["tank", "independent"] = "tank"
-    suite: Literal["quick", "standard", "full", "recordings", "equations", "laboratory"] = "quick"
+    suite: Literal[
+        "quick", "standard", "full", "recordings", "equations", "laboratory", "strong"
+    ] = "quick"
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     page: str = "docs/benchmark_blind.md"

@@ -2,6 +2,7 @@
 
 single     every effect at its standard strength
 weak       the same at 0.5, 0.25 and 0.1 of it: where does it vanish?
+strong     the same at 2 and 4 times: is it still named where first order does not reach?
 noisy      camera noise three times as large
 short      runs of 30 and 20 s
 pair, triple   effects of different families, none of which imitates another by construction
@@ -38,6 +39,7 @@ NOISY: Mapping[str, Any] = {
     }
 }
 WEAK = (0.5, 0.25, 0.1)
+STRONG = (2.0, 4.0)
 SHORT = (30.0, 20.0)  # s
 MANY = (4, 5, 6, 7, 8)  # effects at once
 DEVIATION = (0.02, 0.05)  # of each coefficient
@@ -96,7 +98,7 @@ def standard(seeds: Range) -> Iterator[Case]:
 
 
 def full(seeds: Range) -> Iterator[Case]:
-    """All kinds but laboratories, laws and recordings; quick and standard are parts of it."""
+    """All kinds but laboratories, laws, recordings, strong ones; quick and standard are in it."""
     for name, recipe in RECIPES.items():
         yield from (hiding("single", (name,), k, seeds) for k in range(6))
         if recipe.weak:
@@ -228,6 +230,13 @@ def laboratories(seeds: Range) -> Iterator[Case]:
     yield from (laboratory(FAMILIES, k, seeds) for k in range(12))
 
 
+def strong(seeds: Range) -> Iterator[Case]:
+    """Every effect several times as strong as a laboratory would usually meet it."""
+    for name, recipe in RECIPES.items():
+        if recipe.weak:
+            yield from (hiding("strong", (name,), 0, seeds, strength) for strength in STRONG)
+
+
 def law(name: str, k: int, seeds: Range) -> Case:
     """A smooth law outside the catalogue."""
     case_id = f"law/{name}/{k}"
@@ -247,4 +256,5 @@ SUITES = {
     "recordings": recordings,
     "equations": equations,
     "laboratory": laboratories,
+    "strong": strong,
 }
