@@ -1,11 +1,12 @@
 """What a search leaves out again, and what it cannot judge."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.residual_source import Linearised
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.model import nominal
@@ -22,17 +23,14 @@ class Wald:
     def __init__(self, z: dict[str, float], two_log_likelihood: float) -> None:
         self.z, self.two_log_likelihood = z, two_log_likelihood
 
-    def fit(self, h: Hypothesis) -> SimpleNamespace:
+    def fit(self, h: Hypothesis) -> Fit:
         left = [name for term in h.terms for name in term.free]
         gone = sum(self.z[name] ** 2 for name in self.z if name not in left)
         std = np.array([abs(x) / self.z[name] for x, name in zip(h.x, left, strict=True)])
-        two_log_likelihood = self.two_log_likelihood - gone
-        finite = np.isfinite(two_log_likelihood)
-        return SimpleNamespace(
-            hypothesis=h, std=std, two_log_likelihood=two_log_likelihood, is_finite=finite
-        )
+        seen = Linearised(h, [], [])
+        return Fit(seen, FIRST_NOISE, self.two_log_likelihood - gone, np.diag(std**2))
 
-    def score(self, found: SimpleNamespace) -> float:
+    def score(self, found: Fit) -> float:
         return found.two_log_likelihood - PENALTY * len(found.hypothesis.x)
 
 

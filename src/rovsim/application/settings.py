@@ -7,6 +7,7 @@ from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
 from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
+from rovsim.core.names import as_list
 from rovsim.core.schema import PathText, S, Section, checked
 from rovsim.core.shipped import conf_folders, conf_names
 from rovsim.design.settings import DesignSettings
@@ -91,8 +92,7 @@ class CommandSettings(Section):
     @property
     def effect_files(self) -> list[Path]:
         """Files that declare the user's own effects."""
-        named = self.effects_file or []
-        return [Path(name) for name in ([named] if isinstance(named, str) else named)]
+        return [Path(name) for name in as_list(self.effects_file or [])]
 
 
 class CampaignSettings(SimulationSettings, CommandSettings):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Iterator
 from rovsim.core.bounded_cache import ReadAgain, Remade, read_again
 from rovsim.core.collector import end_at_once
 from rovsim.core.errors import RovsimError
+from rovsim.core.names import as_list
 from rovsim.core.progress import heard_by
 from rovsim.core.schema import S, checked
 from rovsim.measurement.signals.motion import Motion
@@ -54,7 +55,7 @@ class Job:
     def paths(self, name: str) -> list[Path]:
         """Input files of a name, none where the rule left it empty."""
         given = self.snakemake.input.get(name) or []
-        return [Path(path) for path in ([given] if isinstance(given, str) else given)]
+        return [Path(path) for path in as_list(given)]
 
     def path(self, name: str) -> Path:
         """The one input file of a name."""
@@ -68,7 +69,7 @@ class Job:
     def outputs(self) -> dict[str, list[Path]]:
         """Output files by name."""
         return {
-            name: [Path(path) for path in ([given] if isinstance(given, str) else given)]
+            name: [Path(path) for path in as_list(given)]
             for name, given in self.snakemake.output.items()
         }
 

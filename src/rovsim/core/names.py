@@ -5,7 +5,7 @@ rest of it would be a command.
 """
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Iterable
 from unicodedata import category
 
 from pydantic import AfterValidator
@@ -29,6 +29,11 @@ def _name(text: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_name)]
+
+
+def as_list(given: str | Iterable[str]) -> list[str]:
+    """What may be named alone or as one of several, as several."""
+    return [given] if isinstance(given, str) else list(given)
 
 
 def name_of(path: Path) -> str:

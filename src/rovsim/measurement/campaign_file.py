@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field
 
 from rovsim import AXES
-from rovsim.core.names import Name, is_name
+from rovsim.core.names import Name, as_list, is_name
 from rovsim.core.rotations import BodyAxes, WorldAxes
 from rovsim.core.schema import Axis, PathText, Section
 from rovsim.measurement.sensors import Sensors
@@ -154,7 +154,7 @@ class Run(Section):
     @property
     def sensor_files(self) -> list[str]:
         """The files that hold what was measured."""
-        return [self.mocap] if isinstance(self.mocap, str) else self.mocap
+        return as_list(self.mocap)
 
     @property
     def commanded(self) -> bool:

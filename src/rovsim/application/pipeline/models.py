@@ -5,7 +5,7 @@ from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import require_replaceable
-from rovsim.core.names import is_name
+from rovsim.core.names import as_list, is_name
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN, Model
@@ -23,7 +23,7 @@ def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalog
     Raises:
         BadInput: one cannot be loaded, or two are of the same file.
     """
-    given = list(dict.fromkeys([specs] if isinstance(specs, str) else specs))
+    given = list(dict.fromkeys(as_list(specs)))
     loaded = [load_model(spec, vehicle, catalogue) for spec in given]
     names = tell_apart([model.name for model in loaded], given)
     return [model.called(name) for model, name in zip(loaded, names, strict=True)]

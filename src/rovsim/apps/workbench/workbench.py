@@ -17,6 +17,7 @@ from rovsim.apps.workbench.kept_replays import KeptReplays
 from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
+from rovsim.core.names import as_list
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
@@ -52,8 +53,7 @@ class Workbench:
         data = measure(open_campaign(settings.campaign), settings.signals)
         found = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
         _check_base(next(iter(found.values())))
-        specs = [settings.model] if isinstance(settings.model, str) else settings.model
-        paths = dict(zip(found, dict.fromkeys(specs), strict=True))
+        paths = dict(zip(found, dict.fromkeys(as_list(settings.model)), strict=True))
         bench = Workbench(settings, catalogue.on(data.vehicle), data, found, paths)
         if settings.diagnosis:
             given = Path(settings.diagnosis)

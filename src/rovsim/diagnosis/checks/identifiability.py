@@ -13,9 +13,8 @@ DOUBT = 0.01  # chance of values as far from absence
 
 def group_joint_parameters(fit: Fit) -> list[list[str]]:
     """Groups of parameters, as `effect.parameter`, the largest group first."""
-    h, std = fit.hypothesis, np.maximum(fit.std, 1e-12)
-    names = h.parameter_names
-    unsure = np.flatnonzero(np.abs(h.x - h.absence) < UNSURE_STDS * std)
+    names, std = fit.hypothesis.parameter_names, np.maximum(fit.std, 1e-12)
+    unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
     correlation = fit.covariance / np.outer(std, std)
     alike = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
     _, label = connected_components(alike, directed=False)

@@ -56,6 +56,11 @@ class Fit:
         """Standard deviations (k,) of the scaled parameters."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
+    @property
+    def z_scores(self) -> Array:
+        """How far the free parameters (k,) are from their absence, in standard deviations."""
+        return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, 1e-12)
+
     def distance(self, own: Sequence[int] | Array) -> float:
         """Of some parameters from their absence, squared, in standard deviations (Wald 1943)."""
         off, V = (self.hypothesis.x - self.hypothesis.absence)[own], self.covariance[own][:, own]

@@ -95,7 +95,7 @@ def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None
 def _find_weak(fit: Fit, penalty: float) -> Array:
     """Which free parameters (k,) are not worth their penalty; those of a loop only together."""
     h = fit.hypothesis
-    weak = ((h.x - h.absence) / np.maximum(fit.std, 1e-12)) ** 2 < penalty
+    weak = fit.z_scores**2 < penalty
     for term, own in zip(h.terms, h.columns, strict=True):
         if not term.vanishes:
             weak[own] = weak[own].all()

@@ -29,7 +29,7 @@ def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
 def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     """The hypothesis without its least certain parameter; None if all of them are sure."""
     h = current.hypothesis
-    certain = ((h.x - h.absence) / np.maximum(current.std, 1e-12)) ** 2
+    certain = current.z_scores**2
     for term, own in zip(h.terms, h.columns, strict=True):
         if own and not term.vanishes:  # it would go as a whole
             certain[own] = np.max(certain[own])

@@ -22,6 +22,7 @@ from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
+from rovsim.core.names import as_list
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
@@ -85,7 +86,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
 def _check_name(given: str | Sequence[str]) -> None:
     """Refuse a base that is called as what is trained will be: one would stand for the other."""
-    for one in [given] if isinstance(given, str) else given:
+    for one in as_list(given):
         if Path(one).stem == FILE.stem:
             raise BadInput(
                 f"the base is called '{FILE.stem}', as the model that is trained will be",
