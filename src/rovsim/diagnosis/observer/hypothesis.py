@@ -53,9 +53,17 @@ class Term:
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
 
     @property
+    def shapes(self) -> tuple[bool, ...]:
+        """Which free parameters are shapes, that say nothing without the others."""
+        return tuple(p.shape for p in self.parameters)
+
+    @property
     def choices(self) -> int:
-        """How many numbers it chose: its free parameters, or the one way it was tried."""
-        return max(1, len(self.free))
+        """How many numbers it chose: its free parameters, or the one way it was tried.
+
+        No choice are shapes: they are fitted wherever the data determine them.
+        """
+        return max(1, len(self.free) - sum(self.shapes))
 
     @property
     def vanishes(self) -> bool:

@@ -37,6 +37,7 @@ ROUNDS = 3  # of trials, when none of the first matters
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
 # Of what the last addition explained: while more is sought, less is not worth a swap.
 MIN_SWAP_SHARE = 0.01
+DETERMINED = 0.5  # scales: the standard deviation of a shape, by which two scales are told apart
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
@@ -146,17 +147,20 @@ def move_thresholds(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With the shape of an effect free, where that is likelier: how far from a wall it reaches.
+    """With the shape of an effect free where the data determine it: how far from a wall it reaches.
 
-    Left as it usually is, it would have other effects make up for it.
+    Left as it usually is, it would have other effects make up for it, and its gain would seem surer
+    than it is.
     """
     h = current.hypothesis
     for i, term in enumerate(h.terms):
-        shape = [p.name for p in term.effect.parameters if p.shape and p.name not in term.free]
+        shape = tuple(p.name for p in term.effect.parameters if p.shape and p.name not in term.free)
         if shape:
-            freed = h.replaced(i, replace(term, free=(*term.free, *shape)))
-            if trial := _fit_if_likelier(workspace, freed, current):
-                return free_shape(workspace, trial)
+            trial = workspace.fit(h.replaced(i, replace(term, free=(*term.free, *shape))))
+            own = trial.hypothesis.columns[i][-len(shape) :]
+            determined = trial.is_finite and (trial.std[own] < DETERMINED).all()
+            if determined and workspace.score(trial) > workspace.score(current) - MIN_LR_OF_SWAP:
+                return free_shape(workspace, prune(workspace, trial))
     return current
 
 
@@ -173,7 +177,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
     judged = judge_beside_file(workspace, prefer_file(workspace, current))
-    current = fix_gain(workspace, judged.fit)
+    current = free_shape(workspace, fix_gain(workspace, judged.fit))
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
     return SearchResult(workspace, current, keep_likeliest([*rivals, *judged.rivals]))
 

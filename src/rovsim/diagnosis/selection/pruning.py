@@ -33,6 +33,7 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
     for term, own in zip(h.terms, h.columns, strict=True):
         if own and not term.vanishes:  # it would go as a whole
             certain[own] = np.max(certain[own])
+        certain[[k for k, shape in zip(own, term.shapes, strict=True) if shape]] = np.inf
     weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
     if not certain[weakest] < 2.0 * workspace.penalty:
         return None
@@ -43,10 +44,13 @@ def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
     """The hypothesis without some of its free parameters (k,), and without terms that have none.
 
     An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
+    Shapes go with the last of the others.
     """
     terms = []
     for term, own in zip(h.terms, h.columns, strict=True):
         idle = {name for name, k in zip(term.free, own, strict=True) if weak[k]}
+        if all(p.shape or p.name in idle for p in term.parameters):
+            idle = set(term.free)
         defaults = {p.name: p.default for p in term.parameters if p.name in idle}
         left = tuple(name for name in term.free if name not in idle)
         if not term.free:
