@@ -11,7 +11,7 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.settings import TrackingSettings, compose
 from rovsim.application.tracking.runs import ranking, tell_ranking, track
-from rovsim.apps.cli.sweep import check_sweep, choose_out, name_run
+from rovsim.apps.cli.sweep import check_launcher, check_sweep, choose_out, name_run
 from rovsim.core.errors import BadInput
 
 
@@ -39,7 +39,7 @@ def test_a_sweep_is_checked_before_its_first_run(word, said):
 def test_a_sweep_over_slurm_asks_for_one_first(monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(BadInput, match="no Slurm is on this machine"):
-        check_sweep(["command=train", "seed=1,2", "hydra/launcher=submitit_slurm"])
+        check_launcher(["command=train", "seed=1,2", "hydra/launcher=submitit_slurm"])
 
 
 def test_several_values_without_a_sweep_say_how_to_begin_one():

@@ -13,12 +13,15 @@ from hypothesis.extra.numpy import arrays
 from rovsim.core.rotations import exp, log, multiply, normalized
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
     absorb_delay,
     search_consistent,
     seen_through,
 )
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
@@ -258,8 +261,8 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     )
 
     def found(start, score=0.0):
-        std = np.full(len(start.x), 0.01)
-        return SimpleNamespace(hypothesis=start, std=std, is_finite=True, score=score)
+        covariance = np.diag(np.full(len(start.x), 0.01**2))
+        return Fit(Linearised(start, [], []), FIRST_NOISE, score, covariance)
 
     def fit(start, reach=np.inf):
         if "thruster_lag" in (term.id for term in start.terms):
@@ -270,7 +273,7 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     h = Hypothesis(
         seen_through(base, smoothing), (Term(ThrusterLag(time_constant=lag), ("time_constant",)),)
     )
-    workspace = SimpleNamespace(fit=fit, score=lambda one: one.score, penalty=0.0)
+    workspace = SimpleNamespace(fit=fit, score=lambda one: one.two_log_likelihood, penalty=0.0)
     again, finer = absorb_delay(SearchResult(workspace, found(h), ()), base, smoothing)
     assert (again.best.hypothesis.terms == ()) is absorbed
     assert finer.latency == pytest.approx(lag if absorbed else 0.0)

@@ -1,7 +1,5 @@
 """Where all of it is wrong at once: what the demands command, and how much drag there is."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -12,8 +10,10 @@ from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
+from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.candidates import list_candidates
+from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
 from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
@@ -47,7 +47,7 @@ class OpenScale:
     def fit(self, h, reach):
         free = {term.id for term in h.terms}
         std = np.full(len(h.x), 100.0 if "thruster_gain" in free else 0.1)
-        return SimpleNamespace(hypothesis=h, std=std)
+        return Fit(Linearised(h, [], []), FIRST_NOISE, 0.0, np.diag(std**2))
 
     def score(self, found):
         free = {term.id for term in found.hypothesis.terms}

@@ -165,7 +165,8 @@ def _sweep(overrides: list[str]) -> None:
     import hydra
 
     from rovsim.application.conf_search import first_folder
-    from rovsim.apps.cli.sweep import job
+    from rovsim.apps.cli.sweep import check_launcher, job
 
+    check_launcher(overrides)
     sys.argv = ["rovsim", "--multirun", *overrides]
     hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()

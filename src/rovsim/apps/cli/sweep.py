@@ -31,9 +31,8 @@ def check_sweep(overrides: Sequence[str]) -> None:
     """Compose the run of each value, the others at their first, before any of them begins.
 
     Raises:
-        BadInput: one of the values cannot be used, or Slurm is asked for and is not here.
+        BadInput: one of the values cannot be used.
     """
-    _check_launcher(overrides)
     first: list[str] = []
     others: list[tuple[int, str]] = []
     for word in overrides:
@@ -44,8 +43,12 @@ def check_sweep(overrides: Sequence[str]) -> None:
         compose(run).learner  # noqa: B018 - its settings are checked when they are asked for
 
 
-def _check_launcher(overrides: Sequence[str]) -> None:
-    """Whether there is a Slurm, where runs are to go to one: the launcher would look for `srun`."""
+def check_launcher(overrides: Sequence[str]) -> None:
+    """Look for Slurm, where runs are to go to one: by `srun`, as the launcher does.
+
+    Raises:
+        BadInput: there is none.
+    """
     if SLURM in overrides and which("srun") is None:
         raise BadInput(
             "no Slurm is on this machine (there is no 'srun')",

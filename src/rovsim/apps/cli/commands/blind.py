@@ -1,7 +1,7 @@
 """Hide known physics in the tank, ask what is missing, and keep the score.
 
-rovsim blind [blind.suite=quick|standard|full|recordings|equations|laboratory|strong]
-             [blind.seeds=reporting|development]
+rovsim blind [blind.suite=quick|standard|full|recordings|equations|laboratory|
+             strong] [blind.seeds=reporting|development]
              [blind.simulator=tank|independent] [blind.methods=[diagnosis,stlsq,frols]]
              [out=results/blind]
 
