@@ -160,6 +160,7 @@ BAD = {  # what is replaced, by what: what the message says
     ("scale=1.0),)", "scale=1.0))"): "tuple of Parameter",  # the comma that makes a tuple
     ("scale=1.0", "scale='10'"): "and numbers",
     ("scale=1.0", "scale=1.0, low=0.0, tried=(-1.0,)"): "tries .*in its range",
+    ("scale=1.0", "scale=1.0, tried=('0.1',)"): "tries .*in its range",
     ('"N", "c"', 'None, "c"'): "texts for name, unit",
     ('"N", "c"', '"", "c"'): "'1' for none",
     ("scale=1.0", "scale=1.0, fitted=False"): "no parameter is fitted",

@@ -67,9 +67,8 @@ def _digest(modules: Iterable[Path], described: Iterable[Path]) -> str:
     for path in modules:
         content.update(path.read_bytes())
     for path in described:
-        content.update(
-            _without_comments(path.read_bytes()) if path.suffix == ".py" else path.read_bytes()
-        )
+        text = path.read_bytes()
+        content.update(_without_comments(text) if path.suffix == ".py" else text)
     return content.hexdigest()[:16]
 
 

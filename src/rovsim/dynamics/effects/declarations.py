@@ -69,7 +69,7 @@ def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, st
         expected = "texts for name, unit ('1' for none) and symbol, and numbers"
         yield f"parameter '{p.name}' is {p}", expected
         return
-    if not (isinstance(p.tried, tuple) and all(p.low <= value <= p.high for value in p.tried)):
+    if not (_holds(p.tried, Real) and all(p.low <= value <= p.high for value in p.tried)):
         yield f"parameter '{p.name}' tries {p.tried!r}", "a tuple of values in its range"
     inside = np.isnan(p.default) or p.low <= p.default <= p.high
     if not (_is_name(p.name) and inside and p.scale > 0.0) or names.count(p.name) > 1:
