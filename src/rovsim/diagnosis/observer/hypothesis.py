@@ -53,17 +53,12 @@ class Term:
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
 
     @property
-    def shapes(self) -> tuple[bool, ...]:
-        """Which free parameters are shapes, that say nothing without the others."""
-        return tuple(p.shape for p in self.parameters)
-
-    @property
     def choices(self) -> int:
         """How many numbers it chose: its free parameters, or the one way it was tried.
 
         No choice are shapes: they are fitted wherever the data determine them.
         """
-        return max(1, len(self.free) - sum(self.shapes))
+        return max(1, sum(not p.shape for p in self.parameters))
 
     @property
     def vanishes(self) -> bool:
@@ -133,6 +128,11 @@ class Hypothesis:
     def parameter_names(self) -> list[str]:
         """The free parameters, as `effect.parameter`."""
         return [f"{term.id}.{p.name}" for term in self.terms for p in term.parameters]
+
+    @property
+    def shapes(self) -> Array:
+        """Which of them (k,) are shapes, that say nothing without the others."""
+        return np.array([p.shape for term in self.terms for p in term.parameters], bool)
 
     @property
     def absence(self) -> Array:

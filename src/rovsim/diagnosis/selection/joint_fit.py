@@ -99,5 +99,4 @@ def _find_weak(fit: Fit, penalty: float) -> Array:
     for term, own in zip(h.terms, h.columns, strict=True):
         if not term.vanishes:
             weak[own] = weak[own].all()
-        weak[[k for k, shape in zip(own, term.shapes, strict=True) if shape]] = False
-    return np.asarray(weak)
+    return np.asarray(weak & ~h.shapes)

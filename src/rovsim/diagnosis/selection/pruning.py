@@ -33,7 +33,7 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
     for term, own in zip(h.terms, h.columns, strict=True):
         if own and not term.vanishes:  # it would go as a whole
             certain[own] = np.max(certain[own])
-        certain[[k for k, shape in zip(own, term.shapes, strict=True) if shape]] = np.inf
+    certain[h.shapes] = np.inf
     weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
     if not certain[weakest] < 2.0 * workspace.penalty:
         return None

@@ -18,8 +18,14 @@ def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> H
 
     Each value of its grid is tried, then what is about the best. All else stays as it is.
     """
-    own = next(k for k, one in enumerate(h.terms) if one.id == term.id)
-    for column, parameter in zip(h.columns[own], h.terms[own].parameters, strict=True):
+    each = zip(h.terms, h.columns, strict=True)
+    own = [
+        (p, k)
+        for one, at in each
+        if one.id == term.id
+        for p, k in zip(one.parameters, at, strict=True)
+    ]
+    for parameter, column in own:
         if parameter.tried:
             h = _choose(workspace, h, column, np.array(parameter.tried) / parameter.scale)
             about = ABOUT * parameter.resolution / parameter.scale
