@@ -2,6 +2,7 @@
 PYTHON ?= python3.11
 CORES ?= 2
 SUITE ?= quick
+SHARE ?= 1
 BIN := .venv/bin
 export PYTHONHASHSEED := 0
 # compiled once, not anew in each of the hundred processes of a workflow or of the tests
@@ -26,7 +27,7 @@ help:
 	@echo "make check   formatting, lint, types, layers, workflow"
 	@echo "make wheel-test   the wheel alone, in an empty environment (PYTHON=, 3.11 to 3.13)"
 	@echo "make bench   replay and inference speed, into results/bench.json"
-	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations|laboratory|strong"
+	@echo "make benchmark-blind   known physics hidden in the tank: is it found? SUITE=quick|standard|full|recordings|equations|laboratory|strong SHARE=0.25"
 	@echo "make catalogue   docs/catalogue.md and its pictures, from the declarations of the effects"
 	@echo "make docs    the documentation as a site that works offline: site/index.html"
 	@echo "make setup   the environment alone"
@@ -116,7 +117,7 @@ bench: setup
 	$(BIN)/rovsim bench
 
 benchmark-blind: setup
-	$(BIN)/snakemake -s workflow/blind.smk --cores $(CORES) --quiet rules --config overrides="blind.suite=$(SUITE)"
+	$(BIN)/snakemake -s workflow/blind.smk --cores $(CORES) --quiet rules --config overrides="blind.suite=$(SUITE) blind.share=$(SHARE)"
 
 catalogue: setup
 	$(BIN)/python -m rovsim.reporting.catalogue

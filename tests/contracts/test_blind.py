@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rovsim.application.settings import BlindSettings
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import SEEDS, Case, Unlisted, seed_of
 from rovsim.benchmarks.blind.flight import fly
@@ -12,7 +13,7 @@ from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.benchmarks.blind.recordings import KINDS
-from rovsim.benchmarks.blind.run import pending, place, read_answers, run
+from rovsim.benchmarks.blind.run import Benchmark, pending, place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
 from rovsim.benchmarks.blind.suites import APART, FAMILIES, suite
 from rovsim.benchmarks.blind.summary import detection_limit, summarize
@@ -73,6 +74,17 @@ def test_cases_are_valid_and_their_effects_do_something():
             assert build_effect(entry, built_in()).given()
         for unlisted in one.outside:
             assert unlisted.build().given()
+
+
+def test_a_share_of_a_suite_is_a_random_sample_and_part_of_every_larger_one():
+    def ids(share):
+        asked = BlindSettings(suite="full", share=share)
+        return {one.id for one in Benchmark.of(asked, None).cases}
+
+    quarter, half, full = ids(0.25), ids(0.5), ids(1.0)
+    assert quarter < half < full
+    assert len(quarter) == pytest.approx(0.25 * len(full), rel=0.2)
+    assert len(half) == pytest.approx(0.5 * len(full), rel=0.1)
 
 
 def test_recordings_of_others_hide_what_they_show_and_what_they_cannot():

@@ -57,12 +57,13 @@ class BenchSettings(Section):
 
 
 class BlindSettings(Section):
-    """The blind benchmark: which cases, who flies and who answers."""
+    """The blind benchmark: which cases, who flies and who answers; `share` of a suite's cases."""
 
     simulator: Literal["tank", "independent"] = "tank"
     suite: Literal[
         "quick", "standard", "full", "recordings", "equations", "laboratory", "strong"
     ] = "quick"
+    share: float = Field(1.0, gt=0.0, le=1.0)
     seeds: Literal["development", "reporting"] = "reporting"
     methods: tuple[Literal["diagnosis", "stlsq", "frols"], ...] = ("diagnosis", "stlsq", "frols")
     page: str = "docs/benchmark_blind.md"

@@ -129,7 +129,7 @@ class MethodSummary(Section):
 
 
 class BlindSummary(Result):
-    """All methods on one suite."""
+    """All methods on one suite, or on a random `share` of its cases."""
 
     noun: ClassVar[str] = "summary of the blind benchmark"
     command: ClassVar[str] = "the blind benchmark"
@@ -138,6 +138,7 @@ class BlindSummary(Result):
         default="rovsim.blind.summary/1", alias="schema"
     )
     suite: str
+    share: float = 1.0
     seeds: str
     simulator: str = "tank"
     methods: dict[str, MethodSummary]

@@ -1,5 +1,6 @@
 """One case: what is hidden in which tank, and what an answer may say about it."""
 
+import hashlib
 import zlib
 from typing import Any, Literal, Mapping
 
@@ -113,6 +114,12 @@ def seed_of(case_id: str, seeds: Range) -> int:
     """A case's seed: its own, whatever else the suite holds."""
     first, last = SEEDS[seeds]
     return first + zlib.crc32(case_id.encode()) % (last - first + 1)
+
+
+def share_of(case_id: str) -> float:
+    """Where a case comes in a random order, 0 to 1; cases below a share are a sample of a suite."""
+    digest = hashlib.sha256(case_id.encode()).digest()  # CRC-32 is linear: alike ids go together
+    return int.from_bytes(digest[:8]) / 2**64
 
 
 def random_of(case_id: str, seeds: Range) -> np.random.Generator:

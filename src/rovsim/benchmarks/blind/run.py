@@ -11,7 +11,7 @@ from typing import Callable, Iterator, Sequence
 from rovsim.application.provenance import digest
 from rovsim.application.settings import BlindSettings
 from rovsim.benchmarks.blind.answers import KeptAnswer
-from rovsim.benchmarks.blind.case import Case
+from rovsim.benchmarks.blind.case import Case, share_of
 from rovsim.benchmarks.blind.flight import SIMULATORS, fly
 from rovsim.benchmarks.blind.methods import Method, chosen
 from rovsim.benchmarks.blind.suites import suite
@@ -53,7 +53,7 @@ class Benchmark:
     def of(asked: BlindSettings, out: str | None) -> "Benchmark":
         """As the settings say; `out` is results/blind unless said."""
         folder = Path(out or Path("results/blind", *_ASIDE[asked.simulator]))
-        cases = suite(asked.suite, asked.seeds)
+        cases = [c for c in suite(asked.suite, asked.seeds) if share_of(c.id) < asked.share]
         return Benchmark(asked, folder, tuple(cases), tuple(chosen(asked.methods)))
 
     @property

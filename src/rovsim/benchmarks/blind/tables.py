@@ -70,8 +70,9 @@ CAPTIONS = {
 def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
     """Markdown of `summary.json`, with those of its pictures that were drawn."""
     first, last = SEEDS[results.seeds]
+    share = "" if results.share == 1.0 else f" SHARE={results.share:g}"
     parts = [
-        f"Made by `make benchmark-blind SUITE={results.suite}`; {results.seeds} seeds "
+        f"Made by `make benchmark-blind SUITE={results.suite}{share}`; {results.seeds} seeds "
         f"{first} to {last}; flown in the {_FLOWN[results.simulator]}.",
     ]
     for name, found in results.methods.items():

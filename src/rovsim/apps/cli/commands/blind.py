@@ -1,7 +1,7 @@
 """Hide known physics in the tank, ask what is missing, and keep the score.
 
 rovsim blind [blind.suite=quick|standard|full|recordings|equations|laboratory|
-             strong] [blind.seeds=reporting|development]
+             strong] [blind.share=1] [blind.seeds=reporting|development]
              [blind.simulator=tank|independent] [blind.methods=[diagnosis,stlsq,frols]]
              [out=results/blind]
 
@@ -43,7 +43,11 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     found = {m.name: read_answers(benchmark.cases, m, benchmark.answers) for m in benchmark.methods}
     summaries = {name: summarize(answers) for name, answers in found.items()}
     results = BlindSummary(
-        suite=asked.suite, seeds=asked.seeds, simulator=asked.simulator, methods=summaries
+        suite=asked.suite,
+        share=asked.share,
+        seeds=asked.seeds,
+        simulator=asked.simulator,
+        methods=summaries,
     )
     results.write(out / "summary.json")
     text = write_markdown(results)
