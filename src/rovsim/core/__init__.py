@@ -15,6 +15,7 @@ run             which run a thing belongs to, what was commanded, where
 pwm             pulses of a radio control, and what they command
 rotations       rotations and axis conventions
 normal          numbers of the normal distribution
+robust          statistics that a few wrong values do not move
 gauss_markov    noise that lasts: drawn from step to step, of unit variance
 bounded_cache   values that are made again where memory did not hold them
 collector       when Python collects, and what is given back to the system

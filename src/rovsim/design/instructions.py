@@ -12,6 +12,7 @@ from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import FlightLimits
 from rovsim.results.experiment import Start
 
+SWELLING = 0.25  # of `Oscillation.swell`: less is not worth saying
 SHARP = 0.5  # of `Oscillation.square`: beyond, the stick is rather held at its ends
 
 
@@ -57,7 +58,7 @@ def _swing(axis: str, swing: Oscillation) -> str:
     weaker = (
         f", growing weaker down to {100 * swing.amplitude * (1.0 - swing.swell):.0f} % and strong "
         f"again every {SWELL:g} s"
-        if swing.swell > 0.25
+        if swing.swell > SWELLING
         else ""
     )
     return (

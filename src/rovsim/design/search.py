@@ -28,6 +28,7 @@ from rovsim.design.settings import DesignSettings
 FREQUENCIES, SQUARES, AMPLITUDES = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
 # Of the usual manoeuvres: sticks in the plane, and out of it.
 IN_PLANE, OUT_OF_PLANE = (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (0.05, 0.1, 0.2, 0.4, 0.8)
+MUTATION = 0.05  # of the range of each number, by which mixtures of two flights are varied
 BEYOND = -100.0  # the rank from which on flights leave the limits
 AT_ONCE = 96  # flights side by side: ten minutes of each take some megabytes
 VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
@@ -213,7 +214,7 @@ def _begin(
             block = slice(1 + NUMBERS * k, 1 + NUMBERS * (k + 1))
             if other[block][0] > mixed[block][0]:
                 mixed[block] = other[block]
-        mixed[1:] += 0.05 * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
+        mixed[1:] += MUTATION * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
         mixed[1 + NUMBERS - 2 :: NUMBERS] = random.random(len(axes))  # phases
         found.append(np.clip(mixed, 0.0, 1.0))
     return np.array(found[:population])

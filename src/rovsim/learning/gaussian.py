@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim import AXES
-from rovsim.core.normal import STD_PER_MAD
+from rovsim.core.robust import STD_PER_MAD
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.normal import STD_PER_MAD
+from rovsim.core.robust import LONG_STEP, STD_PER_MAD, usual_range
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, turns, unrotate
 from rovsim.measurement.means import doubt_means
 from rovsim.measurement.recording.channels import KINDS
@@ -36,6 +36,7 @@ SHORTEST_RUN = 2.0  # s; one scoring window
 # manoeuvring vehicle over decimetres within seconds.
 STILL_POSITION, STILL_ATTITUDE = 0.01, 0.02  # m, rad
 BLOCK = 0.1  # s; the median of a block rejects single outlier frames
+THIRD_DIFFERENCE = 20.0  # its variance over that of white noise: 1 + 9 + 9 + 1
 READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
 # An axis whose velocity varies less than this cannot be judged: on runs with no command on an
 # axis, disturbances alone move it up to about 0.02 m/s and 0.1 rad/s.
@@ -172,7 +173,7 @@ def _differences(
     size = max(1, round(length * rate))
     time, position, attitude = (_blocks(a, size) for a in (time, position, attitude))
     step = np.diff(time[:, 0])
-    near = step < 1.5 * size / rate  # no difference across a gap
+    near = step < LONG_STEP * size / rate  # no difference across a gap
     dt = step[:, None]
     linear = unrotate(attitude[:-1], np.diff(position, axis=0) / dt)
     return np.hstack([linear, turns(attitude) / dt])[near]
@@ -181,8 +182,7 @@ def _differences(
 def measure_noise(recording: Recording) -> PoseNoise:
     """Noise per sample in m and rad: robust spread of third differences / sqrt(20).
 
-    The variance of the third difference of white noise is 1 + 9 + 9 + 1 = 20 times its own; any
-    motion slow against four samples cancels. On a slow export the motion does not cancel, and the
+    Any motion slow against four samples cancels in these. On a slow export it does not, and the
     number is an upper bound. None with too few samples.
     """
     _, position, attitude = _seen(recording)
@@ -249,7 +249,7 @@ def _robust_std(third: Array) -> float | None:
     if len(third) < 10:
         return None
     per_axis = STD_PER_MAD * np.median(np.abs(third - np.median(third, axis=0)), axis=0)
-    return float(np.sqrt(np.mean(per_axis**2) / 20.0))
+    return float(np.sqrt(np.mean(per_axis**2) / THIRD_DIFFERENCE))
 
 
 def _turns(attitude: Array) -> Array:
@@ -259,5 +259,5 @@ def _turns(attitude: Array) -> Array:
 
 def _spread(values: Array) -> float:
     """Largest range over the columns, without the outer 1 % at either end (outlier frames)."""
-    low, high = np.percentile(values, [1.0, 99.0], axis=0)
+    low, high = usual_range(values)
     return float(np.max(high - low))

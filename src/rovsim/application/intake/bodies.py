@@ -6,6 +6,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from rovsim.core.errors import BadInput
+from rovsim.core.robust import usual_range
 from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 from rovsim.measurement.quality import STILL_POSITION
 from rovsim.measurement.survey.contents import Contents, Track
@@ -55,7 +56,7 @@ def _moves(contents: Contents, body: str) -> bool:
     if not track.posed:
         return True
     place = track.export.position[track.export.found]
-    low, high = np.percentile(place, [1.0, 99.0], axis=0)
+    low, high = usual_range(place)
     return bool(np.max(high - low) > STILL_POSITION)
 
 

@@ -2,11 +2,11 @@
 
 from typing import Any
 
-import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.intake.draft import Draft
 from rovsim.application.intake.facts import Facts
+from rovsim.core.robust import usual_range
 from rovsim.core.shipped import conf_names
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.survey.contents import CommandCandidate
@@ -67,7 +67,7 @@ def mocap(facts: Facts, draft: Draft) -> None:
 
 
 def _extent(position: Array) -> str:
-    low, high = np.percentile(position, [1.0, 99.0], axis=0)
+    low, high = usual_range(position)
     return ", ".join(f"{n} {a:.2f} to {b:.2f}" for n, a, b in zip("xyz", low, high, strict=True))
 
 

@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
-from rovsim.core.normal import STD_PER_MAD
+from rovsim.core.robust import STD_PER_MAD
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.diagnosis.observer.kalman import AxisFilter
 from rovsim.diagnosis.observer.observed_run import ObservedRun

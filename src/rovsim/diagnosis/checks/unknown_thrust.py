@@ -3,12 +3,12 @@
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.robust import LONG_STEP
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.model import Model
 
-GAP = 1.5  # of the usual time between two lines of the command log: a line was lost
 SPIN = 0.3  # s within which propellers and motors follow a command
 FEW = 0.05  # of all lines: a log that is never regular lost none
 
@@ -24,7 +24,7 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
     if not len(steps):
         return np.empty((0, 2))
     change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
-    change[steps < GAP * np.median(steps)] = 0.0
+    change[steps < LONG_STEP * np.median(steps)] = 0.0
     lost = change > max(0.0, np.quantile(change, 1.0 - FEW))
     before = commands.before
     at = path.effective_time(commands.time - run.edges[0] + before) - before

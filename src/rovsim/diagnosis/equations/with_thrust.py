@@ -28,7 +28,8 @@ from rovsim.diagnosis.equations.products.variables import (
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrust_law import ALONE, OTHER, THRUSTERS, ThrustLaw
+from rovsim.dynamics.effects.law_codes import NONE, SIZE
+from rovsim.dynamics.effects.thrust_law import OTHER, THRUSTERS, ThrustLaw
 from rovsim.dynamics.model import Model
 
 NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
@@ -44,14 +45,14 @@ THRUST = tuple(
 class ThrustTerm:
     """What acts `on` an axis: `thrust` along one (its size where `unsigned`), and a `factor`.
 
-    The factor is a velocity or its size, as `VARIABLES` numbers them, or the thrust along `other`.
+    The factor is a velocity or its size, as `law_codes` numbers them, or the thrust along `other`.
     """
 
     on: int
     thrust: int
     unsigned: bool = False
-    factor: int = ALONE
-    other: int = ALONE
+    factor: int = NONE
+    other: int = NONE
 
     @property
     def thrusts(self) -> tuple[int, ...]:
@@ -65,7 +66,7 @@ class ThrustTerm:
         if self.unsigned:
             code, latex = f"abs({first.code})", f"|{first.latex}|"
             first = replace(first, code=code, latex=latex, odd=False)
-        moving = [VARIABLES[self.factor]] if ALONE < self.factor < OTHER else []
+        moving = [VARIABLES[self.factor]] if NONE < self.factor < OTHER else []
         return (first, *others, *moving)
 
     @property
@@ -91,7 +92,7 @@ def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterato
     yield ThrustTerm(i, j, True)
     for k in moving:
         yield from (ThrustTerm(i, j, False, k), ThrustTerm(i, j, True, k))
-        yield ThrustTerm(i, j, False, 6 + k)
+        yield ThrustTerm(i, j, False, SIZE + k)
     for k in driven:
         if k >= j:
             yield ThrustTerm(i, j, False, OTHER, k)
@@ -117,7 +118,7 @@ def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
         value = np.abs(value) if term.unsigned else value
         if term.factor == OTHER:
             value = value * thrust[:, term.other]
-        elif term.factor >= 0:
+        elif term.factor != NONE:
             value = value * table[:, term.factor]
         out[:, term.on] = value
     return wrenches
@@ -150,7 +151,7 @@ class WithThrust(Form):
     @property
     def parts(self) -> tuple[Part, ...]:
         """It is one."""
-        own = (NU[self.term.factor % 6],) if 0 <= self.term.factor < OTHER else ()
+        own = (NU[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
         return (Part(AXES[self.term.on], ("thrust", *own)),)
 
     @property
@@ -205,8 +206,8 @@ class WithThrust(Form):
         yield "F = at.actuators.force"
         for j, row in dict(zip(t.thrusts, "bd", strict=False)).items():
             yield f"{THRUST[j].code} = {_sum(law, row)}  # thrust {NAMES[j]}"
-        if ALONE < t.factor < OTHER:
-            yield f"{VARIABLES[t.factor % 6].code} = at.nu_r[{t.factor % 6}]"
+        if NONE < t.factor < OTHER:
+            yield f"{VARIABLES[t.factor % SIZE].code} = at.nu_r[{t.factor % SIZE}]"
         yield f"push = {' * '.join((f'p.{AXES[t.on]}', *(f.code for f in t.factors)))}"
         yield "return " + ", ".join("push" if i == t.on else "0.0" for i in range(6))
 

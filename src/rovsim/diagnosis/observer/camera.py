@@ -23,6 +23,7 @@ MAX_RELATIVE_STD = 0.15  # of the cutoff: software at 6 Hz is known to 0.03 of i
 MIN_CUTOFF_HZ, MAX_CUTOFF_SHARE = 0.5, 0.5  # the share is of the highest frequency there is
 CUTOFFS_TRIED = 24  # cutoffs between these, a fifth apart
 LOG_CUTOFF_STEP = 0.05  # of the logarithm, for the curvature
+END_SHARE = 0.98  # of the highest cutoff tried: where the search stops at its end, it found none
 OPEN_STDS = 3.0
 # Of the cutoff, left open in any case: behind stamps that are off by 2 ms it is found 7 % too high.
 OPEN_CUTOFF_SHARE = 0.1
@@ -74,7 +75,7 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     # by itself where a vehicle tumbles: its cutoff is then hardly known
     if (
         lr_statistic < MIN_LR_OF_FILTER
-        or cutoff > 0.98 * highest
+        or cutoff > END_SHARE * highest
         or not std < MAX_RELATIVE_STD * cutoff
     ):
         return None

@@ -21,6 +21,7 @@ from rovsim.dynamics.model import Model
 
 LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 SEGMENT = 2.56  # s of each periodogram
+TOP_SHARE = 0.96  # of the highest frequency: Welch's estimate has half the freedom there
 FEWEST = 8  # frequencies, to tell a shape
 # What is left of the motion falls off at least as fast as a force without memory moves a mass, or
 # as one that thrusters lag.
@@ -126,7 +127,7 @@ def describe_noise(channels: Array, period: float) -> Spectrum | None:
     """Of the second differences (6, n) of a pose; None where frequencies are too few."""
     frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT / period))
     differenced = np.abs(1.0 - np.exp(-2j * np.pi * frequency * period)) ** 4
-    kept = (frequency >= LOWEST) & (frequency < 0.96 * frequency[-1])
+    kept = (frequency >= LOWEST) & (frequency < TOP_SHARE * frequency[-1])
     if kept.sum() < FEWEST:
         return None
     # half overlapping Hann windows: 0.95 of an independent one each (Welch 1967, eq. 12 f.)

@@ -27,6 +27,8 @@ CORRELATION_TIME_LOG_STD = 0.7  # of log T: a factor of two either way
 # A slow error of calibrated cameras is no larger than their noise from frame to frame.
 BIAS_TIME_LOG_STD = 0.7  # of its correlation time: a factor of two either way
 FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
+# Of the descent, in the logarithms of a noise and in its log likelihood: no choice hangs on less.
+FIRST_STEP, CLOSE, FLAT, MOST_STEPS = 0.3, 0.01, 0.02, 300
 MIN_LR_OF_BIAS = 12.0  # two more numbers, and sure of it on six axes
 
 
@@ -204,12 +206,12 @@ def _finite(cost: float) -> float:
 
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
     """Where a cost is least, and the least."""
-    simplex = first + np.vstack([np.zeros(len(first)), 0.3 * np.eye(len(first))])
+    simplex = first + np.vstack([np.zeros(len(first)), FIRST_STEP * np.eye(len(first))])
     best = minimize(
         cost,
         first,
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": 0.01, "fatol": 0.02, "maxiter": 300},
+        options={"initial_simplex": simplex, "xatol": CLOSE, "fatol": FLAT, "maxiter": MOST_STEPS},
     )
     return best.x, float(best.fun)
 

@@ -1,13 +1,29 @@
 """Any law of up to three terms as one effect: its terms are data, so that nothing is compiled anew.
 
-A term is a coefficient, what it acts on, and up to three factors. Both are numbers in the effect's
-parameters: rows of `rovsim.diagnosis.equations.products.variables`. A test holds the kernel against
+A term is a coefficient, what it acts on, and up to three factors; both are numbers in the effect's
+parameters (`law_codes`). A test holds the kernel against
 the file written of a law.
 """
 
 from math import exp, sqrt, tanh
 
 from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.effects.law_codes import (
+    DEEP,
+    DIRECTION,
+    DOWN,
+    EAST,
+    NONE,
+    NORTH,
+    SIGN,
+    SIGN_OF_DOWN,
+    SIZE,
+    SPEED,
+    SWIRL,
+    VELOCITY,
+    WATER,
+    WORLD,
+)
 from rovsim.dynamics.engine.compiled import inlined, internal
 from rovsim.dynamics.engine.vectors import into_body
 
@@ -33,25 +49,25 @@ def away(at, x, y):
 @inlined
 def of_velocity(k, v):
     """Velocities, their sizes and directions; the speed, and what is along the motion."""
-    if k < 6:
-        return v[k]
-    if k < 12:
-        return abs(v[k - 6])
-    if k < 18:
-        return tanh(v[k - 12] / SMOOTH)
+    if k < SIZE:
+        return v[k - VELOCITY]
+    if k < SIGN:
+        return abs(v[k - SIZE])
+    if k < DOWN:
+        return tanh(v[k - SIGN] / SMOOTH)
     U = speed(v)
-    return U if k == 24 else 1.0 / sqrt(U * U + STILL * STILL)
+    return U if k == SPEED else 1.0 / sqrt(U * U + STILL * STILL)
 
 
 @inlined
 def of_place(k, at, x, y, z, s):
     """Metres from a place, and how near it is."""
     north, east = away(at, x, y)
-    if k == 26:
+    if k == NORTH:
         return north
-    if k == 27:
+    if k == EAST:
         return east
-    if k == 28:
+    if k == DEEP:
         return at.position[2] - z * at.axes[2]
     return exp(-(north * north + east * east) / (2.0 * s * s))
 
@@ -60,14 +76,14 @@ def of_place(k, at, x, y, z, s):
 def factor(code, at, p):
     """One factor of a term; 1 where there is none."""
     k = int(code)
-    if k < 0:
+    if k == NONE:
         return 1.0
-    if k < 18 or k in (24, 25):
+    if k < DOWN or k in (SPEED, DIRECTION):
         return of_velocity(k, at.nu_r)
-    if k < 21:
-        return at.R[2][k - 18]
-    if k < 24:
-        return tanh(at.R[2][k - 21] / TILT)
+    if k < SIGN_OF_DOWN:
+        return at.R[2][k - DOWN]
+    if k < SPEED:
+        return tanh(at.R[2][k - SIGN_OF_DOWN] / TILT)
     return of_place(k, at, p.x, p.y, p.z, p.width)
 
 
@@ -103,7 +119,10 @@ def _term(k: int) -> tuple[Parameter, ...]:
     fixed = (f"size{k}", f"on{k}", *(f"factor{k}{j}" for j in range(1, FACTORS + 1)))
     return (
         Parameter(f"c{k}", "1", f"c_{k}", scale=1.0),
-        *(Parameter(name, "1", name, default=-1.0, scale=1.0, fitted=False) for name in fixed),
+        *(
+            Parameter(name, "1", name, default=float(NONE), scale=1.0, fitted=False)
+            for name in fixed
+        ),
     )
 
 
@@ -131,10 +150,11 @@ class Law(Wrench):
     def wrench(at, p):
         """Forces along the body's axes and the world's, and what water that moves adds to drag."""
         t = (term(at, p, 0), term(at, p, 1), term(at, p, 2))
-        f = into_body(at.R, (total(p, 6, t), total(p, 7, t), total(p, 8, t)))
+        world = (total(p, WORLD, t), total(p, WORLD + 1, t), total(p, WORLD + 2, t))
+        f = into_body(at.R, world)
         X, Y, Z = total(p, 0, t) + f[0], total(p, 1, t) + f[1], total(p, 2, t) + f[2]
         north, east = away(at, p.x, p.y)
-        vn, ve, turns = total(p, 9, t), total(p, 10, t), total(p, 11, t)
+        vn, ve, turns = total(p, WATER, t), total(p, WATER + 1, t), total(p, SWIRL, t)
         vn, ve = vn - turns * east, ve + turns * north
         if vn != 0.0 or ve != 0.0:
             v = into_body(at.R, (vn, ve, 0.0))

@@ -6,11 +6,12 @@ velocity, its size, or the thrust along another axis.
 """
 
 from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.effects.law_codes import NONE, SIZE
 from rovsim.dynamics.engine.compiled import inlined
 
 THRUSTERS = 12  # a vehicle with more has no such law
 FIRST, SECOND = 5, 5 + THRUSTERS  # where a row of the allocation begins among the parameters
-ALONE, OTHER = -1, 12  # codes of the further factor: none, and thrust; below 12 velocities, sizes
+OTHER = 12  # code of a second thrust as the further factor; below, velocities and their sizes
 
 
 @inlined
@@ -34,7 +35,7 @@ class ThrustLaw(Wrench):
     parameters = (
         Parameter("c", "1", "c", scale=1.0),
         *(
-            Parameter(name, "1", name, default=-1.0, scale=1.0, fitted=False)
+            Parameter(name, "1", name, default=float(NONE), scale=1.0, fitted=False)
             for name in ("size", "on", "unsigned", "factor")
         ),
         *(Parameter(f"b{i}", "1", "b", scale=1.0, fitted=False) for i in range(THRUSTERS)),
@@ -50,9 +51,9 @@ class ThrustLaw(Wrench):
             value = abs(value)
         if k == OTHER:
             value *= along(force, p, SECOND)
-        elif k >= 6:
-            value *= abs(at.nu_r[k - 6])
-        elif k >= 0:
+        elif k >= SIZE:
+            value *= abs(at.nu_r[k - SIZE])
+        elif k != NONE:
             value *= at.nu_r[k]
         value *= p.c * p.size
         on = int(p.on)

@@ -10,6 +10,11 @@ import numpy as np
 from rovsim.dynamics.engine.compiled import inline_internal, internal
 from rovsim.dynamics.engine.vectors import add3, cross, dot3, vector3, vector6
 
+# Columns of `Body.surfaces` behind place, normal and chord: half the density times the area, slope
+# of the lift per rad, drag of the profile, stall rad, whose jet it stands in, V^2 of it per newton.
+PLACE, NORMAL, CHORD = 0, 3, 6
+HALF, SLOPE, PROFILE, STALL, WAKE, JET = range(9, 15)
+
 
 @inline_internal
 def float_up(waterplane, depth, down):
@@ -50,19 +55,19 @@ def coefficients(alpha, slope, stall):
 @inline_internal
 def surface_force(s, lifting, v, angle, thrust):
     """Force (3,) of a surface (row s of `Body.surfaces`) that meets the water at v (3,)."""
-    normal, chord = vector3(s[3:]), vector3(s[6:])
+    normal, chord = vector3(s[NORMAL:]), vector3(s[CHORD:])
     ahead, across = dot3(chord, v), dot3(normal, v)
-    jet = s[14] * thrust
+    jet = s[JET] * thrust
     if jet > 0.0:
         square = ahead * abs(ahead) + jet
         ahead = sqrt(square) if square > 0.0 else -sqrt(-square)
     speed = sqrt(ahead * ahead + across * across)
     if speed == 0.0:
         return 0.0, 0.0, 0.0
-    lift, drag = coefficients(angle - atan2(across, ahead), s[10], s[12])
-    lift, drag = lifting * lift, drag + s[11]
-    along = -s[9] * speed * (lift * across + drag * ahead)
-    outward = s[9] * speed * (lift * ahead - drag * across)
+    lift, drag = coefficients(angle - atan2(across, ahead), s[SLOPE], s[STALL])
+    lift, drag = lifting * lift, drag + s[PROFILE]
+    along = -s[HALF] * speed * (lift * across + drag * ahead)
+    outward = s[HALF] * speed * (lift * ahead - drag * across)
     return add3((along * chord[0], along * chord[1], along * chord[2]), outward, normal)
 
 
@@ -80,9 +85,9 @@ def further_forces(body, depth, down, v, acting, count):
         tau[factors[k, 0]] += products[k] * product(factors[k], v)
     for k in range(lifting.size):
         s = surfaces[k]
-        place, thrust = vector3(s), 0.0
-        if s[13] >= 0.0:
-            thrust = acting[int(s[13])]
+        place, thrust = vector3(s[PLACE:]), 0.0
+        if s[WAKE] >= 0.0:
+            thrust = acting[int(s[WAKE])]
         local = add3(v[:3], 1.0, cross(v[3:], place))
         force = surface_force(s, lifting[k], local, acting[count + k], thrust)
         moment = cross(place, force)

@@ -10,12 +10,12 @@ from pydantic import Field, PositiveFloat
 from rovsim.core.schema import Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
+from rovsim.dynamics.engine.uncommon_forces import HALF, JET
 from rovsim.dynamics.vehicle.curves import NonNegative
 from rovsim.dynamics.vehicle.thrusters import Thruster, Triple
 
 AHEAD = np.array([1.0, 0.0, 0.0])
 NO_WAKE = -1.0
-HALF = 9  # column of half the density times the area
 
 
 class Surface(Section):
@@ -61,7 +61,7 @@ class Surfaces(Coefficients):
         super().__init__()
         self.names = tuple(one.name for one in surfaces)
         rows = [_row(one, units, density) for one in surfaces]
-        self.rows = np.array(rows, dtype=float).reshape(-1, 15)
+        self.rows = np.array(rows, dtype=float).reshape(-1, JET + 1)
 
     def neutral(self) -> Effect:
         """The same surfaces, which neither lift nor drag."""

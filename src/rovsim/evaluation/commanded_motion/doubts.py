@@ -5,6 +5,7 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.robust import usual_range
 from rovsim.core.rotations import half_turn, matrix, multiply
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
@@ -124,8 +125,8 @@ def _out_of_tank(recording: Recording) -> Iterator[str]:
     k = int(np.argmax(share))
     if share[k] > SHARE:
         sign = recording.site.axes[k]
-        ends = np.percentile(position[:, k], [1.0, 99.0])
-        reach = [minus(f"{end:.2f}") for end in sorted((sign * ends).tolist())]
+        ends = usual_range(position[:, k])
+        reach = [minus(f"{end:.2f}") for end in sorted(float(sign * end) for end in ends)]
         tank = [minus(f"{wall:g}") for wall in sorted((sign * walls[k]).tolist())]
         yield (
             f"Most of the path lies outside of the tank: {'xyz'[k]} from {reach[0]} to {reach[1]} "

@@ -20,6 +20,8 @@ VISITS = 4  # stretches that must have visited a bin before it is judged
 SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
 FLAT = 1e-6  # N, m, rad, s, or of them a second: less is rounding
 MANY = 2000  # stretches: chance is known well by then, and memory goes with their number
+NEAR = 0.6  # of a block, within which two are as far apart as a lag: a gap lies between others
+TAIL = 0.03  # of all values, beyond the outer edges at either end
 TIMES = 3.0  # correlation times a stretch should last
 
 
@@ -75,7 +77,7 @@ def correlation_time(error: Array, blocks: Blocks) -> float:
     power = float(np.mean(error**2))
     total = 1.0
     for lag in range(1, int(LONGEST / BLOCK)):
-        near = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK) < 0.6 * BLOCK
+        near = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK) < NEAR * BLOCK
         pairs = near & (blocks.run[lag:] == blocks.run[:-lag])
         product = float(np.mean((error[lag:] * error[:-lag])[pairs])) if pairs.any() else 0.0
         if product <= 0 or power == 0:
@@ -89,7 +91,7 @@ def cut(values: Array) -> tuple[Array, Array]:
 
     The outer bins hold whatever lies beyond; what never varied has a single bin.
     """
-    low, high = np.quantile(values, [0.03, 0.97])
+    low, high = np.quantile(values, [TAIL, 1.0 - TAIL])
     count = BINS if high - low > FLAT else 1
     edges = np.linspace(low, high, count + 1)
     member = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, count - 1)

@@ -47,6 +47,7 @@ USUAL = {
     "coupled": "a coupling (allocation, lift, off-diagonal damping or mass), or an autopilot "
     "that the log does not show",
 }
+STRAIGHT = 0.6  # of a correlation: beyond, an error goes with what it depends on, or against it
 
 
 def say(found: Finding) -> str:
@@ -90,7 +91,7 @@ def _what(found: Finding) -> str:
         return _constant(found, unit)
     own = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
     r = relation(found)
-    if own and condition.name != "heading" and abs(r) > 0.6:
+    if own and condition.name != "heading" and abs(r) > STRAIGHT:
         return f"the model {own[0] if r > 0 else own[1]}. {_extreme(found, unit)}."
     return f"the error changes with {condition.name}: {_range(found, unit)}."
 

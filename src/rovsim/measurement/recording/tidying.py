@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.robust import LONG_STEP
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy
 from rovsim.measurement.recording.one_run import check_one_run
@@ -109,8 +110,8 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     counts = {f"command_{name}": count for name, count in log.counts.items()}
     counts["command_unsorted"] = int(np.sum(np.diff(log.time) < 0))
     counts["command_duplicates"] = len(time) - len(keep)
-    # a missing line makes a step twice as long
-    counts["command_long_steps"] = int(np.sum(steps > 1.5 * np.median(steps))) if len(steps) else 0
+    longest = LONG_STEP * np.median(steps) if len(steps) else np.inf
+    counts["command_long_steps"] = int(np.sum(steps > longest))
     beside = {name: _in_order(own) for name, own in log.auxiliary.items() if len(own.time)}
     return Commands(log.time[keep], log.value[keep], log.kind, beside), counts
 

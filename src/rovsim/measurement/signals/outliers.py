@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.core import rotations
-from rovsim.core.normal import STD_PER_MAD
+from rovsim.core.robust import LONG_STEP, STD_PER_MAD
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.neighbours import Neighbours, find_far
@@ -165,7 +165,7 @@ def _stretches(
     near = _within_reach(
         gate, np.diff(time), position[1:] - position[:-1], attitude[:-1], attitude[1:], step
     )
-    cut = np.flatnonzero(~near | (np.diff(time) > 1.5 * step))
+    cut = np.flatnonzero(~near | (np.diff(time) > LONG_STEP * step))
     return np.concatenate([[0], cut + 1]), np.concatenate([cut, [len(time) - 1]])
 
 

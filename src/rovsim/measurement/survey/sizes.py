@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.robust import usual_range
 from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import EULER, POSITION
 from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
@@ -117,7 +118,7 @@ class _Columns:
 
 
 def _metres(of: _Columns) -> Unit:
-    low, high = np.nanpercentile(of.value, [1, 99], axis=0)
+    low, high = usual_range(of.value)
     far, fast = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
     if fast > CREEPING:
         return Unit(1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)", True)

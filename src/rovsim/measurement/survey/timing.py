@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.robust import LONG_STEP
+
 JITTERY = 0.1  # share of the usual step; clocks of computers stay below
 
 
@@ -27,7 +29,7 @@ class Timing:
         """Of increasing times (n,) s, n > 1."""
         steps = np.diff(time)
         usual = float(np.median(steps))
-        regular = steps[steps < 1.5 * usual]
+        regular = steps[steps < LONG_STEP * usual]
         return Timing(
             len(time),
             float(time[-1] - time[0]),

@@ -10,10 +10,10 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
-from rovsim.diagnosis.equations.products.variables import DEEP, EAST, NEAR, NORTH, SWIRL
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.law import FACTORS, Law
+from rovsim.dynamics.effects.law_codes import DEEP, EAST, NEAR, NONE, NORTH, SWIRL
 
 MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little apart
 
@@ -76,7 +76,7 @@ def add_term(
         f"size{k}": float(1.0 / columns.size[i]),
         f"on{k}": float(more.on),
     }
-    codes = (*more.factors, *[-1] * (FACTORS - len(more.factors)))
+    codes = (*more.factors, *[NONE] * (FACTORS - len(more.factors)))
     values |= {f"factor{k}{j}": float(code) for j, code in enumerate(codes, start=1)}
     place = columns.middle.copy()
     if more.place is not None:

@@ -3,21 +3,21 @@
 from typing import Iterator, Sequence
 
 from rovsim.diagnosis.equations.products.library import LawTerm
-from rovsim.diagnosis.equations.products.variables import (
+from rovsim.diagnosis.equations.products.variables import FORCES, IN_CODE, VARIABLES
+from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.dynamics.effects.law_codes import (
     DEEP,
     DIRECTION,
+    DOWN,
     EAST,
-    FORCES,
-    IN_CODE,
     NEAR,
     NORTH,
+    SIZE,
     SPEED,
     SWIRL,
-    VARIABLES,
     WATER,
     WORLD,
 )
-from rovsim.diagnosis.observer.hypothesis import Term
 
 
 def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Iterator[str]:
@@ -61,14 +61,14 @@ def _heads_in_code(on: int) -> list[tuple[str, str]]:
 
 
 def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
-    named = {k % 6 for k in used if k < 18}
+    named = {k % SIZE for k in used if k < DOWN}
     if used & {SPEED, DIRECTION} or any(t.on >= WATER for t in terms):
         named |= {0, 1, 2}
     for i in sorted(named):
         yield f"{IN_CODE[i]} = at.nu_r[{i}]"
     if used & {SPEED, DIRECTION}:
         yield "U = sqrt(u * u + v * v + w * w)"
-    for i in sorted({(k - 18) % 3 for k in used if 18 <= k < 24}):
+    for i in sorted({(k - DOWN) % 3 for k in used if DOWN <= k < SPEED}):
         yield f"d{'xyz'[i]} = at.R[2][{i}]  # the world's down, seen in the body"
 
 

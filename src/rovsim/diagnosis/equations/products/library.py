@@ -15,21 +15,23 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.regressors import earlier_states
-from rovsim.diagnosis.equations.products.variables import (
+from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
+from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.dynamics.effects.law_codes import (
     DEEP,
     DIRECTION,
+    DOWN,
     EAST,
     NEAR,
     NORTH,
-    ODD,
+    SIGN,
+    SIGN_OF_DOWN,
+    SIZE,
     SPEED,
     SWIRL,
-    VARIABLES,
     WATER,
     WORLD,
-    tabulate,
 )
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
 
 SPACING, WIDTH = 1.0, 0.6  # m: places tried, and how wide each is; the fit moves both
@@ -38,7 +40,7 @@ MOST_PLACES = 60
 
 @dataclass(frozen=True)
 class LawTerm:
-    """What a term acts on, and its factors, as `variables` numbers them.
+    """What a term acts on, and its factors, as `law_codes` numbers them.
 
     `place` m north and east, of terms that fade away from one.
     """
@@ -75,20 +77,22 @@ def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
     """
     for factors in _products([int(j) for j in moving]):
         odd = sum(bool(VARIABLES[k].odd) for k in factors) % 2 == 1
-        if odd == (i in ODD) and factors not in ((i, i, i), (12 + i,)):
+        if odd == (i in ODD) and factors not in ((i, i, i), (SIGN + i,)):
             yield LawTerm(i, factors)
 
 
 def _products(axes: Sequence[int]) -> Iterator[tuple[int, ...]]:
     for j in axes:
-        yield from ((6 + j,), (12 + j,), (j, j), (j, j, j), (SPEED, j))
+        yield from ((SIZE + j,), (SIGN + j,), (j, j), (j, j, j), (SPEED, j))
         if j < 3:
             yield from ((DIRECTION, j), (SPEED, SPEED, j))
     for j, k in combinations(axes, 2):
-        yield from ((j, k), (6 + j, k), (j, 6 + k), (6 + j, 6 + k), (j, j, k), (j, k, k))
-    for k in (18, 19, 20, 21, 22):
+        yield from ((j, k), (SIZE + j, k), (j, SIZE + k), (SIZE + j, SIZE + k))
+        yield from ((j, j, k), (j, k, k))
+    x, y, z = range(DOWN, DOWN + 3)
+    for k in (x, y, z, SIGN_OF_DOWN, SIGN_OF_DOWN + 1):
         yield (k,)
-    yield from ((18, 19), (18, 20), (19, 20), (18, 18), (19, 19))
+    yield from ((x, y), (x, z), (y, z), (x, x), (y, y))
 
 
 def _along_world() -> Iterator[LawTerm]:

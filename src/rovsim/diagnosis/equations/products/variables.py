@@ -1,6 +1,6 @@
 """What a law may be made of: factors, and what a term acts on, with units and mirror symmetry.
 
-Numbers are those of the kernel (`law.py`). Under a mirror of port and starboard, the symmetry of
+Their order is that of `law_codes`. Under a mirror of port and starboard, the symmetry of
 nearly every vehicle, sway, roll, yaw and what goes with them change sign.
 """
 
@@ -13,6 +13,7 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
+from rovsim.dynamics.effects.law_codes import SWIRL, WATER, WORLD
 
 FORCES = ("X", "Y", "Z", "K", "M", "N")
 NU = ("u", "v", "w", "p", "q", "r")
@@ -85,10 +86,8 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("d", "(d - d_0)", "deep", 1, 0, 0, None, "depth"),
     Variable("near", r"e^{-((n-n_0)^2+(e-e_0)^2)/2s^2}", "near", 0, 0, 0, None, "one place"),
 )
-SPEED, DIRECTION, NORTH, EAST, DEEP, NEAR = range(24, 30)
 # What a term acts on: a body axis, a force along the world's axes, or the water's velocity.
 ON = (*AXES, "north", "east", "down", "water north", "water east", "swirl")
-WORLD, WATER, SWIRL = 6, 9, 11
 
 
 def tabulate(state: Array, place: Array) -> Array:

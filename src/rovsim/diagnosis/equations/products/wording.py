@@ -5,16 +5,8 @@ from typing import Sequence
 
 from rovsim import AXES
 from rovsim.diagnosis.equations.products.library import LawTerm
-from rovsim.diagnosis.equations.products.variables import (
-    EAST,
-    FORCES,
-    NORTH,
-    ON,
-    SWIRL,
-    VARIABLES,
-    WATER,
-    WORLD,
-)
+from rovsim.diagnosis.equations.products.variables import FORCES, ON, VARIABLES
+from rovsim.dynamics.effects.law_codes import EAST, NORTH, SWIRL, WATER, WORLD
 
 WORLD_FORCES = ("F_n", "F_e", "F_d")
 FLOWS = ("v_n", "v_e")
