@@ -119,7 +119,7 @@ def test_a_diagnosis_is_a_run_and_every_step_a_run_in_it(diagnosed):
     assert set(runs) == {"diagnosis", "nominal", "noise_floor"}
     whole = runs.pop("diagnosis")
     assert whole.data.tags["verdict"] == "insufficient_data"
-    assert whole.data.params["search.false_alarm"] == "0.01"
+    assert whole.data.params["search.false_alarm"] == "0.003"
     assert {"error/nominal", "error/with_effects"} <= set(whole.data.metrics)
     files = {f.path for f in client.list_artifacts(whole.info.run_id)}
     assert {"diagnosis.json", "report.html", "ladder.png"} <= files

@@ -21,8 +21,8 @@ class SearchSettings(Section):
     most. The search ends where the evidence ends; `most_effects` guards against one that does not.
     """
 
-    false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.01
-    draws: PositiveInt = 1000  # of noise alone, for the best gain by chance
+    false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.003
+    draws: PositiveInt = 4000  # of noise alone, for the best gain by chance
     trials: PositiveInt = 3
     most_effects: PositiveInt = 12
     relevant: Annotated[float, Field(ge=0)] = 0.02

@@ -1,6 +1,6 @@
 """Say which physical effects a model lacks, and how sure that is.
 
-rovsim diagnose campaign=DIR out=OUT [model=nominal|FILE] [search.false_alarm=0.01]
+rovsim diagnose campaign=DIR out=OUT [model=nominal|FILE] [search.false_alarm=0.003]
 
 Writes OUT/diagnosis.json, figures, OUT/report.html, OUT/proposed_effect.py where a law is found for
 what no effect explains, and an MLflow run where rovsim[tracking] is installed. Only train runs are
