@@ -36,10 +36,9 @@ class Body:
     changed by walls; `memory` (6,) force per remembered velocity; `memory_decay` 1/s, 0: none;
     `memories`: so many effects gave one; `waterplane` (3,) stiffness N/m, N m/rad in heave, roll,
     pitch; `products` (t,) coefficients of products of velocities, `factors` (t, 4) axis of the
-    force and up to three velocities: i, 6 + i for its size, -1 for none; `surfaces` (s, 15)
-    position, normal, chord (3 each), half density times area, lift slope, drag, stall, thruster
-    whose jet it meets (-1: none), square of the jet's speed per newton; `lifting` (s,) factor on
-    the lift of each; `free` (6,) axes that move; `places` (n + s, 3) m of thrusters, then surfaces.
+    force and up to three velocities: i, 6 + i for its size, -1 for none; `surfaces` (s, 15) with
+    the columns of `engine.types`, `lifting` (s,) factor on the lift of each; `free` (6,) axes that
+    move; `places` (n + s, 3) m of thrusters, then surfaces.
     """
 
     gravity: float

@@ -8,6 +8,12 @@ from numpy import ndarray as Array
 NO_RAMP = np.empty((0, 0, 6))
 NO_MEMORY = np.empty((0, 6))
 
+# Columns of `surfaces`: place, normal and chord (3 each), half the density times the area, slope of
+# the lift per rad, drag of the profile, stall rad, the thruster whose jet it stands in (-1: none),
+# and by how much the square of the speed there grows per newton.
+PLACE, NORMAL, CHORD = 0, 3, 6
+HALF, SLOPE, PROFILE, STALL, WAKE, JET = range(9, 15)
+
 Vector3 = tuple[float, float, float]
 Vector6 = tuple[float, float, float, float, float, float]
 

@@ -8,12 +8,18 @@ from math import atan2, pi, sin, sqrt
 import numpy as np
 
 from rovsim.dynamics.engine.compiled import inline_internal, internal
+from rovsim.dynamics.engine.types import (
+    CHORD,
+    HALF,
+    JET,
+    NORMAL,
+    PLACE,
+    PROFILE,
+    SLOPE,
+    STALL,
+    WAKE,
+)
 from rovsim.dynamics.engine.vectors import add3, cross, dot3, vector3, vector6
-
-# Columns of `Body.surfaces` behind place, normal and chord: half the density times the area, slope
-# of the lift per rad, drag of the profile, stall rad, whose jet it stands in, V^2 of it per newton.
-PLACE, NORMAL, CHORD = 0, 3, 6
-HALF, SLOPE, PROFILE, STALL, WAKE, JET = range(9, 15)
 
 
 @inline_internal

@@ -10,7 +10,7 @@ from pydantic import Field, PositiveFloat
 from rovsim.core.schema import Section
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
-from rovsim.dynamics.engine.uncommon_forces import HALF, JET
+from rovsim.dynamics.engine.types import HALF, JET
 from rovsim.dynamics.vehicle.curves import NonNegative
 from rovsim.dynamics.vehicle.thrusters import Thruster, Triple
 
