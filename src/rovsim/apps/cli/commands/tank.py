@@ -1,6 +1,7 @@
 """Make a synthetic campaign of raw exports, its truth sealed beside it.
 
-rovsim tank out=DIR [tank=default|tiny] [tank.seed=1] [tank.name=NAME]
+rovsim tank out=DIR [tank=default|lag|practice|rivals|tiny]
+            [tank.seed=1] [tank.name=NAME]
             [tank.effects='[{effect: thruster_lag, parameters: {time_constant: 0.2}}]']
             [fly=OUT/experiment.csv]
 
