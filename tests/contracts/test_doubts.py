@@ -23,8 +23,8 @@ from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.measurement.loading import load_campaign
+from rovsim.measurement.rough_motion import velocities
 from rovsim.measurement.signals.outliers import KeepAll
-from rovsim.measurement.survey.grid import velocities
 from said import unfolded
 
 

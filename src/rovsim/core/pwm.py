@@ -16,7 +16,12 @@ def absent(pulses: Array) -> Array:
     return np.isin(pulses, NONE)
 
 
-def without_pulse(pulses: Array) -> tuple[Array, tuple[str, ...]]:
+def of_inputs(pulses: Array) -> Array:
+    """Pulses of inputs, of which one without a pulse is unknown (NaN)."""
+    return np.where(absent(pulses), np.nan, pulses)
+
+
+def of_outputs(pulses: Array) -> tuple[Array, tuple[str, ...]]:
     """Pulses of outputs where none stands for a thruster at rest, and a sentence if any does."""
     none = absent(pulses)
     if not none.any():

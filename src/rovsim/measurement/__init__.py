@@ -7,6 +7,7 @@ loading        from that file to a checked campaign
 sensors        where sensors sit, and how late they are
 recording      raw exports in, recordings in NED and FRD out
 signals        from poses to velocities and accelerations
+rough_motion   recordings on an even clock, to compare them with others
 means          are velocities means from line to line? the poses may tell
 velocities     are they of the same motion, in our units and axes? the poses tell
 quality        how good a recording is

@@ -13,12 +13,11 @@ from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.commanded_motion.clocks import tell_following, tell_together
 from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
-from rovsim.evaluation.commanded_motion.predicted import held, respond, wrench
+from rovsim.evaluation.commanded_motion.predicted import velocity
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
-from rovsim.measurement.signals.clock import time_step
-from rovsim.measurement.survey.grid import even_poses
+from rovsim.measurement.rough_motion import even_poses
 from rovsim.measurement.survey.starts import find_start
 
 
@@ -107,8 +106,7 @@ def _turned(nu: Array, axes: Array) -> Array:
 
 def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
     """How alike body velocities (n, 6) FRD and those that commands cause are."""
-    push = held(commands.time, wrench(fit.vehicle, commands), time)
-    caused = respond(fit.vehicle, push, time_step(time))
+    caused = velocity(fit.vehicle, commands, time)
     excited = caused.std(axis=0) > EXCITED
     alike = _alike(nu, caused)[excited]
     measured = np.isfinite(alike)

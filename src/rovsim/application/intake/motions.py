@@ -17,8 +17,8 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     rotations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
+from rovsim.measurement.rough_motion import Velocities, velocities
 from rovsim.measurement.survey.contents import CommandCandidate, Track
-from rovsim.measurement.survey.grid import Velocities, velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
 

@@ -20,7 +20,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     Commanded,
     orientations,
 )
-from rovsim.measurement.survey.grid import ResampledPoses, of_poses
+from rovsim.measurement.rough_motion import ResampledPoses, of_poses
 
 # Correlations by which another reading must be better: in all, and of the speeds by themselves. Of
 # the 52 right runs of the practice campaigns no reading is better in the speeds by 0.03.

@@ -11,8 +11,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.recording.readers import finite_rows
+from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step
-from rovsim.measurement.survey.grid import Velocities
 
 REACH = 10.0  # s by which clocks that share a start may differ
 SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything

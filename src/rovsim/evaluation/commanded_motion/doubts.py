@@ -20,7 +20,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.evaluation.commanded_motion.predicted import can_push_sideways, cause, righting
 from rovsim.measurement.recording import Recording
-from rovsim.measurement.survey.grid import ResampledPoses, even_poses, of_poses, velocities
+from rovsim.measurement.rough_motion import ResampledPoses, even_poses, of_poses, velocities
 
 LONGEST = 120.0  # s of commands that are looked at
 HANGS = -0.5  # cosine of the tilt: 120 degrees

@@ -7,12 +7,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.core.run import Commands
+from rovsim.core.run import Commands, latest
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.dynamics.vehicle.hydrodynamics import matrix
+from rovsim.measurement.rough_motion import STEP
 from rovsim.measurement.signals.clock import time_step
-from rovsim.measurement.survey.grid import STEP
 from rovsim.simulation.drive import Drive
 
 BEFORE, AFTER = 1.0, 3.0  # s around the commands
@@ -63,8 +63,7 @@ def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
 
 def held(time: Array, value: Array, at: Array) -> Array:
     """Values (n, c) of the last line at each instant (n,); zero before the first."""
-    last = np.searchsorted(time, at, side="right") - 1
-    return np.where(last[:, None] >= 0, value[np.maximum(last, 0)], 0.0)
+    return np.where((at >= time[0])[:, None], value[latest(time, at)], 0.0)
 
 
 def righting(vehicle: Vehicle) -> Array:

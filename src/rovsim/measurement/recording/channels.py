@@ -90,11 +90,17 @@ def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:
     }
 
 
-def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
+def attitude_to_ned(attitude: Array, mocap: Mocap) -> Array:
+    """Attitudes (n, 4) from the body to the world of a file, as from FRD to NED; w not below 0."""
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
+    turned = multiply(multiply(half_turn(world), attitude), half_turn(body))
+    return np.where(turned[:, :1] < 0, -turned, turned)
+
+
+def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
     if kind == "attitude":
-        turned = multiply(multiply(half_turn(world), value), half_turn(body))
-        return np.where(turned[:, :1] < 0, -turned, turned)
+        return attitude_to_ned(value, mocap)
+    world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
     if kind == "euler":
         return _turned_angles(value, world, body)
     signs = {"world": world, "body": body, "none": 1.0}[KINDS[kind].axes]

@@ -52,7 +52,7 @@ def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...
     if log.kind != "pwm" or not are_pulses(pulses):
         return value, ()
     value = value.copy()
-    value[:, ~np.array(log.turned)], notes = pwm.without_pulse(pulses)
+    value[:, ~np.array(log.turned)], notes = pwm.of_outputs(pulses)
     return value, notes
 
 
@@ -90,7 +90,7 @@ def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
             f"'-{name}' in commands.columns."
         )
     value = value.copy()
-    value[:, : len(log.names)] = np.where(pwm.absent(own), np.nan, own)
+    value[:, : len(log.names)] = pwm.of_inputs(own)
     return value, (said,)
 
 

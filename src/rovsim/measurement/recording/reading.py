@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.rotations import axes_signs, half_turn, multiply
+from rovsim.core.rotations import axes_signs
 from rovsim.core.run import Commands, Logged, RunInfo, Site
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
@@ -176,7 +176,6 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
     R = S_world R_file S_body, so each side is converted on its own.
     """
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
-    turned = multiply(multiply(half_turn(world), export.attitude), half_turn(body))
     seen = export.found[:, None]
     nu = None if export.nu is None else export.nu * np.tile(body, 2)
     return Recording(
@@ -184,7 +183,7 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
         at,
         export.time,
         np.where(seen, export.position * world, np.nan),
-        np.where(seen, np.where(turned[:, :1] < 0, -turned, turned), np.nan),
+        np.where(seen, channels.attitude_to_ned(export.attitude, mocap), np.nan),
         export.found,
         commands,
         export.rate or measured_rate(export.time),

@@ -16,7 +16,6 @@ time_units     that of times
 starts         when recordings began, by the headers of their files
 repeats        several runs or bodies in one file, stamps that are too coarse
 quaternions    numbered columns that may be one
-grid           rough velocities on an even clock, to compare recordings with
 timing         rates, jitter, gaps
 """
 

@@ -175,7 +175,7 @@ def _commands(
     if not chosen:
         return None
     value = np.stack([columns[name] for name in chosen], axis=1)
-    value = pwm.without_pulse(value)[0] if kind == "pwm" else value
+    value = pwm.of_outputs(value)[0] if kind == "pwm" else value
     rest = {name: column for name, column in columns.items() if name not in chosen}
     return CommandCandidate(
         "csv",

@@ -3,7 +3,6 @@
 import re
 from pathlib import Path
 
-import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core import pwm
@@ -76,8 +75,8 @@ def _series(held: ArduPilotLog, wanted: str) -> tuple[Series, str]:
 def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
     """Values (m, c) with 0 and 65535 taken for what they mean, as in a bag of mavros."""
     if wanted != "RC":
-        return pwm.without_pulse(value)
-    return np.where(pwm.absent(value), np.nan, value), ()
+        return pwm.of_outputs(value)
+    return pwm.of_inputs(value), ()
 
 
 COMMAND_READER = CommandReader("ardupilot", read_commands)

@@ -84,8 +84,8 @@ def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
     An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
     """
     if not found.kind.endswith("RCOut"):
-        return np.where(pwm.absent(found.value), np.nan, found.value), ()
-    value, notes = pwm.without_pulse(found.value)
+        return pwm.of_inputs(found.value), ()
+    value, notes = pwm.of_outputs(found.value)
     return value, tuple(f"{found.topic}: {note}" for note in notes)
 
 
