@@ -6,12 +6,12 @@ from pathlib import Path
 
 from rovsim.application.study import PHYSICS, Study
 from rovsim.core.errors import BadInput
+from rovsim.core.model_names import EFFECTS, NOMINAL, name_learned
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
 from rovsim.reporting.figures import Kind
 from rovsim.reporting.report_data import list_study_figures
-from rovsim.results.ladder import EFFECTS
 
 
 @dataclass(frozen=True)
@@ -68,8 +68,9 @@ class LeaveOneRunOut:
         """Models of a fold that have a file: physics, then residuals on nominal and effects."""
         settings = self.study.settings.folds
         controls = [c for c in settings.controls if self.train_runs(fold, c)]
-        trained = [f"{kind}_{control}" for kind in settings.residuals for control in controls]
-        return [*PHYSICS, *trained, *(f"{EFFECTS}+{name}" for name in trained)]
+        pairs = [(kind, control) for kind in settings.residuals for control in controls]
+        trained = [name_learned(*pair, base) for base in (NOMINAL, EFFECTS) for pair in pairs]
+        return [*PHYSICS, *trained]
 
     @property
     def pitfalls(self) -> bool:

@@ -11,6 +11,7 @@ from rovsim.application.provenance import digest, imports_of, own_digest, proven
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, compose, select
 from rovsim.core.errors import BadInput, unlisted
+from rovsim.core.model_names import EFFECTS, NOMINAL, REFITTED, name_learned
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import BASELINES
@@ -22,15 +23,14 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.measurement.loading import load_campaign
 from rovsim.reporting.report_data import list_run_figures
-from rovsim.results.ladder import EFFECTS
 from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, describe, own_vehicle
 
 HELD: dict[Path, FileLock] = {}  # until the process ends
-PHYSICS = ("refitted", EFFECTS)
+PHYSICS = (REFITTED, EFFECTS)
 # What a script imports to be run at all; the values of its settings are parameters of its rule.
 SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
 CONFIG = ("campaign", "overrides", "effects_file")  # keys of Snakemake's
-DRAWN = ("nominal", EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
+DRAWN = (NOMINAL, EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ class Study:
         """Names of the trained models: residuals x controls that have a train run."""
         wanted = self.settings.study
         controls = [control for control in wanted.controls if self.control_runs(control)]
-        return [f"{kind}_{control}" for kind in wanted.residuals for control in controls]
+        return [name_learned(kind, control) for kind in wanted.residuals for control in controls]
 
     @cached_property
     def on_effects(self) -> list[str]:
@@ -167,7 +167,7 @@ class Study:
     @property
     def searched(self) -> list[str]:
         """Models searched for conditions in which they fail; the last is reported first."""
-        return [*self.trained, EFFECTS, "nominal"]
+        return [*self.trained, EFFECTS, NOMINAL]
 
     @property
     def drawn(self) -> list[str]:

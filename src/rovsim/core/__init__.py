@@ -7,6 +7,7 @@ array_files     arrays in `.npz` files, without pickle
 schema          typed sections of YAML
 mappings        nested mappings by dotted name
 names           names that people give
+model_names     what models are called
 signs           numbers below zero in text
 columns         text that fits a terminal
 progress        how far long work is, and the time that is left

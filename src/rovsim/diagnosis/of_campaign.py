@@ -8,6 +8,7 @@ import numpy as np
 
 from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON, WINDOW
+from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
@@ -26,7 +27,7 @@ from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
 from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.error_conditions import ErrorConditions
-from rovsim.results.ladder import NOISE_FLOOR, Ladder, Step
+from rovsim.results.ladder import Ladder, Step
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import sample_run
 

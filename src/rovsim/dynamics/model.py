@@ -7,6 +7,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.body import Body, packed
@@ -142,13 +143,13 @@ class Model:
 
 def nominal(vehicle: Vehicle) -> Model:
     """The model every comparison starts from."""
-    return Model("nominal", vehicle, vehicle.effects())
+    return Model(NOMINAL, vehicle, vehicle.effects())
 
 
 def zero_acceleration(vehicle: Vehicle) -> Model:
     """The baseline: a vehicle that keeps its body velocity."""
-    return Model("zero_acceleration", vehicle, vehicle.effects(), inert=True)
+    return Model(ZERO_ACCELERATION, vehicle, vehicle.effects(), inert=True)
 
 
-BUILT_IN = {"nominal": nominal, "zero_acceleration": zero_acceleration}
-BASELINES = ("zero_acceleration", "nominal")  # what every comparison of a study begins with
+BUILT_IN = {NOMINAL: nominal, ZERO_ACCELERATION: zero_acceleration}
+BASELINES = (ZERO_ACCELERATION, NOMINAL)  # what every comparison of a study begins with

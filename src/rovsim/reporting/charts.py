@@ -7,16 +7,16 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.model_names import NOISE_FLOOR, ZERO_ACCELERATION
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT
 from rovsim.reporting.figures.palette import Look, family_look
 from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import ConditionTable, ModelConditions
-from rovsim.results.ladder import NOISE_FLOOR, Ladder
+from rovsim.results.ladder import Ladder
 
 NAME = 28  # letters of a step's name
 ROOM = 1.14  # for the values behind the bars
-BASELINE = "zero_acceleration"
 FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart
 
 
@@ -60,8 +60,8 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
 def _end(steps: Mapping[str, float], floor: float) -> float:
     """Where the axis ends; a baseline that is far higher than all models is cut."""
     known = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
-    models = max((v for n, v in known.items() if n != BASELINE), default=0.0)
-    cut = 0.0 < FAR * models < known.get(BASELINE, 0.0)
+    models = max((v for n, v in known.items() if n != ZERO_ACCELERATION), default=0.0)
+    cut = 0.0 < FAR * models < known.get(ZERO_ACCELERATION, 0.0)
     return ROOM * (models if cut else max(known.values(), default=0.0)) or 1.0
 
 

@@ -4,8 +4,15 @@ import math
 import re
 from typing import TYPE_CHECKING, Iterable, Mapping, Sequence
 
+from rovsim.core.model_names import (
+    EFFECTS,
+    NOISE_FLOOR,
+    NOMINAL,
+    PROPOSED,
+    REFITTED,
+    ZERO_ACCELERATION,
+)
 from rovsim.core.signs import minus
-from rovsim.results.diagnosis import PROPOSED
 
 if TYPE_CHECKING:
     from rovsim.learning.learner import Learner
@@ -13,17 +20,17 @@ if TYPE_CHECKING:
 LONGEST = 40  # letters of a name before its middle is left out
 # The study's own models; a user's keep the name of their file.
 TITLES = {
-    "zero_acceleration": "constant velocity",
-    "refitted": "nominal, refitted",
-    "effects": "nominal + effects",
-    "noise_floor": "noise floor",
+    ZERO_ACCELERATION: "constant velocity",
+    REFITTED: "nominal, refitted",
+    EFFECTS: "nominal + effects",
+    NOISE_FLOOR: "noise floor",
 }
 MEANINGS = {
-    "zero_acceleration": "a vehicle that keeps its velocity; no model should be worse",
-    "nominal": "the vehicle file as it is",
-    "refitted": "nominal; drag, added mass, buoyancy and gain of thrust fitted to the train runs",
-    "effects": "nominal, and the effects that the diagnosis selected",
-    "noise_floor": "what a perfect model would show, because the measurement is noisy",
+    ZERO_ACCELERATION: "a vehicle that keeps its velocity; no model should be worse",
+    NOMINAL: "the vehicle file as it is",
+    REFITTED: "nominal; drag, added mass, buoyancy and gain of thrust fitted to the train runs",
+    EFFECTS: "nominal, and the effects that the diagnosis selected",
+    NOISE_FLOOR: "what a perfect model would show, because the measurement is noisy",
 }
 CONTROLS = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
 STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder

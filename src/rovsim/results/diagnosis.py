@@ -5,13 +5,13 @@ from typing import ClassVar, Iterable, Literal
 
 from pydantic import Field, JsonValue
 
+from rovsim.core.model_names import PROPOSED
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
 from rovsim.results.ladder import Ladder
 
-PROPOSED = "proposed_effect"  # the effect that a diagnosis proposes, as models know it
 LAW = f"{PROPOSED}.py"  # its file, beside the diagnosis
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
 

@@ -4,10 +4,9 @@ from typing import ClassVar, Literal, Sequence
 
 from pydantic import Field
 
+from rovsim.core.model_names import EFFECTS, NOISE_FLOOR
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
-
-EFFECTS, NOISE_FLOOR = "effects", "noise_floor"
 
 
 class Step(Section):

@@ -7,6 +7,7 @@ from typing import Any, Mapping, Sequence
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
 from rovsim.application.tracking.runs import track
+from rovsim.core.model_names import NOMINAL
 from rovsim.core.yaml_files import read_yaml
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
@@ -48,7 +49,7 @@ def track_study(
         files=files.kept,
     )
     diagnosed = track_diagnosis(
-        settings, campaign, "nominal", diagnosis, diagnosing, [files.diagnosis], parent
+        settings, campaign, NOMINAL, diagnosis, diagnosing, [files.diagnosis], parent
     )
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
     for name, entry in Comparison.read(files.comparison).models.items():

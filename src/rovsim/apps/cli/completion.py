@@ -14,13 +14,14 @@ from typing import Iterable, Sequence
 
 import rovsim
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
 from rovsim.core.shipped import conf_file, conf_names
 
 INSIDE = Path(rovsim.__file__).parent
 EFFECTS, TARGETS = INSIDE / "dynamics/effects", INSIDE / "application/export/targets"
 COMMANDS = Path(__file__).with_name("commands")
 NOT_SETTINGS = ("defaults", "hydra")
-MODELS = ("nominal", "zero_acceleration")
+MODELS = (NOMINAL, ZERO_ACCELERATION)
 OPTIONS = ("--help", "--quiet", "--json", "--multirun")
 # Keys whose values are files: how such a file ends, after "/" for folders alone.
 FILES = {

@@ -8,6 +8,7 @@ from rovsim.application.settings import Settings, compose, settings_of
 from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.model_names import name_learned
 
 SLURM = "hydra/launcher=submitit_slurm"
 # What a run's name has without this, or what is the same in all of them.
@@ -80,6 +81,6 @@ def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:
     own = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED]
     if settings.tracking.name or not own:
         return settings
-    name = " ".join([f"{settings.learner.kind}_{settings.control}", *own])
+    name = " ".join([name_learned(settings.learner.kind, settings.control), *own])
     tracking = settings.tracking.model_copy(update={"name": name})
     return settings.model_copy(update={"tracking": tracking})

@@ -29,6 +29,7 @@ from rovsim.apps.notebook import html
 from rovsim.apps.notebook.progress import in_a_cell
 from rovsim.apps.notebook.shown import ShownComparison, ShownDiagnosis, ShownExport, ShownModel
 from rovsim.core.extras import require
+from rovsim.core.model_names import name_learned
 from rovsim.core.progress import reported
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
@@ -139,7 +140,7 @@ class Campaign:
         mine = {"residual": chosen.residual, "control": chosen.control}
         how = select(self.settings.model_copy(update=mine), TrainingSettings)
         base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
-        named = f"{residual}_{control}"
+        named = name_learned(residual, control, base.name)
         out = Path(path or self._folder / "trained" / named / f"{named}.yaml")
         with in_a_cell():
             story = provenance(how, self.catalogue, self.data.campaign)

@@ -9,6 +9,7 @@ from nicegui.binding import BindableProperty, bind_from
 from rovsim.application.settings import compose
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.model_names import NOMINAL, name_learned
 from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import read_model
 from rovsim.reporting.wording import title
@@ -42,8 +43,8 @@ def start_diagnosis(bench: Workbench) -> None:
 
 def start_training(bench: Workbench, kind: str, name: str) -> None:
     """Begin to train a residual on top of one of the models."""
-    trained = f"{kind}_{bench.settings.control}"
-    trained = trained if name == bench.base.name else f"{name}+{trained}"
+    base = NOMINAL if name == bench.base.name else name
+    trained = name_learned(kind, bench.settings.control, base)
     chosen = compose([f"residual={kind}"]).residual
     settings = bench.only(name).model_copy(update={"residual": chosen})
 

@@ -5,6 +5,7 @@ from typing import Mapping
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.model_names import PROPOSED
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.equations.spectrum import Spectrum
@@ -12,7 +13,6 @@ from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import (
     LAW,
-    PROPOSED,
     Disturbance,
     ForceOfRun,
     ForceSpectrum,

@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Callable, NamedTuple, Sequence
 
 from rovsim.core.extras import installed
+from rovsim.core.model_names import PROPOSED
 from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
@@ -20,7 +21,6 @@ from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import PROPOSED
 
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
 MIN_ERROR_REDUCTION = 0.05  # of the error of replays: less is not worth an equation

@@ -8,6 +8,7 @@ compare with and not a diagnosis.
 from dataclasses import replace
 from typing import Sequence
 
+from rovsim.core.model_names import REFITTED
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
@@ -30,12 +31,12 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
     """
     usable = select_usable(train)
     if not usable.enough:
-        return base.called("refitted")
+        return base.called(REFITTED)
     here, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
         fitted = fit(here, FilterBank.design(usable.runs, base, noise), noise)
         here, noise = _fix_at_bounds(fitted.hypothesis), fitted.noise
-    return here.model.called("refitted")
+    return here.model.called(REFITTED)
 
 
 def _start(base: Model, moved: Sequence[str]) -> Hypothesis:

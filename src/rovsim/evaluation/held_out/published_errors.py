@@ -16,6 +16,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
+from rovsim.core.model_names import ZERO_ACCELERATION
 from rovsim.core.run import Commands
 from rovsim.results.base import ByAxis, or_nan, or_none
 from rovsim.results.comparison import Comparison
@@ -31,7 +32,6 @@ from rovsim.results.published_errors import (
 COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these
 METRICS = (*COUNTED, "velocity_rmse")
 PUBLISHED = "published "  # in front of the names of others' models
-STILL = "zero_acceleration"
 COLUMNS = ("run", "variant", "model", "axis", *METRICS)
 
 
@@ -157,7 +157,7 @@ def _cell(
     metric: str,
 ) -> PublishedCell | None:
     """One cell; None without a published error, or where nothing was measured."""
-    still = ours.get(STILL)
+    still = ours.get(ZERO_ACCELERATION)
     if not theirs or still is None:
         return None
     best = min(theirs, key=lambda p: p.errors[metric])

@@ -7,13 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rovsim.core.model_names import EFFECTS
 from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short, title
 from rovsim.results.base import or_nan
-from rovsim.results.ladder import EFFECTS
 from rovsim.results.published_errors import PublishedCell, PublishedErrors
 
 SECTION = "published"

@@ -7,12 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
 from rovsim.reporting.figures.legends import legend, note, nothing
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import ERROR, LADDER, STEP, significant
-from rovsim.results.ladder import NOISE_FLOOR, Ladder
+from rovsim.results.ladder import Ladder
 
 SECTION = "ladder"
 CAPTION = (

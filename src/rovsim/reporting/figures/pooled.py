@@ -4,6 +4,7 @@ from pandas import DataFrame, MultiIndex
 
 from rovsim import AXES
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
+from rovsim.core.model_names import NOMINAL
 from rovsim.reporting.wording import listed, title
 from rovsim.results.comparison import Comparison
 
@@ -52,7 +53,7 @@ def between_runs(
     return runs.min().unstack().reindex(**shape), runs.max().unstack().reindex(**shape)
 
 
-def relate(errors: DataFrame, base: str = "nominal") -> DataFrame:
+def relate(errors: DataFrame, base: str = NOMINAL) -> DataFrame:
     """Every model's errors divided by those of `base`; NaN where there is nothing to divide."""
     reference = errors.reindex([base]).loc[base]
     return errors / reference.where(reference > 0)

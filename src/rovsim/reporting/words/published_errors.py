@@ -2,10 +2,10 @@
 
 from typing import Mapping
 
+from rovsim.core.model_names import EFFECTS
 from rovsim.evaluation.held_out.pitfalls import PITFALLS
 from rovsim.reporting.tables import QUANTITIES
 from rovsim.reporting.wording import known, title
-from rovsim.results.ladder import EFFECTS
 from rovsim.results.pitfalls import Cost, Pitfalls
 from rovsim.results.published_errors import ModelStanding, PublishedErrors
 

@@ -8,6 +8,7 @@ from pandas import DataFrame, Series
 
 from rovsim import AXES
 from rovsim.core.horizons import HORIZON
+from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL, PROPOSED, ZERO_ACCELERATION
 from rovsim.reporting.figures.palette import family, is_learned
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
@@ -24,8 +25,7 @@ from rovsim.reporting.wording import (
 from rovsim.reporting.words.speed import timing_sentences
 from rovsim.reporting.words.verdict import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
-from rovsim.results.diagnosis import PROPOSED
-from rovsim.results.ladder import EFFECTS, NOISE_FLOOR, Ladder
+from rovsim.results.ladder import Ladder
 from rovsim.results.quality import Quality
 
 EQUAL = 0.01  # share: a smaller change is called none
@@ -98,7 +98,7 @@ def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
 
 def nominal_sentences(errors: DataFrame) -> list[str]:
     """Say how far the nominal model is from the measurement, and whether it beats doing nothing."""
-    row = errors.reindex(["nominal"]).loc["nominal"]
+    row = errors.reindex([NOMINAL]).loc[NOMINAL]
     if row.isna().all():
         return ["The nominal model has no result on the test runs."]
     parts = [
@@ -116,7 +116,7 @@ def nominal_sentences(errors: DataFrame) -> list[str]:
 
 
 def _against_nothing(errors: DataFrame) -> list[str]:
-    ratio = relate(errors, "zero_acceleration").loc["nominal"]
+    ratio = relate(errors, ZERO_ACCELERATION).loc[NOMINAL]
     if ratio.isna().all():
         return []
     beaten = ratio.index[ratio >= 1 - EQUAL]
@@ -165,11 +165,11 @@ def _without_value(names: Sequence[str]) -> list[str]:
 
 def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, float], str]:
     """One error per model, relative to nominal, and what it measures."""
-    if steps.get("nominal") and any(is_learned(name) for name in steps):
-        ratios = {name: value / steps["nominal"] for name, value in steps.items()}
+    if steps.get(NOMINAL) and any(is_learned(name) for name in steps):
+        ratios = {name: value / steps[NOMINAL] for name, value in steps.items()}
         return ratios, f"the {ERROR}"
     rows = relate(errors)
-    counted = rows.reindex(["nominal"]).loc["nominal"].notna()
+    counted = rows.reindex([NOMINAL]).loc[NOMINAL].notna()
     if not counted.any():
         return {}, ""
     return (
@@ -245,7 +245,7 @@ def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]
     text = f"The lowest {ERROR} is {significant(models[best])}, that of {title(best)}"
     others = [
         f"{title(n)} has {significant(models[n])}"
-        for n in ("nominal", "zero_acceleration")
+        for n in (NOMINAL, ZERO_ACCELERATION)
         if n in models and n != best
     ]
     sentences = [f"{text}; {listed(others)}." if others else f"{text}."]

@@ -13,6 +13,7 @@ from rovsim.apps.cli.output import say
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
+from rovsim.core.model_names import ZERO_ACCELERATION
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import BUILT_IN
 from rovsim.dynamics.model_file import load_model
@@ -29,7 +30,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     """Write the unit."""
     require("fmi", by="rovsim fmu")
     spec = settings.model
-    if not isinstance(spec, str) or spec == "zero_acceleration" or catalogue.files:
+    if not isinstance(spec, str) or spec == ZERO_ACCELERATION or catalogue.files:
         raise BadInput(
             f"model {spec}" + (", effects_file" if catalogue.files else ""),
             where="rovsim fmu",

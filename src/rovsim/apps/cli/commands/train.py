@@ -22,6 +22,7 @@ from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
+from rovsim.core.model_names import name_learned
 from rovsim.core.names import as_list
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
@@ -49,7 +50,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
     require("learn", "tracking", by="rovsim train")
     kind = settings.learner.kind
-    name = f"{kind}_{settings.control}"
+    name = name_learned(kind, settings.control)
     _check_name(settings.model)
     data, out = measure_campaign(settings, f"trained/{name}")
     base = load_one_model(settings.model, data.vehicle, catalogue)
@@ -58,7 +59,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     scored = score_models([base, corrected], data.motions, settings)
     found = scored.comparison
     found.write(out / "comparison.json")
-    said = {base.name: base.name, corrected.name: _name(base.name, name)}
+    said = {base.name: base.name, corrected.name: name_learned(kind, settings.control, base.name)}
     pictures = draw(out, _shown(scored, said, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
@@ -94,11 +95,6 @@ def _check_name(given: str | Sequence[str]) -> None:
                 expected="another name (a model is called by its file's stem)",
                 remedy="Copy the file, for example to base.yaml, and give that.",
             )
-
-
-def _name(base: str, learned: str) -> str:
-    """What the new model is; its file, by which files call it, is always called `model`."""
-    return learned if base == "nominal" else f"{base}+{learned}"
 
 
 def _shown(scored: Scored, said: Mapping[str, str], quality: Mapping[str, Quality]) -> ReportData:
