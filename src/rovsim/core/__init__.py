@@ -15,6 +15,7 @@ horizons        how far replays look ahead
 run             which run a thing belongs to, what was commanded, where
 pwm             pulses of a radio control, and what they command
 rotations       rotations and axis conventions
+odds            odds, as likelihood-ratio statistics and back
 normal          numbers of the normal distribution
 robust          statistics that a few wrong values do not move
 gauss_markov    noise that lasts: drawn from step to step, of unit variance

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.odds import odds_of
 from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
 from rovsim.design.envelope import reached
@@ -12,7 +13,6 @@ from rovsim.design.plan import Plan
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import Question
-from rovsim.dynamics.effects.parameters import Parameter
 from rovsim.results.base import or_none
 from rovsim.results.experiment import (
     Expected,
@@ -23,8 +23,6 @@ from rovsim.results.experiment import (
     Surer,
     UsualManoeuvre,
 )
-
-MOST = 700.0  # of a logarithm whose exponential is still a number
 
 
 def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment:
@@ -72,18 +70,13 @@ def _list_std(rival: FittedHypothesis, then: Array, std_ratio: Array) -> dict[st
     parameters = [p for term in rival.hypothesis.terms for p in term.parameters]
     return {
         rival.names[k]: Surer(
-            now=or_none(_std(s * ratio, parameters[k])),
-            then=or_none(_std(s, parameters[k])),
+            now=or_none(_round(parameters[k].std_of(s * ratio))),
+            then=or_none(_round(parameters[k].std_of(s))),
             unit=parameters[k].unit,
             gained=or_none(_round(ratio**2 - 1.0)),
         )
         for k, s, ratio in zip(rival.of_interest, then, std_ratio, strict=True)
     }
-
-
-def _std(scaled: float, parameter: Parameter) -> float:
-    """As a diagnosis says it: within its grain a value could be anywhere (uniform: / √12)."""
-    return _round(float(np.hypot(scaled * parameter.scale, parameter.resolution / np.sqrt(12.0))))
 
 
 def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[str, RivalOdds]:
@@ -94,13 +87,12 @@ def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[s
     for name, now, gain in zip(names, sides, expected.log_odds_gain, strict=True):
         then = now + gain
         found[name] = RivalOdds(
-            now=_odds(now), then=_odds(then), log_odds_now=_round(now), log_odds_then=_round(then)
+            now=_round(odds_of(2.0 * now)),
+            then=_round(odds_of(2.0 * then)),
+            log_odds_now=_round(now),
+            log_odds_then=_round(then),
         )
     return found
-
-
-def _odds(log: float) -> float:
-    return _round(float(np.exp(np.clip(log, -MOST, MOST))))
 
 
 def _round(value: float) -> float:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -21,15 +21,16 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
 from rovsim.evaluation.error_conditions.entries import list_conditions
-from rovsim.evaluation.error_conditions.search import search_runs
+from rovsim.evaluation.error_conditions.search import ConditionSearch, SearchedModel
 from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
-from rovsim.results.diagnosis import Diagnosis, law_beside
+from rovsim.measurement.signals.motion import Motion
+from rovsim.results.diagnosis import Diagnosis, Standstill, law_beside
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import Ladder, Step
 from rovsim.simulation.replay import replay
-from rovsim.simulation.samples import sample_run
+from rovsim.simulation.samples import Samples, sample_run
 
 # Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
@@ -69,18 +70,9 @@ def diagnose_campaign(
     `failing` is told under which conditions the base fails as soon as that is known, at once.
     """
     stage("reading")
-    searched = (
-        [search_runs(base, runs, settings.signals, settings.replay)] if runs.of("train") else []
-    )
+    searched, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
     where = list_conditions(searched)
     failing(where)
-    standstills = find_standstills(
-        (
-            runs.motions[name],
-            sample_run(base, runs.motions[name], settings.signals, settings.replay),
-        )
-        for name in runs.of("train")
-    )
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
@@ -101,6 +93,25 @@ def diagnose_campaign(
         away,
     )
     return Diagnosed(told, where, diagnosis.proposed.source if diagnosis.proposed else None)
+
+
+def _look(
+    base: Model, runs: Runs, settings: DiagnosisSettings
+) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
+    """Where the base fails, and where train runs stand still; each run is sampled once."""
+    how = settings.signals, settings.replay
+    search = ConditionSearch(base, set(runs.splits.values()), *how)
+
+    def sampled() -> Iterator[tuple[Motion, Samples]]:
+        for motion in map(runs.motions.__getitem__, runs.of("train")):
+            samples = sample_run(base, motion, *how)
+            search.take(motion, samples)
+            yield motion, samples
+
+    standstills = find_standstills(sampled())
+    for name in runs.of("test") if search.split == "test" else ():
+        search.add(runs.motions[name])
+    return [search.found], standstills
 
 
 def _climb(

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import JsonValue
 from scipy.sparse.csgraph import connected_components
 
+from rovsim.core.odds import share_odds
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
@@ -185,16 +186,16 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
         for r in diagnosis.rivals
         if r.deviance_difference < MIN_LR_APART and r.fit is not None
     ]
-    odds = [float(np.exp(-0.5 * max(r.deviance_difference, 0.0))) for r, _ in near]
+    _, *share = share_odds([0.0, *(-r.deviance_difference for r, _ in near)])
     return Posterior(
         correlation=diagnosis.correlation or Correlation(),
         instead=tuple(
             Possibility(
-                probability=float(f"{own / (1.0 + sum(odds)):.6g}"),
+                probability=float(f"{own:.6g}"),
                 effects=_list_effects(fit),
                 correlation=correlate(fit.covariance, fit.hypothesis.parameter_names),
             )
-            for own, (_, fit) in zip(odds, near, strict=True)
+            for own, (_, fit) in zip(share, near, strict=True)
         ),
     )
 

@@ -6,11 +6,11 @@ from typing import Collection, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.odds import probability_of, share_odds
 from rovsim.diagnosis.observer.camera import Smoothing
 from rovsim.diagnosis.observer.drifting_current import DriftFit
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.odds import probability_of
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import Rival
@@ -146,20 +146,16 @@ def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
 
 
 def find_std(fit: Fit, i: int) -> dict[str, float]:
-    """Standard deviations by name; within its grain a value could be anywhere (uniform: / √12)."""
+    """Standard deviations by name."""
     term, columns = fit.hypothesis.terms[i], fit.hypothesis.columns[i]
-    return {
-        p.name: float(np.hypot(fit.std[k] * p.scale, p.resolution / np.sqrt(12.0)))
-        for p, k in zip(term.parameters, columns, strict=True)
-    }
+    return {p.name: p.std_of(fit.std[k]) for p, k in zip(term.parameters, columns, strict=True)}
 
 
 def _share_of_odds(fit: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
     """Of this name among all that were tried in its place, from their likelihoods; None: none."""
     name = fit.hypothesis.terms[i].id
-    tried = [r.deviance_difference for r in rivals if r.instead_of == name]
-    odds = sum(np.exp(-0.5 * min(deviance_difference, 700.0)) for deviance_difference in tried)
-    return float(1.0 / (1.0 + odds)) if tried else None
+    tried = [-r.deviance_difference for r in rivals if r.instead_of == name]
+    return float(share_odds([0.0, *tried])[0]) if tried else None
 
 
 def rank_alone(workspace: SearchWorkspace, nothing: Fit, fit: Fit) -> list[Ranked]:
@@ -173,13 +169,12 @@ def rank_alone(workspace: SearchWorkspace, nothing: Fit, fit: Fit) -> list[Ranke
     fits.sort(key=workspace.score, reverse=True)
     terms = [one.hypothesis.terms[0] for one in fits]
     terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    log_odds = np.array([0.5 * (workspace.score(one) - workspace.score(nothing)) for one in fits])
-    weight = np.exp(log_odds - np.max(log_odds, initial=0.0))
-    share = weight / (weight.sum() + np.exp(-np.max(log_odds, initial=0.0)))
+    likelier = [workspace.score(one) - workspace.score(nothing) for one in fits]
+    _, *share = share_odds([0.0, *likelier])
     base = nothing.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
     error = _score(models, workspace.bank.runs)
-    sure = np.append(share, np.zeros(len(terms) - len(fits)))
+    sure = [*share, *np.zeros(len(terms) - len(fits))]
     return [
         Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))
         for term, e, p in zip(terms, error[1:], sure, strict=True)

@@ -5,8 +5,8 @@ from typing import Iterable
 
 import numpy as np
 
+from rovsim.core.odds import lr_statistic_of
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.odds import lr_statistic_of
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
-from rovsim.diagnosis.observer.odds import lr_statistic_of
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file

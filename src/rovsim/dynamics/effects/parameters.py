@@ -53,6 +53,13 @@ class Parameter:
             both = value + share * (other - self.neutral_value)
         return float(np.clip(both, self.low, self.high))
 
+    def std_of(self, scaled: float) -> float:
+        """Standard deviation in the parameter's unit, of a fitted one in scales.
+
+        Within its resolution a value could be anywhere (uniform: / √12).
+        """
+        return float(np.hypot(scaled * self.scale, self.resolution / np.sqrt(12.0)))
+
     def size(self, value: float) -> float:
         """How large a change from neutral is, in the parameter's unit."""
         return abs(value) if self.reciprocal else abs(value - self.neutral_value)

@@ -9,7 +9,7 @@ from rovsim.evaluation.error_conditions.findings import Explanation, explain
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.samples import sample_run
+from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import ReplaySettings
 
 
@@ -58,10 +58,14 @@ class ConditionSearch:
 
     def add(self, motion: Motion) -> None:
         """Take in a run; one of the other split is passed by."""
+        if motion.run.split == self.split:
+            self.take(motion, sample_run(self._model, motion, *self._how))
+
+    def take(self, motion: Motion, samples: Samples) -> None:
+        """Take in a run of which there are samples; one of the other split is passed by."""
         if motion.run.split != self.split:
             return
         self._runs.append(motion.run.id)
-        samples = sample_run(self._model, motion, *self._how)
         if len(samples.index) > 1:
             self._parts.append(average_blocks(motion, samples))
 

@@ -1,8 +1,8 @@
 """What these runs cannot tell apart: effects, values, names that come next, a common factor."""
 
-import math
 from typing import Sequence
 
+from rovsim.core.odds import odds_of
 from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.reporting.wording import listed, percent, significant
 from rovsim.results.base import or_nan
@@ -42,7 +42,7 @@ def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
 
 def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
     """How far behind the next names are; one sentence for all that nobody would argue about."""
-    odds = [(r, math.exp(min(0.5 * or_nan(r.deficit), 700.0))) for r in best]
+    odds = [(r, odds_of(or_nan(r.deficit))) for r in best]
     near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
     far = [r for r, times in odds if times > MANY]
     if len(far) == 1:
