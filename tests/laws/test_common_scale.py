@@ -12,7 +12,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.nominal_terms import free_terms
+from rovsim.diagnosis.selection.vehicle_file.stated import free_terms
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -35,7 +35,11 @@ def fitted(flown, names):
     """The fit of these effects, nothing else, to thrusters taken for nominal ones."""
     base, runs = flown
     bank = FilterBank.design(runs, base, FIRST_NOISE)
-    return fit(Hypothesis(base, free_terms(base, AXES, names)), bank, FIRST_NOISE)
+    return fit(
+        Hypothesis(base, free_terms(base, AXES, [built_in()[name] for name in names])),
+        bank,
+        FIRST_NOISE,
+    )
 
 
 def named(found):

@@ -16,7 +16,6 @@ from rovsim.diagnosis.observer.random_walk import Rate
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import free_terms
 from rovsim.diagnosis.selection.ranking import (
     Named,
     Selected,
@@ -26,6 +25,7 @@ from rovsim.diagnosis.selection.ranking import (
     find_stand_ins,
     name_drift,
 )
+from rovsim.diagnosis.selection.vehicle_file.stated import free_terms
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
@@ -45,7 +45,7 @@ NOISE = Noise(np.ones(6), np.ones(6), np.ones(6))
 
 def fit(covariance, x=None):
     base = nominal(load_vehicle("bluerov2_heavy"))
-    h = Hypothesis(base, free_terms(base, AXES, TERMS))
+    h = Hypothesis(base, free_terms(base, AXES, [built_in()[name] for name in TERMS]))
     seen = Linearised(h.at(np.zeros(7) if x is None else x), [], [])
     return Fit(seen, NOISE, 0.0, covariance)
 

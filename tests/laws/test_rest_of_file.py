@@ -13,9 +13,14 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.nominal_terms import doubt_gain, free_terms
 from rovsim.diagnosis.selection.prior import Prior
-from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file, free_rest, list_spreads
+from rovsim.diagnosis.selection.vehicle_file.stated import doubt_gain, free_terms
+from rovsim.diagnosis.selection.vehicle_file.whole_file import (
+    fit_whole_file,
+    free_rest,
+    list_spreads,
+)
+from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
@@ -49,7 +54,11 @@ def bank(flown):
 
 def fitted(bank, axes, names=COEFFICIENTS):
     base = bank.model
-    return fit(Hypothesis(base, free_terms(base, axes, names)), bank, FIRST_NOISE)
+    return fit(
+        Hypothesis(base, free_terms(base, axes, [built_in()[name] for name in names])),
+        bank,
+        FIRST_NOISE,
+    )
 
 
 def fit_whole(found, bank):
@@ -136,7 +145,7 @@ def test_one_effect_may_be_all_that_is_wrong(flown, bank):
 
 
 def with_gain(base, gain, *names):
-    terms = free_terms(base, AXES, (*names, "thruster_gain"))
+    terms = free_terms(base, AXES, [built_in()[name] for name in (*names, "thruster_gain")])
     terms = [t.at(np.array([gain / 0.1])) if t.id == "thruster_gain" else t for t in terms]
     return Hypothesis(base, tuple(terms))
 

@@ -10,10 +10,10 @@ from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import project_out
 from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.nominal_terms import STATED, spread_of_file
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
-from rovsim.diagnosis.selection.uncertain_file import list_numbers, measure_doubt
-from rovsim.diagnosis.selection.vehicle_file_steps import suspect_file
+from rovsim.diagnosis.selection.vehicle_file.stated import STATED, spread_of_file
+from rovsim.diagnosis.selection.vehicle_file.steps import suspect_file
+from rovsim.diagnosis.selection.vehicle_file.uncertain_file import list_numbers, measure_doubt
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping

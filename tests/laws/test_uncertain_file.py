@@ -11,7 +11,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.proposals import rank_proposals
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
-from rovsim.diagnosis.selection.uncertain_file import (
+from rovsim.diagnosis.selection.vehicle_file.uncertain_file import (
     FILE_LR,
     FileNumber,
     cost_beside,

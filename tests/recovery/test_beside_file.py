@@ -10,11 +10,11 @@ from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.nominal_terms import STATED, free_terms
 from rovsim.diagnosis.selection.search_result import Rival, keep_likeliest
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.special_effects import judge_beside_file
-from rovsim.diagnosis.selection.vehicle_file_steps import prefer_file
+from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
+from rovsim.diagnosis.selection.vehicle_file.stated import STATED, free_terms
+from rovsim.diagnosis.selection.vehicle_file.steps import prefer_file
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
@@ -53,7 +53,8 @@ def workspace(tmp_path_factory):
 def test_a_payload_does_not_stand_for_a_scale(workspace):
     """To first order the file does not explain it: such a factor is too large a step."""
     base = workspace.bank.model
-    file = free_terms(base, AXES, (*NUMBERS, "net_buoyancy", "buoyancy_center"))
+    stated = (*NUMBERS, "net_buoyancy", "buoyancy_center")
+    file = free_terms(base, AXES, [built_in()[name] for name in stated])
     payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
     found = prefer_file(workspace, workspace.fit(Hypothesis(base, (*file, payload))))
     assert Payload.id in {term.id for term in found.hypothesis.terms}
@@ -65,7 +66,7 @@ def test_a_payload_does_not_stand_for_a_scale(workspace):
 
 def test_where_a_file_is_not_off_everywhere_nothing_is_judged(workspace):
     base = workspace.bank.model
-    two = free_terms(base, AXES, NUMBERS[:2])
+    two = free_terms(base, AXES, [built_in()[name] for name in NUMBERS[:2]])
     payload = Term(Payload(mass=0.3, z=-0.3), ("mass", "z"))
     found = workspace.fit(Hypothesis(base, (*two, payload)))
     assert judge_beside_file(workspace, found) == (found, ())

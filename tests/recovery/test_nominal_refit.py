@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.selection.nominal_refit import refit_nominal
+from rovsim.diagnosis.selection.vehicle_file.refit import refit_nominal
 from rovsim.dynamics.effect_entry import EffectEntry
 
 

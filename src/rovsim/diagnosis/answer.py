@@ -20,7 +20,7 @@ from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file
+from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file
 from rovsim.dynamics.model import Model
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.selection.nominal_refit import refit_nominal
+from rovsim.diagnosis.selection.vehicle_file.refit import refit_nominal
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model

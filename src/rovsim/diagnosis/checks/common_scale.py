@@ -18,7 +18,7 @@ from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
+from rovsim.diagnosis.selection.vehicle_file.stated import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 
 INERTIA = ("added_mass", "payload")
@@ -83,4 +83,8 @@ def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:
     """Whether inertia and drag were fitted to commands whose force nobody measured."""
     named = {term.id for term in h.terms}
     logged = {run.motion.commands.kind for run in runs}
-    return bool(named & set(INERTIA)) and bool(named & set(DRAG)) and "wrench" not in logged
+    return (
+        bool(named & set(INERTIA))
+        and bool(named & {one.id for one in DRAG})
+        and "wrench" not in logged
+    )

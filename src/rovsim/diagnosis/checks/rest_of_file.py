@@ -1,10 +1,10 @@
 """A vehicle file that is off in several ways is off in others, too little to be found.
 
 What was selected was fitted as if all the rest of the file were right. Where several of its effects
-were selected, the rest is taken for known as such files are known (`nominal_terms.py`), and what
-that leaves open is added to the intervals: how far the rest is open beside the runs, and how far
-the runs draw it from what the file says. The gain of the thrusters is part of the rest: a mass that
-was left as it is would fix the common scale, and is as little known.
+were selected, the rest is taken for known as such files are (`selection/vehicle_file/stated.py`),
+and what that leaves open is added to the intervals: how far the rest is open beside the runs, and
+how far the runs draw it from what the file says. The gain of the thrusters is part of the rest: a
+mass that was left as it is would fix the common scale, and is as little known.
 """
 
 from dataclasses import replace
@@ -23,8 +23,8 @@ from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import is_off
-from rovsim.diagnosis.selection.whole_file_fit import free_rest, list_spreads
+from rovsim.diagnosis.selection.vehicle_file.stated import is_off
+from rovsim.diagnosis.selection.vehicle_file.whole_file import free_rest, list_spreads
 
 
 def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:

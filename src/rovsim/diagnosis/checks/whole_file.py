@@ -3,10 +3,11 @@
 What was selected was fitted as if the rest of the file were right. Where several of its effects
 were selected it is not, and what was left as it was draws the others away: thrust, inertia and
 drag share a factor that little but such numbers fixes. So in the end all that the file states is
-fitted, each number beside what is known of such files (`nominal_terms.py`). Then what is not sure,
-or nobody would miss, is left out again, at the gain that was found: the others take what it did,
-and their intervals stay those of all together. The gain itself stays where it is surely not what
-the file says, although replays without it are as good: the others were all off by one factor.
+fitted, each number beside what is known of such files (`selection/vehicle_file/stated.py`). Then
+what is not sure, or nobody would miss, is left out again, at the gain that was found: the others
+take what it did, and their intervals stay those of all together. The gain itself stays where it is
+surely not what the file says, although replays without it are as good: the others were all off by
+one factor.
 
 A file may also be wrong in a few things alone. Where the runs find all other drag and added mass to
 be what the file says, far closer than such files are known to be, it is right elsewhere, and what
@@ -33,10 +34,10 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.fit import Fit, judge
-from rovsim.diagnosis.selection.nominal_terms import mark_gain, share_of_file
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
-from rovsim.diagnosis.selection.whole_file_fit import know_file, mark_new
+from rovsim.diagnosis.selection.vehicle_file.stated import mark_gain, share_of_file
+from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_new
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing

@@ -1,7 +1,8 @@
 """Values so far from the vehicle file that a unit is likelier to be wrong than the file.
 
-How far files are off is known in proportion, from published sets (`nominal_terms.py`), so distances
-are those of logarithms. What a file states as little is off by a scale of the parameter at least.
+How far files are off is known in proportion, from published sets
+(`selection/vehicle_file/stated.py`), so distances are those of logarithms. What a file states as
+little is off by a scale of the parameter at least.
 """
 
 from typing import Iterator, Sequence
@@ -10,7 +11,7 @@ import numpy as np
 
 from rovsim.core.signs import minus
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.nominal_terms import GAIN, ONE_GAIN, SHARE, spread_of_file
+from rovsim.diagnosis.selection.vehicle_file.stated import GAIN, ONE_GAIN, SHARE, spread_of_file
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model

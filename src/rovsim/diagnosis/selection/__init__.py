@@ -13,10 +13,7 @@ fit                  the most likely parameters of a hypothesis, and their sprea
 thresholds           where they may lie, which derivatives do not tell
 pruning              without what is not worth its penalty
 forward_selection    add, refit, swap, prune
-vehicle_file_steps   what the vehicle file explains as well as something rarer
-uncertain_file       a special effect beside a vehicle file that may be off everywhere
-whole_file_fit       all of a file that is off, fitted with what was selected
-special_effects      each judged beside that
+vehicle_file         one that is off explains as well what is rarer
 steady_current       or one that wanders?
 search_result        where that ended, and what else the effects could be
 filter_delay         beside what the camera does
@@ -24,8 +21,6 @@ holdout_validation   stretches that took no part must be replayed no worse
 cross_validation     what does not help where it was not fitted goes
 cluster_robust       nor what few stretches of time make sure, where a velocity is not measured
 joint_fit            much is missing at once: all that could be wrong, then pruned
-nominal_terms        what the vehicle file states, as terms that may be wrong
-nominal_refit        the same, fitted alone: a step of the ladder to compare with
 replay_fit           values that replay best, where structure is left
 ranking              each effect's worth, in order
 """

@@ -8,9 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import is_off
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
     PROMISING_SHARE,
@@ -21,10 +19,12 @@ from rovsim.diagnosis.selection.promising import (
 )
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
-from rovsim.diagnosis.selection.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.thresholds import place_thresholds
-from rovsim.diagnosis.selection.vehicle_file_steps import (
+from rovsim.diagnosis.selection.vehicle_file import uncertain_file
+from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
+from rovsim.diagnosis.selection.vehicle_file.stated import is_off
+from rovsim.diagnosis.selection.vehicle_file.steps import (
     add_file,
     fix_gain,
     prefer_file,

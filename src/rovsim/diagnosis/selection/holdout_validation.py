@@ -19,9 +19,9 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED
 from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.selection.vehicle_file.stated import STATED
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread
 

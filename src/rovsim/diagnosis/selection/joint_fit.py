@@ -13,16 +13,22 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.fit import REACH, Fit
-from rovsim.diagnosis.selection.nominal_terms import DRAG, free_terms, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult
+from rovsim.diagnosis.selection.vehicle_file.stated import DRAG, free_terms, mark_gain
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.dynamics.effects.added_mass import AddedMass
+from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
+from rovsim.dynamics.effects.clocks import InputDelay
+from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
+from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
-ACTUATION = ("thruster_gain", "onboard_control")  # ways in which commands could act
-ALWAYS = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "constant_wrench", "input_delay")
+# Ways in which commands could act.
+ACTUATION = (ThrusterGain.id, OnboardControl.id)
+ALWAYS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ConstantWrench, InputDelay)
 
 
 def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:
@@ -51,7 +57,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
     common = free_terms(base, moved, ALWAYS)
-    starts = [(*common, *free_terms(base, moved, ACTUATION[:1]))]
+    starts = [(*common, *free_terms(base, moved, [ThrusterGain]))]
     if kind == "demand":
         loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
         starts.append((*common, loops))

@@ -18,10 +18,10 @@ from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.fit import Fit, fit, fit_or_give_up
-from rovsim.diagnosis.selection.nominal_terms import doubt_gain
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
 from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
 from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_candidates
+from rovsim.diagnosis.selection.vehicle_file.stated import doubt_gain
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
 

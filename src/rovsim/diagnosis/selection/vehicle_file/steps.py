@@ -1,11 +1,11 @@
 """What the vehicle file, where it is off anyway, explains as well as something that is rarer."""
 
 from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
+from rovsim.diagnosis.selection.vehicle_file import uncertain_file
+from rovsim.diagnosis.selection.vehicle_file.stated import STATED, is_off, mark_gain
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
 

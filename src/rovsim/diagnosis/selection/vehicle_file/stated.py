@@ -8,15 +8,19 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.diagnosis.selection.prior import cauchy
-from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.base import Effect, Parameter
+from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
+from rovsim.dynamics.effects.constant_wrench import ConstantWrench
+from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
-DRAG = ("linear_damping", "quadratic_damping")
-PER_AXIS = (*DRAG, "added_mass", "constant_wrench")
+DRAG = (LinearDamping, QuadraticDamping)
+PER_AXIS = (*DRAG, AddedMass, ConstantWrench)
 ONE_GAIN = ("all",)  # of all thrusters
-STATED = (*DRAG, "added_mass", "net_buoyancy", "buoyancy_center", "thruster_gain")
+FILE_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ThrusterGain)
+STATED = frozenset(effect.id for effect in FILE_EFFECTS)
 SEVERAL = 3  # effects of the file: one or two may be all that is wrong
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
@@ -69,18 +73,18 @@ def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> fl
     return SHARE.get(effect.id, 0.0) * stated / parameter.scale
 
 
-def free_terms(base: Model, moved: Sequence[str], names: Sequence[str]) -> tuple[Term, ...]:
+def free_terms(
+    base: Model, moved: Sequence[str], effects: Sequence[type[Effect]]
+) -> tuple[Term, ...]:
     """Effects, still absent, whose parameters are free; water neither drives nor lightens a body.
 
     Args:
         base: the model they are added to.
         moved: axes about which something can be said.
-        names: the effects.
+        effects: which ones.
     """
     bounds = _physical_bounds(base)
-    return tuple(
-        Term(built_in()[name](), _choose_free(name, moved), bounds.get(name, {})) for name in names
-    )
+    return tuple(Term(e(), _choose_free(e, moved), bounds.get(e.id, {})) for e in effects)
 
 
 def _physical_bounds(base: Model) -> dict[str, dict[str, Bounds]]:
@@ -91,9 +95,9 @@ def _physical_bounds(base: Model) -> dict[str, dict[str, Bounds]]:
     }
 
 
-def _choose_free(name: str, moved: Sequence[str]) -> tuple[str, ...]:
-    if name == "thruster_gain":
+def _choose_free(effect: type[Effect], moved: Sequence[str]) -> tuple[str, ...]:
+    if effect is ThrusterGain:
         return ONE_GAIN
-    if name in PER_AXIS:
+    if effect in PER_AXIS:
         return tuple(moved)
-    return tuple(p.name for p in built_in()[name].parameters if p.fitted)
+    return tuple(p.name for p in effect.parameters if p.fitted)

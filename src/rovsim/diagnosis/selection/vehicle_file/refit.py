@@ -15,7 +15,7 @@ from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, free_terms
+from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECTS, ONE_GAIN, free_terms
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 
@@ -41,7 +41,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
 
 def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
-    terms = free_terms(base, moved, [name for name in STATED if name != "thruster_gain"])
+    terms = free_terms(base, moved, [one for one in FILE_EFFECTS if one is not ThrusterGain])
     gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
     return Hypothesis(base, (*terms, gain))
 

@@ -11,13 +11,13 @@ from typing import Iterator, NamedTuple
 import numpy as np
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection import uncertain_file
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import STATED, is_off
 from rovsim.diagnosis.selection.promising import find_swaps
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival
-from rovsim.diagnosis.selection.whole_file_fit import fit_whole_file, measure_misfit
+from rovsim.diagnosis.selection.vehicle_file import uncertain_file
+from rovsim.diagnosis.selection.vehicle_file.stated import STATED, is_off
+from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, measure_misfit
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 

@@ -3,7 +3,7 @@
 Where several effects that the file states were selected, it is off elsewhere too, mostly by too
 little to be found: a dozen such numbers, none of them worth its penalty, may explain together what
 a special effect seems to. So there it is judged with all of the file free, as far as such files are
-off (`nominal_terms.py`), and to first order. Where the file explains it, its numbers are sought
+off (`stated.py`), and to first order. Where the file explains it, its numbers are sought
 together: linear and quadratic drag of opposite sign look like friction, and neither alone explains
 anything.
 """
@@ -18,7 +18,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.nominal_terms import ONE_GAIN, STATED, is_off, spread_of_file
+from rovsim.diagnosis.selection.vehicle_file.stated import ONE_GAIN, STATED, is_off, spread_of_file
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 

@@ -10,18 +10,17 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.selection.fit import Fit, judge
 from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
-from rovsim.diagnosis.selection.nominal_terms import (
+from rovsim.diagnosis.selection.prior import Prior
+from rovsim.diagnosis.selection.vehicle_file.stated import (
+    FILE_EFFECTS,
     GAIN,
     GAIN_SCALE,
     ONE_GAIN,
     SEVERAL,
-    STATED,
     is_off,
     mark_gain,
     spread_of_file,
 )
-from rovsim.diagnosis.selection.prior import Prior
-from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 
@@ -65,7 +64,7 @@ def mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
 def free_rest(h: Hypothesis) -> Hypothesis:
     """With all free that the file states; each thruster's own gain where several differ."""
     fitted = set(h.parameter_names)
-    for effect in (built_in()[name].on(h.base.vehicle) for name in STATED):
+    for effect in (one.on(h.base.vehicle) for one in FILE_EFFECTS):
         left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
         if left:
             h = h.with_term(Term(effect(), left))
