@@ -11,6 +11,7 @@ model_names     what models are called
 signs           numbers below zero in text
 columns         text that fits a terminal
 progress        how far long work is, and the time that is left
+axes            letters and units of the six axes
 horizons        how far replays look ahead
 run             which run a thing belongs to, what was commanded, where
 pwm             pulses of a radio control, and what they command

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.core.errors import BadInput
 from rovsim.core.signs import minus
 from rovsim.design.envelope import Envelope
@@ -17,7 +18,6 @@ from rovsim.design.search import DesignProblem
 from rovsim.design.settings import Question
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
-from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows, last_predicted
 

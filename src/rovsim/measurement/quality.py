@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import LONG_STEP, STD_PER_MAD, usual_range
 from rovsim.core.rotations import conjugate, continuous, log, multiply, normalized, turns, unrotate
@@ -136,7 +137,7 @@ def measure_excitation(recording: Recording) -> dict[str, Excitation]:
     return {
         axis: Excitation(
             std=float(spread[k]),
-            unit="m/s" if k < 3 else "rad/s",
+            unit=VELOCITY_UNITS[k],
             excited=bool(spread[k] > EXCITED[k]),
         )
         for k, axis in enumerate(AXES)

@@ -6,7 +6,7 @@ figures      the figures, one a file
 tables       tables as CSV and LaTeX
 words        what numbers say, in sentences
 wording      names and numbers as people write them
-units        letters and units of the six axes
+units        units as people print them
 formula      equations as MathML
 html         the report
 pages        pages of docs/ with results in them

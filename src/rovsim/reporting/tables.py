@@ -9,12 +9,12 @@ import numpy as np
 from pandas import DataFrame, MultiIndex, Series
 
 from rovsim import AXES
+from rovsim.core.axes import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
-from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, fit, significant, title
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison

@@ -13,6 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.dynamics.body import Body, cross_matrix
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
@@ -23,7 +24,7 @@ from rovsim.dynamics.effects.lift import Lift
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import ThrustAsymmetry, ThrusterDeadband, ThrusterGain
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.vehicle.cross_flow import FORCES, VELOCITIES, CrossFlow
+from rovsim.dynamics.vehicle.cross_flow import CrossFlow
 from rovsim.dynamics.vehicle.curves import ForceCurve as Curve
 from rovsim.dynamics.vehicle.curves import Table, Tables
 
@@ -83,7 +84,7 @@ class Equation:
             for name in ("Y|u|v", "Z|u|w"):
                 found[name] = found.get(name, 0.0) - lift["coefficient"]
         for cubic in self._those(CubicDamping):
-            for axis, force, v in zip(AXES, FORCES, VELOCITIES, strict=True):
+            for axis, force, v in zip(AXES, FORCE, VELOCITY, strict=True):
                 found[f"{force}{3 * v}"] = found.get(f"{force}{3 * v}", 0.0) - cubic[axis]
         return {name: c for name, c in found.items() if c}
 

@@ -33,9 +33,9 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.horizons import WINDOW
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import title
 from rovsim.simulation.bands import LEVEL, Band, why_without_bands
 from rovsim.simulation.prediction import Prediction

@@ -20,9 +20,9 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_text, write_text
-from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.words.sentences import doubt_sentences
 from rovsim.results.quality import Quality
 

@@ -17,9 +17,9 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.learning.learner import learners
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
-from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, significant, title
 from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder

@@ -33,6 +33,7 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.core.horizons import OPEN_LOOP, WINDOW
 from rovsim.dynamics.catalogue import Catalogue
@@ -41,7 +42,7 @@ from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
 from rovsim.learning.learner import learners
 from rovsim.reporting.figures.palette import FAMILIES
-from rovsim.reporting.units import VELOCITY_UNITS, unit
+from rovsim.reporting.units import unit
 from rovsim.reporting.wording import listed, significant, title
 from rovsim.reporting.words.totals import list_totals, warn
 from rovsim.reporting.words.verdict import interval

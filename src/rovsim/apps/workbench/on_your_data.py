@@ -10,13 +10,13 @@ from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
 from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import tabulate
 from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowered
 from rovsim.reporting.charts import chart_bins
 from rovsim.reporting.figures.palette import BLUE
-from rovsim.reporting.units import ACCELERATION_UNITS
 
 SEEN = 1e-4  # of the measured power: one per cent of the acceleration
 LOOKS = {"without it": (MARK, "dashed"), "with it": (BLUE, "solid")}

@@ -21,11 +21,11 @@ from rovsim.apps.workbench.charts import (
 from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.runaway import cut, find_divergence
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import ACCELERATION_UNITS, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.core.rotations import short_way, to_euler
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.palette import Look
-from rovsim.reporting.units import ACCELERATION_UNITS, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.simulation.bands import Band
 from rovsim.simulation.prediction import Prediction
 

@@ -21,13 +21,13 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.reporting.charts import chart_bins
 from rovsim.reporting.figures.palette import BLUE
-from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"

@@ -28,8 +28,8 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import FORCE_UNITS
 from rovsim.core.errors import RovsimError
-from rovsim.reporting.units import FORCE_UNITS
 from rovsim.reporting.wording import ERROR, IMPROBABLE, percent, significant, tell_probability
 from rovsim.reporting.words.verdict import Missing, explain, interval
 from rovsim.results.diagnosis import Diagnosis, Disturbance

@@ -11,9 +11,9 @@ from textwrap import dedent
 from typing import ClassVar, Mapping, Sequence
 
 from rovsim import AXES
+from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law, stated
-from rovsim.diagnosis.equations.products.variables import FORCES, NU
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
@@ -101,13 +101,16 @@ class Wake(WithMemory):
     @property
     def parts(self) -> tuple[Part, ...]:
         """One for each axis."""
-        return tuple(Part(axis, (NU[AXES.index(axis)], "memory")) for axis in self.names)
+        return tuple(Part(axis, (VELOCITY[AXES.index(axis)], "memory")) for axis in self.names)
 
     @property
     def equation(self) -> str:
         """In LaTeX."""
         each = [AXES.index(axis) for axis in self.names]
-        pushes = [rf"{FORCES[i]} = -{self._symbol(AXES[i])}\,({NU[i]} - m_{NU[i]})" for i in each]
+        pushes = [
+            rf"{FORCE[i]} = -{self._symbol(AXES[i])}\,({VELOCITY[i]} - m_{VELOCITY[i]})"
+            for i in each
+        ]
         return r",\quad ".join((*pushes, r"T \dot m = \nu_r - m"))
 
     @property
@@ -123,7 +126,7 @@ class Wake(WithMemory):
         ]
 
     def _symbol(self, name: str) -> str:
-        return f"c_{NU[AXES.index(name)]}" if name in AXES else super()._symbol(name)
+        return f"c_{VELOCITY[AXES.index(name)]}" if name in AXES else super()._symbol(name)
 
 
 class Play(WithMemory):

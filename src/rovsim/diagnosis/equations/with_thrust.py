@@ -12,19 +12,13 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.products import KERNEL
-from rovsim.diagnosis.equations.products.variables import (
-    FORCES,
-    NU,
-    ODD,
-    VARIABLES,
-    Variable,
-    write_unit,
-)
+from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, Variable, write_unit
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.base import Effect
@@ -37,7 +31,7 @@ THRUST = tuple(
     Variable(
         f"T_{X}", f"T_{X}", f"T_{X}", int(j >= 3), 0, 0, j in ODD, f"the thrust {name} (T_{X})"
     )
-    for j, (X, name) in enumerate(zip(FORCES, NAMES, strict=True))
+    for j, (X, name) in enumerate(zip(FORCE, NAMES, strict=True))
 )  # in N, too
 
 
@@ -151,14 +145,14 @@ class WithThrust(Form):
     @property
     def parts(self) -> tuple[Part, ...]:
         """It is one."""
-        own = (NU[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
+        own = (VELOCITY[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
         return (Part(AXES[self.term.on], ("thrust", *own)),)
 
     @property
     def equation(self) -> str:
         """In LaTeX."""
         product = r"\,".join(("c", *(factor.latex for factor in self.term.factors)))
-        return f"{FORCES[self.term.on]} = {product}"
+        return f"{FORCE[self.term.on]} = {product}"
 
     @property
     def meaning(self) -> str:

@@ -1,7 +1,8 @@
 """Errors of many models in windows of 2 s, in one compiled call: what users see of a model.
 
-The same number as `windows_2s` of the ladder, on the train runs, but for one thing: predictions are
-not filtered once more. Disturbances may push, so the same code tells what noise alone would give.
+Nearly the number that the ladder calls `windows_2s`, on the train runs: predictions are not
+filtered once more, and means over bins are those of Simpson's rule. Disturbances may push, so the
+same code tells what noise alone would give.
 """
 
 from dataclasses import dataclass

@@ -4,6 +4,8 @@ from typing import Literal
 
 from pydantic import field_validator
 
+from rovsim.core.axes import FORCE as FORCE_LETTERS
+from rovsim.core.axes import VELOCITY as VELOCITY_LETTERS
 from rovsim.core.schema import Section
 
 Control = Literal["3dof", "6dof", "all"]  # runs a residual learns from
@@ -11,9 +13,9 @@ Block = Literal["velocity", "wrench", "acceleration", "gravity"]
 
 # Columns of each block, in the order in which blocks stand in a feature vector.
 COLUMNS: dict[str, tuple[str, ...]] = {
-    "velocity": ("u", "v", "w", "p", "q", "r"),
-    "wrench": ("X", "Y", "Z", "K", "M", "N"),
-    "acceleration": ("u_dot", "v_dot", "w_dot", "p_dot", "q_dot", "r_dot"),
+    "velocity": VELOCITY_LETTERS,
+    "wrench": FORCE_LETTERS,
+    "acceleration": tuple(f"{letter}_dot" for letter in VELOCITY_LETTERS),
     "gravity": ("down_x", "down_y", "down_z"),
 }
 FEATURES = sum(len(columns) for columns in COLUMNS.values())  # the longest feature vector

@@ -18,10 +18,10 @@ from typing import Annotated, Any, Mapping
 import numpy as np
 from pydantic import PlainValidator
 
+from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 
-FORCES, VELOCITIES = "XYZKMN", "uvwpqr"
 SIZE = 6  # a factor of 6 + i is the size of velocity i
 NO_FACTOR = -1
 NAME = re.compile(r"([XYZKMN])((?:[uvwpqr]|\|[uvwpqr]\|){2,3})")
@@ -36,15 +36,15 @@ def parse_product(name: str) -> tuple[int, int, int, int]:
     found = NAME.fullmatch(name)
     if found is None:
         raise ValueError(
-            f"names of an axis {' '.join(FORCES)} and two or three velocities "
-            f"{' '.join(VELOCITIES)}, such as Yuv or Nr|r|, and not '{name}'"
+            f"names of an axis {' '.join(FORCE)} and two or three velocities "
+            f"{' '.join(VELOCITY)}, such as Yuv or Nr|r|, and not '{name}'"
         )
     parts = re.findall(r"\|[uvwpqr]\||[uvwpqr]", found[2])
     if len(parts) == 2 and parts[0] == parts[1] and "|" not in parts[0]:
         parts[1] = f"|{parts[1]}|"
-    codes = [VELOCITIES.index(part.strip("|")) + SIZE * ("|" in part) for part in parts]
+    codes = [VELOCITY.index(part.strip("|")) + SIZE * ("|" in part) for part in parts]
     codes += [NO_FACTOR] * (3 - len(codes))
-    return FORCES.index(found[1]), codes[0], codes[1], codes[2]
+    return FORCE.index(found[1]), codes[0], codes[1], codes[2]
 
 
 def _checked(value: Any) -> dict[str, float]:

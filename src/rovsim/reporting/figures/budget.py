@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
+from rovsim.core.axes import FORCE, FORCE_UNITS
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import (
     BLACK,
@@ -21,7 +22,6 @@ from rovsim.reporting.figures.palette import (
 from rovsim.reporting.figures.panels import SHARED, plot_all, share_scales, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
-from rovsim.reporting.units import FORCE, FORCE_UNITS
 from rovsim.reporting.wording import significant
 from rovsim.results.force_budget import ForceBudget
 

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import DENSITY_UNITS, FORCE_UNITS
 from rovsim.reporting.figures.legends import note, nothing, plain_log
 from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.units import DENSITY_UNITS, FORCE_UNITS
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Disturbance, ForceOfRun, Push

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from rovsim import AXES
+from rovsim.core.axes import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.core.horizons import HORIZON
 from rovsim.reporting.figures.legends import legend, note, nothing, patches
 from rovsim.reporting.figures.palette import Look, Style, looks
@@ -19,7 +20,6 @@ from rovsim.reporting.figures.pooled import (
     relate,
 )
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.units import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.reporting.wording import significant
 from rovsim.results.comparison import Comparison
 

@@ -4,10 +4,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from rovsim import AXES
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import listed, title
 from rovsim.results.base import or_nan
 from rovsim.results.growth import Growth

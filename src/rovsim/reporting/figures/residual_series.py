@@ -5,12 +5,12 @@ from typing import Mapping
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.reporting.figures.legends import legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, six_panels
 from rovsim.reporting.figures.series import averaged, excerpt, masked
 from rovsim.reporting.figures.style import styled
-from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.results.error_conditions import BLOCK
 
 SECTION = "compare"

@@ -15,12 +15,12 @@ from numpy import ndarray as Array
 from PIL import Image
 
 from rovsim import AXES
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.core.files import write_bytes
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import MM, WIDTH, styled
-from rovsim.reporting.units import ACCELERATION_UNITS
 
 HEIGHT = 56.0  # mm
 PIXELS = 700

@@ -6,12 +6,12 @@ from typing import Mapping
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
+from rovsim.core.axes import VELOCITY, VELOCITY_UNITS
 from rovsim.reporting.figures.legends import areas, legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, shade, six_panels
 from rovsim.reporting.figures.series import excerpt, masked
 from rovsim.reporting.figures.style import styled
-from rovsim.reporting.units import VELOCITY, VELOCITY_UNITS
 from rovsim.reporting.wording import title
 from rovsim.simulation.prediction import LEVEL
 

@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rovsim import AXES
+from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.reporting.charts import BinCurve, chart_bins, find_varying_shares
 from rovsim.reporting.figures.legends import legend, lines, note, nothing
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.units import ACCELERATION_UNITS
 from rovsim.reporting.wording import title
 from rovsim.results.error_conditions import ConditionTable, ErrorConditions, ModelConditions
 

@@ -7,12 +7,12 @@ import numpy as np
 from pandas import DataFrame, Series
 
 from rovsim import AXES
+from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.horizons import HORIZON
 from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL, PROPOSED, ZERO_ACCELERATION
 from rovsim.reporting.figures.palette import family, is_learned
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
-from rovsim.reporting.units import VELOCITY_UNITS
 from rovsim.reporting.wording import (
     ERROR,
     FLOOR_COUNTS_ALL,

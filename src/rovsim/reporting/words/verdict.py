@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 from rovsim import AXES
+from rovsim.core.axes import FORCE_UNITS
 from rovsim.core.normal import Z_95
 from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect, StochasticCurrent
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.units import FORCE_UNITS, unit
+from rovsim.reporting.units import unit
 from rovsim.reporting.wording import (
     ERROR,
     ERROR_MEANING,

@@ -2,8 +2,9 @@
 
 from typing import Iterator, Sequence
 
+from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
-from rovsim.diagnosis.equations.products.variables import FORCES, IN_CODE, VARIABLES
+from rovsim.diagnosis.equations.products.variables import IN_CODE, VARIABLES
 from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.dynamics.effects.law_codes import (
     DEEP,
@@ -32,27 +33,27 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
             values.setdefault(head, []).append(text + extra)
     for head, parts in values.items():
         yield f"{head} = " + " + ".join(parts)
-    body = {f: f for f in FORCES if f in values}
+    body = {f: f for f in FORCE if f in values}
     world = [v if v in values else "0.0" for v in ("Fn", "Fe", "Fd")]
     if any(v != "0.0" for v in world):
         yield from _turned(world)
         body |= {
             f: f"{body[f]} + force_{f.lower()}" if f in body else f"force_{f.lower()}"
-            for f in FORCES[:3]
+            for f in FORCE[:3]
         }
     flow = [v if v in values else "0.0" for v in ("vn", "ve")]
     if any(v != "0.0" for v in flow):
         yield from _carried(flow, law)
         body |= {
             f: f"{body[f]} + drag_{f.lower()}" if f in body else f"drag_{f.lower()}"
-            for f in FORCES[:3]
+            for f in FORCE[:3]
         }
-    yield "return " + ", ".join(body.get(f, "0.0") for f in FORCES)
+    yield "return " + ", ".join(body.get(f, "0.0") for f in FORCE)
 
 
 def _heads_in_code(on: int) -> list[tuple[str, str]]:
     if on < WORLD:
-        return [(FORCES[on], "")]
+        return [(FORCE[on], "")]
     if on < WATER:
         return [(("Fn", "Fe", "Fd")[on - WORLD], "")]
     if on < SWIRL:

@@ -11,12 +11,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
+from rovsim.core.axes import VELOCITY
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
 from rovsim.dynamics.effects.law_codes import SWIRL, WATER, WORLD
 
-FORCES = ("X", "Y", "Z", "K", "M", "N")
-NU = ("u", "v", "w", "p", "q", "r")
 IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # `p` are the parameters there
 ODD = (1, 3, 5)  # axes whose sign a mirror of port and starboard turns
 
@@ -47,8 +46,8 @@ def _velocities() -> list[Variable]:
     )
     return [
         Variable(
-            kind.format(NU[i]),
-            latex.format(NU[i]),
+            kind.format(VELOCITY[i]),
+            latex.format(VELOCITY[i]),
             code.format(IN_CODE[i]),
             *_unit_of_velocity(i, kind),
             i in ODD and kind != "|{}|",

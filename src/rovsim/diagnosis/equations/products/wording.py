@@ -4,8 +4,9 @@ from collections import Counter
 from typing import Sequence
 
 from rovsim import AXES
+from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
-from rovsim.diagnosis.equations.products.variables import FORCES, ON, VARIABLES
+from rovsim.diagnosis.equations.products.variables import ON, VARIABLES
 from rovsim.dynamics.effects.law_codes import EAST, NORTH, SWIRL, WATER, WORLD
 
 WORLD_FORCES = ("F_n", "F_e", "F_d")
@@ -42,7 +43,7 @@ def _joined(parts: Sequence[str]) -> str:
 def _heads(on: int) -> list[tuple[str, str]]:
     """What stands left of the equals sign, and a further factor on the right."""
     if on < WORLD:
-        return [(FORCES[on], "")]
+        return [(FORCE[on], "")]
     if on < WATER:
         return [(WORLD_FORCES[on - WORLD], "")]
     if on < SWIRL:

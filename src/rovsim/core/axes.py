@@ -1,0 +1,8 @@
+"""Letters and units of what is along the six axes, surge to yaw, as `rovsim.AXES` names them."""
+
+VELOCITY = ("u", "v", "w", "p", "q", "r")  # letters of Fossen 2021, table 2.1
+FORCE = ("X", "Y", "Z", "K", "M", "N")
+VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3
+ACCELERATION_UNITS = ("m/s²",) * 3 + ("rad/s²",) * 3
+FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
+DENSITY_UNITS = ("N²/Hz",) * 3 + ("N² m²/Hz",) * 3
