@@ -30,7 +30,7 @@ from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.reporting.pages.marked import BEGIN, END, replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
-from rovsim.results.diagnosis import Answer, Diagnosis, DiagnosisErrors, Proposal
+from rovsim.results.diagnosis import Answer, Diagnosis, DiagnosisErrors, ProposedEquation
 from synthetic_study import diagnosis as written_diagnosis
 
 SHORT = {
@@ -144,7 +144,9 @@ def law(*terms, reached=0.05):
         "axis": "sway", "equation": "", "file": "proposed_effect.py", "parameters": {},
         "error_reduction": 0.5, "effect": "proposed_effect", "meaning": "", "terms": made,
     }  # fmt: skip
-    left = found.unexplained.model_copy(update={"proposal": Proposal.model_validate(proposal)})
+    left = found.unexplained.model_copy(
+        update={"proposal": ProposedEquation.model_validate(proposal)}
+    )
     error = DiagnosisErrors(nominal=0.3, with_effects=0.2, noise_floor=0.04)
     return found.model_copy(update={"unexplained": left, "error": error})
 

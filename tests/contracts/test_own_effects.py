@@ -18,7 +18,7 @@ from rovsim.dynamics.effects import base
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.trials import TRIALS, try_on
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.results.diagnosis import Diagnosis, Proposal
+from rovsim.results.diagnosis import Diagnosis, ProposedEquation
 from said import unfolded
 from small_study import ROOT
 from synthetic_study import diagnosis
@@ -76,7 +76,7 @@ def test_a_proposed_law_is_added_where_its_file_is_named():
         "strength": {"value": 3.0, "std": 0.1, "unit": "N"},
         "height": {"value": 0.7, "unit": "m"},
     }
-    proposal = Proposal(
+    proposal = ProposedEquation(
         axis="heave",
         equation="",
         file="floor_cushion.py",

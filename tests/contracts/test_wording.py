@@ -28,7 +28,7 @@ from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
-from rovsim.results.diagnosis import Proposal
+from rovsim.results.diagnosis import ProposedEquation
 from rovsim.results.fitted import FittedEffect, FittedValue
 from rovsim.results.ladder import Ladder, Step
 from synthetic_study import study
@@ -238,7 +238,7 @@ def test_why_a_name_has_no_probability_is_said(content, effect, values, beside, 
     camera = FittedEffect(effect="pose_filter", parameters={}, probability=0.9)
     one = FittedEffect(effect=effect, parameters=given)
     others = tuple(FittedEffect(effect=name, parameters={}) for name in beside or ())
-    law = Proposal(
+    law = ProposedEquation(
         axis="sway",
         equation="",
         file="",

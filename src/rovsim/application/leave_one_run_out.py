@@ -10,7 +10,7 @@ from rovsim.core.model_names import EFFECTS, NOMINAL, name_learned
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
-from rovsim.reporting.figures import Kind
+from rovsim.reporting.figures import FigureKind
 from rovsim.reporting.report_data import list_study_figures
 
 
@@ -78,7 +78,7 @@ class LeaveOneRunOut:
         return self.study.settings.folds.pitfalls
 
     @property
-    def figures(self) -> list[Kind]:
+    def figures(self) -> list[FigureKind]:
         """Figures that the study draws once; of published errors only where there are any."""
         found = list_study_figures()
         return [one for one in found if self.published or "published_errors" not in one.needs]

@@ -25,7 +25,7 @@ from rovsim.dynamics.model import Model
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class SettledAnswer:
     """An answer: its final values, how likely it is, and all that it leaves unexplained.
 
     `refused`: hold-out validation refused effects, and nothing else explains what these did.
@@ -62,7 +62,7 @@ class Answer:
 
 def settle_noticed(
     selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation, seed: int
-) -> Answer:
+) -> SettledAnswer:
     """Names that a user would notice; where they leave something, the others too if they do not."""
     noticed = drop_idle(drop_unsure(selection))
     answer = settle(noticed, usable, holdout)
@@ -75,7 +75,9 @@ def settle_noticed(
     return more if more.complete else answer
 
 
-def settle(selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation) -> Answer:
+def settle(
+    selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation
+) -> SettledAnswer:
     """What hold-out validation passes, at its final values on all runs, and what it leaves."""
     selection, whole = holdout.judge(selection)
     settled = _settle_values(selection, usable)
@@ -85,7 +87,7 @@ def settle(selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidati
     return replace(settled, refused=not whole and settled.complete)
 
 
-def _settle_values(selection: SearchResult, usable: UsableRuns) -> Answer:
+def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer:
     """At its final values on all runs, without what these do not bear out."""
     fit, bank = polish_selection(selection, usable.runs)
     borne_out = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
@@ -96,10 +98,10 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> Answer:
     score = selection.workspace.score(fit)
     whole = fit_whole_file(fit.hypothesis, bank, fit.noise)
     left = find_structure(fit if whole is None else whole, bank) if fit.is_finite else []
-    return Answer(selection, fit, bank, score, left, whole=whole)
+    return SettledAnswer(selection, fit, bank, score, left, whole=whole)
 
 
-def choose(one: Answer, other: Answer, holdout: HoldoutValidation) -> Answer:
+def choose(one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation) -> SettledAnswer:
     """Of two answers the one that surely replays better; else what is complete, or the likelier.
 
     Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
@@ -111,7 +113,9 @@ def choose(one: Answer, other: Answer, holdout: HoldoutValidation) -> Answer:
     return one if not other.complete and one.score >= other.score else other
 
 
-def finish(answer: Answer, runs: Sequence[ObservedRun]) -> tuple[Answer, Fit, CommonScale | None]:
+def finish(
+    answer: SettledAnswer, runs: Sequence[ObservedRun]
+) -> tuple[SettledAnswer, Fit, CommonScale | None]:
     """At its final values; the fit with intervals that hold all that is not known, and the scale.
 
     Args:

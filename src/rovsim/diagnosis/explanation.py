@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Sequence
 
-from rovsim.diagnosis.answer import Answer, choose, settle, settle_noticed
+from rovsim.diagnosis.answer import SettledAnswer, choose, settle, settle_noticed
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
 from rovsim.diagnosis.observer.divergence import require_finite
@@ -57,7 +57,7 @@ class Explanation:
     """
 
     question: Question
-    answer: Answer
+    answer: SettledAnswer
     start: SearchStart
     smoothing: Smoothing | None
     holdout: HoldoutValidation
@@ -98,7 +98,7 @@ def explain(question: Question, stage: Stages) -> Explanation:
     return Explanation(question, answer, start, smoothing, holdout)
 
 
-def _unmask(answer: Answer) -> Answer:
+def _unmask(answer: SettledAnswer) -> SettledAnswer:
     """An answer that seems to leave nothing, beside a law that its names may stand in for."""
     if answer.lasting or answer.whole is not None:
         return answer

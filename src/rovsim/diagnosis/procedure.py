@@ -24,7 +24,7 @@ from typing import Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rovsim.diagnosis.answer import Answer, finish, polish_selection
+from rovsim.diagnosis.answer import SettledAnswer, finish, polish_selection
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
@@ -123,7 +123,9 @@ def _correlate(fit: Fit) -> Correlation:
     return correlate(fit.covariance, fit.hypothesis.parameter_names)
 
 
-def _propose(answer: Answer, explained: Explanation, camera: Sequence[Named]) -> ProposedLaw | None:
+def _propose(
+    answer: SettledAnswer, explained: Explanation, camera: Sequence[Named]
+) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
     base, runs, holdout = explained.question.base, explained.question.usable.runs, explained.holdout
 
@@ -135,7 +137,7 @@ def _propose(answer: Answer, explained: Explanation, camera: Sequence[Named]) ->
     return propose_law(answer.selection, best, base, holdout, runs, polish, camera)
 
 
-def _trace(answer: Answer) -> ForceInTime | None:
+def _trace(answer: SettledAnswer) -> ForceInTime | None:
     """The force in time that is left; None where nothing is seen of it, or no filter holds."""
     if not answer.structures or not answer.fit.is_finite:
         return None

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures import Kind, kind, kinds, refuse_unknown
+from rovsim.reporting.figures import FigureKind, kind, kinds, refuse_unknown
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
@@ -201,17 +201,17 @@ REPLAYED = {
 }
 
 
-def list_study_figures() -> list[Kind]:
+def list_study_figures() -> list[FigureKind]:
     """Figures that are drawn once."""
     return [figure for figure in kinds().values() if not _is_of_run(figure)]
 
 
-def list_run_figures() -> list[Kind]:
+def list_run_figures() -> list[FigureKind]:
     """Figures that are drawn for each run."""
     return [figure for figure in kinds().values() if _is_of_run(figure)]
 
 
-def _is_of_run(figure: Kind) -> bool:
+def _is_of_run(figure: FigureKind) -> bool:
     if set(figure.needs) <= vars(RunData).keys():
         return True
     own = (*(one.name for one in fields(ReportData)), *vars(ReportData))

@@ -31,7 +31,7 @@ class RivalLaw(Section):
     deficit: float | None
 
 
-class Proposal(Section):
+class ProposedEquation(Section):
     """A law for what no effect of the catalogue explains: the effect in `file`, and its values.
 
     `axis` on which it acts most; `error_reduction` of the base's error, on top of the effects
@@ -50,7 +50,7 @@ class Proposal(Section):
     rivals: tuple[RivalLaw, ...] = ()
 
 
-class Push(Section):
+class StrongMoment(Section):
     """A moment of a disturbance: N or N m on one body axis, at a place in MoCap coordinates, m."""
 
     run: str
@@ -89,7 +89,7 @@ class Disturbance(Section):
     axes: tuple[str, ...]
     rms: ByAxis
     band_hz: tuple[float, float]
-    strongest: tuple[Push, ...]
+    strongest: tuple[StrongMoment, ...]
     runs: tuple[ForceOfRun, ...]
     spectrum: ForceSpectrum | None = None
 
@@ -105,7 +105,7 @@ class Unexplained(Section):
     fraction: float | None
     significant: bool
     hint: str
-    proposal: Proposal | None = None
+    proposal: ProposedEquation | None = None
     stand_ins: tuple[str, ...] = ()
     disturbance: Disturbance | None = None
 

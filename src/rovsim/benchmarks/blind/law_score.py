@@ -8,7 +8,7 @@ from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.laws import LAWS, KnownLaw
 from rovsim.results.base import or_nan
 from rovsim.results.blind_benchmark import LawRates
-from rovsim.results.diagnosis import Diagnosis, Proposal
+from rovsim.results.diagnosis import Diagnosis, ProposedEquation
 
 HALF = 0.5  # of the way to the noise floor
 
@@ -52,7 +52,7 @@ def _rate(answers: Sequence[KeptAnswer], law: KnownLaw | None) -> LawRates:
     )
 
 
-def is_right(proposal: Proposal, law: KnownLaw) -> bool:
+def is_right(proposal: ProposedEquation, law: KnownLaw) -> bool:
     """Whether the largest term acts where the law does, and such terms have its quantities."""
     main = max(proposal.terms, key=lambda term: or_nan(term.size))
     named = {q for term in proposal.terms if term.on in law.on for q in term.quantities}

@@ -16,10 +16,10 @@ from rovsim.results.diagnosis import (
     Disturbance,
     ForceOfRun,
     ForceSpectrum,
-    Proposal,
+    ProposedEquation,
     ProposedTerm,
-    Push,
     RivalLaw,
+    StrongMoment,
 )
 from rovsim.results.fitted import FittedEffect, FittedValue
 
@@ -55,7 +55,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
         band_hz=(round(force.band[0], 3), round(force.band[1], 3)),
         spectrum=_describe_spectrum(force.spectrum),
         strongest=tuple(
-            Push(
+            StrongMoment(
                 run=p.run,
                 time_s=round(p.time, 2),
                 axis=p.axis,
@@ -92,13 +92,13 @@ def _round_all(values: Array) -> Array:
     return np.asarray(np.round(values, 3 - int(np.floor(np.log10(max(most, 1e-12))))))
 
 
-def describe_law(law: ProposedLaw) -> Proposal:
+def describe_law(law: ProposedLaw) -> ProposedEquation:
     """A law that is proposed."""
     beside = [
         FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
         for one in law.beside
     ]
-    return Proposal(
+    return ProposedEquation(
         axis=law.axis,
         equation=law.form.equation,
         file=LAW,

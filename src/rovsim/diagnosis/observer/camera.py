@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize_scalar
 
-from rovsim.diagnosis.observer.camera_noise import KINDS, Kind, Spectrum, measure_spectra
+from rovsim.diagnosis.observer.camera_noise import KINDS, NoiseKind, NoiseSpectrum, measure_spectra
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
@@ -62,7 +62,7 @@ def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None
     return fit_smoothing(spectra) if spectra else None
 
 
-def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
+def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
     """The filter that the noise of these poses went through; None: none."""
     highest = MAX_CUTOFF_SHARE * min(float(s.frequency[-1]) for s in spectra)
     tried = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
@@ -86,16 +86,16 @@ def fit_smoothing(spectra: Sequence[Spectrum]) -> Smoothing | None:
     return Smoothing(cutoff, std, lr_statistic, cutoff, float(lowest), float(highest), frame)
 
 
-def _cost(spectra: Sequence[Spectrum], kind: Kind, cutoff: float | None) -> float:
+def _cost(spectra: Sequence[NoiseSpectrum], kind: NoiseKind, cutoff: float | None) -> float:
     return sum(one.cost(kind, cutoff) for one in spectra)
 
 
-def _penalty(spectra: Sequence[Spectrum], kind: Kind) -> float:
+def _penalty(spectra: Sequence[NoiseSpectrum], kind: NoiseKind) -> float:
     return sum(one.penalty(kind) for one in spectra)
 
 
 def _refine(
-    spectra: Sequence[Spectrum], kind: Kind, tried: Array, costs: Array
+    spectra: Sequence[NoiseSpectrum], kind: NoiseKind, tried: Array, costs: Array
 ) -> tuple[float, float, float]:
     """Cost, with its penalty, of the likeliest cutoff near the best tried (t,); it, its std."""
 

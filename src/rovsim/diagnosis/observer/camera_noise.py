@@ -34,7 +34,7 @@ ROUNDED = 0.03  # the same at most, of poses written in units of up to 0.6 of th
 
 
 @dataclass(frozen=True)
-class Kind:
+class NoiseKind:
     """What noise is beside white.
 
     `memory` in s: an error that lasts, too; None: none. `bridged`: frames lie on straight lines
@@ -45,11 +45,13 @@ class Kind:
     bridged: bool = False
 
 
-KINDS = [Kind(memory, bridged) for memory, bridged in product((None, *MEMORIES), (False, True))]
+KINDS = [
+    NoiseKind(memory, bridged) for memory, bridged in product((None, *MEMORIES), (False, True))
+]
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class NoiseSpectrum:
     """Mean periodograms `power` (6, f) of a pose at `frequency` (f,) Hz of frames `period` s apart.
 
     Each is the mean of `count` independent ones.
@@ -73,7 +75,7 @@ class Spectrum:
         power = LowPass((memory,)).pass_power(self.frequency, self.period)
         return np.asarray(power / power[0])
 
-    def cost(self, kind: Kind, cutoff: float | None) -> float:
+    def cost(self, kind: NoiseKind, cutoff: float | None) -> float:
         """Minus twice the log likelihood; `cutoff` Hz of the software's filter, None: none."""
         others = [(self.frequency / self.frequency[0]) ** -steep for steep in STEEP]
         if kind.memory is not None:
@@ -88,30 +90,30 @@ class Spectrum:
         low, high = np.full(len(others), np.log(NOTHING)), np.log(most)
         return 2.0 * self.count * least_misfit(self.power, white, np.array(others), low, high)
 
-    def penalty(self, kind: Kind) -> float:
+    def penalty(self, kind: NoiseKind) -> float:
         """What its sizes cost beyond those of white noise (Schwarz 1978)."""
         sizes = (kind.memory is not None) + kind.bridged
         return float(np.log(self.count * self.power.shape[1]) * sizes * len(self.power))
 
 
-def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[Spectrum]:
+def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[NoiseSpectrum]:
     """Spectra of the noise of all runs of motion capture, one for each rate of their frames."""
     cameras = [run for run in runs if not run.motion.binned and run.motion.measured is None]
     found = [one for run in cameras if (one := _measure(base, run)) is not None]
-    alike: dict[tuple[float, int], list[Spectrum]] = {}
+    alike: dict[tuple[float, int], list[NoiseSpectrum]] = {}
     for one in found:
         alike.setdefault((round(one.period, 9), len(one.frequency)), []).append(one)
     return [_pool(some) for some in alike.values()]
 
 
-def _pool(some: Sequence[Spectrum]) -> Spectrum:
+def _pool(some: Sequence[NoiseSpectrum]) -> NoiseSpectrum:
     """The mean of spectra at the same frequencies: the cameras are the same in all runs."""
     count = sum(one.count for one in some)
     power = sum(one.count / count * one.power for one in some)
-    return Spectrum(np.asarray(power), some[0].frequency, count, some[0].period)
+    return NoiseSpectrum(np.asarray(power), some[0].frequency, count, some[0].period)
 
 
-def _measure(base: Model, run: ObservedRun) -> Spectrum | None:
+def _measure(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
     """Of a run's frames, from its longest stretch; None where that is too short."""
     motion, period = run.motion, run.frame_period
     a, b = max(motion.segments(), key=lambda one: one[1] - one[0], default=(0, 0))
@@ -123,7 +125,7 @@ def _measure(base: Model, run: ObservedRun) -> Spectrum | None:
     return describe_noise(channels, period)
 
 
-def describe_noise(channels: Array, period: float) -> Spectrum | None:
+def describe_noise(channels: Array, period: float) -> NoiseSpectrum | None:
     """Of the second differences (6, n) of a pose; None where frequencies are too few."""
     frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT / period))
     differenced = np.abs(1.0 - np.exp(-2j * np.pi * frequency * period)) ** 4
@@ -132,4 +134,4 @@ def describe_noise(channels: Array, period: float) -> Spectrum | None:
         return None
     # half overlapping Hann windows: 0.95 of an independent one each (Welch 1967, eq. 12 f.)
     count = 0.95 * (2.0 * channels.shape[1] * period / SEGMENT - 1.0)
-    return Spectrum(power[:, kept] / differenced[kept], frequency[kept], count, period)
+    return NoiseSpectrum(power[:, kept] / differenced[kept], frequency[kept], count, period)

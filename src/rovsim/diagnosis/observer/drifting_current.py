@@ -45,7 +45,7 @@ class DriftFit(NamedTuple):
         return self.rate.lr_statistic > MIN_LR_OF_DRIFT and self.lr_margin > MIN_LR_MARGIN
 
 
-Push = Callable[[Model, ObservedRun], Array]
+PushOnRun = Callable[[Model, ObservedRun], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +230,7 @@ def _push_along_tank(model: Model, run: ObservedRun) -> Array:
     return np.asarray(np.nan_to_num(wrench) @ model.body.M_inv.T)
 
 
-def _push_along_body(axes: Sequence[int]) -> Push:
+def _push_along_body(axes: Sequence[int]) -> PushOnRun:
     """Accelerations (d, n, 6) of 1 m/s2 along some axes of the body."""
 
     def push(model: Model, run: ObservedRun) -> Array:

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
-from rovsim.evaluation.error_conditions.findings import Explanation, Finding
+from rovsim.evaluation.error_conditions.findings import ErrorExplanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.evaluation.error_conditions.sentences import UNITS, say, summarize
 from rovsim.results.error_conditions import (
@@ -40,7 +40,7 @@ def _list_model(one: SearchedModel) -> ModelConditions:
     )
 
 
-def _size(explanation: Explanation, k: int) -> ErrorSize:
+def _size(explanation: ErrorExplanation, k: int) -> ErrorSize:
     """RMS of the error and of the measured acceleration of axis k, where it was measured."""
     if explanation.blocks is None or not explanation.blocks.axes[k]:
         return ErrorSize(rms=None, measured_rms=None)

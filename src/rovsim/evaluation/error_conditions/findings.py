@@ -67,7 +67,7 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
-class Explanation:
+class ErrorExplanation:
     """Errors of one model by axis and condition, and the findings, largest share first."""
 
     blocks: Blocks | None
@@ -76,12 +76,12 @@ class Explanation:
     enough: bool = True  # False: too little was recorded to judge anything
 
     @staticmethod
-    def nothing() -> "Explanation":
+    def nothing() -> "ErrorExplanation":
         """What is known of a model without a usable sample."""
-        return Explanation(None, {axis: {} for axis in AXES}, [], False)
+        return ErrorExplanation(None, {axis: {} for axis in AXES}, [], False)
 
 
-def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Explanation:
+def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> ErrorExplanation:
     """Search all conditions on the axes that were measured.
 
     Args:
@@ -90,7 +90,7 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Expl
         inertia: of the model (6, 6), which makes forces of accelerations.
     """
     if len(blocks.time) < 2:
-        return Explanation.nothing()
+        return ErrorExplanation.nothing()
     tables: dict[str, dict[str, BinnedErrors]] = {axis: {} for axis in AXES}
     found: list[Finding] = []
     enough = True
@@ -105,7 +105,7 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Expl
         pushes = [_pushed(f, blocks, k, inertia) for f in causes]
         found += [f for f in pushes if f.share_of_error > worth]
         enough = enough and int(stretch.max()) + 1 >= FEWEST
-    return Explanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
+    return ErrorExplanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
 
 
 def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:

@@ -5,7 +5,7 @@ from typing import Collection
 
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
-from rovsim.evaluation.error_conditions.findings import Explanation, explain
+from rovsim.evaluation.error_conditions.findings import ErrorExplanation, explain
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
@@ -20,7 +20,7 @@ class SearchedModel:
     model: str
     split: str
     runs: tuple[str, ...]
-    explanation: Explanation
+    explanation: ErrorExplanation
 
 
 def choose_split(model: Model, splits: Collection[str]) -> str:
@@ -74,7 +74,7 @@ class ConditionSearch:
         """What the error varies with."""
         parts = self._parts
         if not parts:
-            explanation = Explanation.nothing()
+            explanation = ErrorExplanation.nothing()
         else:
             explanation = explain(join_blocks(parts), inertia=self._model.M)
         return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)

@@ -4,7 +4,7 @@ import numpy as np
 
 from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
-from rovsim.evaluation.error_conditions.findings import SMALLEST, Explanation, Finding
+from rovsim.evaluation.error_conditions.findings import SMALLEST, ErrorExplanation, Finding
 
 UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
 FORCES = {axis: "N" for axis in UNITS}
@@ -56,7 +56,7 @@ def say(found: Finding) -> str:
     return f"{_begin(found.axis)}{after}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
-def summarize(explanation: Explanation) -> list[str]:
+def summarize(explanation: ErrorExplanation) -> list[str]:
     """Sentences of all findings, or why there are none."""
     if not explanation.enough:
         return ["Too little was recorded to tell under which condition the model fails."]

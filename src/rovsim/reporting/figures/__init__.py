@@ -30,7 +30,7 @@ SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "qua
 
 
 @dataclass(frozen=True)
-class Kind:
+class FigureKind:
     """A figure: what its module declares, and what its `draw` takes and cannot do without."""
 
     name: str
@@ -47,7 +47,7 @@ class Kind:
 
 
 @cache
-def kinds() -> dict[str, Kind]:
+def kinds() -> dict[str, FigureKind]:
     """Every figure found in this folder, by name, in the order of the report.
 
     Raises:
@@ -58,7 +58,7 @@ def kinds() -> dict[str, Kind]:
     return {one.name: one for one in found}
 
 
-def kind(name: str) -> Kind:
+def kind(name: str) -> FigureKind:
     """Return the figure called `name`.
 
     Raises:
@@ -70,7 +70,7 @@ def kind(name: str) -> Kind:
     return known[name]
 
 
-def read_kind(path: Path) -> Kind | None:
+def read_kind(path: Path) -> FigureKind | None:
     """The figure of a module; None where it only helps others to draw.
 
     Raises:
@@ -87,7 +87,7 @@ def read_kind(path: Path) -> Kind | None:
         return None
     _check(path, told, draw)
     takes = {one.arg: given for one, given in zip(draw.kwonlyargs, draw.kw_defaults, strict=True)}
-    return Kind(
+    return FigureKind(
         path.stem,
         told["SECTION"],
         told["CAPTION"],
@@ -125,7 +125,7 @@ def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
         raise _refused(path, "'draw' takes what it asks for by place", "def draw(*, …)")
 
 
-def refuse_unknown(figure: Kind, known: Iterable[str]) -> None:
+def refuse_unknown(figure: FigureKind, known: Iterable[str]) -> None:
     """Refuse a figure that cannot do without something that nobody has.
 
     Raises:

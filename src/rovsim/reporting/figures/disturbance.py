@@ -16,7 +16,7 @@ from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Disturbance, ForceOfRun, Push
+from rovsim.results.diagnosis import Disturbance, ForceOfRun, StrongMoment
 
 SECTION = "verdict"
 PLACE = 2
@@ -105,7 +105,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
     axes.set_ylabel(f"{short(run.run)}\ny (m)")
 
 
-def _list_strong(run: ForceOfRun, force: Disturbance) -> list[Push]:
+def _list_strong(run: ForceOfRun, force: Disturbance) -> list[StrongMoment]:
     """Its strongest moments; of a long run there may be several parts."""
     first, last = run.time_s[0] - BETWEEN, run.time_s[-1] + BETWEEN
     return [p for p in force.strongest if p.run == run.run and first <= p.time_s <= last]
