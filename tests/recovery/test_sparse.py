@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from rovsim.benchmarks.blind import methods
+from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.library import problem, steps
-from rovsim.benchmarks.blind.sparse import answer, forward, thresholded
+from rovsim.benchmarks.blind.sparse import answer, forward, stlsq, thresholded
+from rovsim.benchmarks.blind.suites import nothing
 from rovsim.core import extras
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
+from rovsim.dynamics.effects.base import MeasurementFilter
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
 from rovsim.simulation.settings import ReplaySettings
@@ -54,10 +57,19 @@ def test_nothing_is_found_where_nothing_is_hidden(regression):
 def test_every_effect_has_its_columns():
     known = built_in()
     found = [(column, made) for column, made in steps(tank(), known)]
-    assert {column.effect for column, _ in found} == set(known)
+    filters = {name for name, effect in known.items() if issubclass(effect, MeasurementFilter)}
+    assert {column.effect for column, _ in found} == set(known) - filters
     for column, made in found:
         assert type(made) is known[column.effect]
         assert made.given() or column.step
+
+
+@pytest.mark.thorough
+def test_noisy_poses_are_not_taken_for_physics(tmp_path):
+    """The noise of cameras is most of the target: no column may stand for it."""
+    empty = nothing(0, "development", tank={"duration": 20.0})
+    fly(empty, tmp_path)
+    assert stlsq(tmp_path, tmp_path).selected == ()
 
 
 def test_without_the_package_the_message_says_what_to_do(monkeypatch):

@@ -4,7 +4,8 @@ The target is the acceleration residual a_res = a_real - a_sim of the nominal mo
 states. A column is the change of a_sim, computed by the engine itself, when one parameter of the
 catalogue moves by its scale from its default; where zero is a flat place (a lag, a deadband, a
 slack tether), when the effect stands at one of its starts. So every effect is in the library,
-under its own name, through the filter of the measurement.
+under its own name, through the filter of the measurement; but for a filter of the poses themselves.
+Its column is their noise, sharpened, and so is most of the target: every regression would name it.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, MeasurementFilter
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
@@ -66,7 +67,8 @@ def _residual(model: Model, motion: Motion) -> Array:
 
 def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:
     """Every column with the effect that makes it."""
-    for name, cls in effects.items():
+    moving = ((n, e) for n, e in effects.items() if not issubclass(e, MeasurementFilter))
+    for name, cls in moving:
         for start in cls.starts_at(site):
             if start:
                 yield Column(name, start), cls(**start)
