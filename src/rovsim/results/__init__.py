@@ -15,4 +15,5 @@ timing            `timing.json`, `bench.json`
 published_errors  `published_errors.json`
 pitfalls          `pitfalls.json`
 blind_benchmark   `summary.json` of the blind benchmark
+design_benchmark  `CASE.json` of the benchmark of designs
 """
