@@ -10,12 +10,11 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.conditions import average_blocks
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.reporting.catalogue.entries import PAGE, PICTURES, entry, page
 from rovsim.reporting.catalogue.flight import fly, found, seen, settings
 from rovsim.reporting.figures.signature import signature, write
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 DOCS = Path(__file__).parents[2] / "docs"
 EVERY = pytest.mark.parametrize("cls", built_in().values(), ids=list(built_in()))
@@ -30,7 +29,7 @@ def short(cls):
 def conditions():
     motion = fly(short(built_in()["thruster_gain"]), built_in())
     model = nominal(load_vehicle("bluerov2_heavy"))
-    return average_blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
+    return average_blocks(motion, sample_run(model, motion, SimulationSettings()))
 
 
 @EVERY

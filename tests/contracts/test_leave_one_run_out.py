@@ -12,7 +12,6 @@ import pytest
 from recordings import write_campaign, write_lines
 from rovsim.application.leave_one_run_out import LeaveOneRunOut
 from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
-from rovsim.application.sections import SimulationSettings
 from rovsim.application.settings import compose
 from rovsim.application.study import Study
 from rovsim.apps.cli.main import main
@@ -22,7 +21,7 @@ from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.reporting.figures import kind
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from said import unfolded
 
 ROOT = Path(__file__).parents[2]
@@ -90,8 +89,7 @@ def test_a_run_held_out_is_not_learned_from(folder, monkeypatch):
         return {}
 
     monkeypatch.setattr("rovsim.application.pipeline.held_out.measure_pitfalls", noted)
-    settings = SimulationSettings(signals=QUICK, replay=ReplaySettings())
-    measure_pitfalls_by_run(motions, [None] * 3, {}, settings)
+    measure_pitfalls_by_run(motions, [None] * 3, {}, SimulationSettings(signals=QUICK))
     assert asked == {run: [one for one in CONTROLS if one != run] for run in CONTROLS}
 
 

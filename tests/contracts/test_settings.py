@@ -4,9 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from rovsim.application.settings import Settings, compose
+from rovsim.application.sections import SimulationSections, TrainingSettings
+from rovsim.application.settings import CampaignSettings, Settings, compose, select
 from rovsim.core.errors import BadInput
-from rovsim.core.schema import Section
+from rovsim.core.schema import Section, checked
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 PAGE = Path(__file__).parents[2] / "docs" / "configuration.md"
@@ -32,6 +34,15 @@ def test_there_are_sections_with_defaults():
 @pytest.mark.parametrize("name", SECTIONS)
 def test_defaults_are_the_same_in_conf_and_in_the_code(name):
     assert getattr(compose([]), name) == SECTIONS[name]()
+
+
+@pytest.mark.parametrize("name", SimulationSettings.model_fields)
+@pytest.mark.parametrize("kind", [SimulationSections, TrainingSettings, CampaignSettings, Settings])
+def test_a_section_that_a_configuration_lacks_is_not_made_up(kind, name):
+    given = select(compose([]), kind).model_dump(mode="json")
+    del given[name]
+    with pytest.raises(BadInput, match=f"'{name}' is missing"):
+        checked(kind, given, "configuration")
 
 
 def test_a_tank_takes_keys_that_no_file_lists():

@@ -16,13 +16,12 @@ from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.tether import TetherTension
 from rovsim.dynamics.effects.thrusters import VoltageSag
 from rovsim.evaluation.force_budget import balance_forces
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.measured_states import accelerate_as_measured, drive_as_measured
 from rovsim.simulation.replay import simulate
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from rovsim.simulation.stepper import Stepper, rollouts
 from worlds import model, motion, sticks, tank
 
@@ -45,8 +44,7 @@ def expected():
 
 
 def by_budget():
-    settings = ReplaySettings()
-    found = balance_forces(WORLD, RUN, SignalSettings(), settings)
+    found = balance_forces(WORLD, RUN, SimulationSettings())
     return np.linalg.solve(WORLD.body.M, sum(found.parts.values())[0])
 
 

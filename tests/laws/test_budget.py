@@ -7,14 +7,13 @@ from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, DemandTransform
 from rovsim.evaluation.force_budget import RESTORING, balance_forces
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.measured_states import (
     accelerate_as_measured,
     drive_as_measured,
     undo_mocap_view,
 )
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
 
@@ -28,7 +27,7 @@ def run(kind="thruster", columns=8):
 
 def made(world, found=None):
     found = found or run()
-    return balance_forces(world, found, SignalSettings(), ReplaySettings())
+    return balance_forces(world, found, SimulationSettings())
 
 
 @pytest.mark.parametrize("cls", built_in().values(), ids=lambda cls: cls.id)
@@ -74,8 +73,7 @@ def test_the_missing_force_is_the_one_that_was_left_out():
     pushed = model(ConstantWrench(surge=3.0, yaw=-1.0))
     at = drive_as_measured(pushed, measured, ReplaySettings())
     moved = replace(measured, nu_dot=accelerate_as_measured(pushed, measured, at))
-    how = (SignalSettings(), ReplaySettings())
-    both = [balance_forces(world, one, *how).missing for one in (moved, measured)]
+    both = [balance_forces(world, one, SimulationSettings()).missing for one in (moved, measured)]
     change = (both[0] - both[1] - moved.nu_dot @ world.body.M.T)[5:-5]
     np.testing.assert_allclose(change, 0.0, atol=1e-9)
     assert "+constant_wrench" in made(pushed).parts

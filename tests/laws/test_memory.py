@@ -15,10 +15,10 @@ from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.initial_memory import measured_memory
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, model, motion, sticks
 
-OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
+OPEN = SimulationSettings(signals=SignalSettings(filter=Butterworth(cutoff=40.0)))
 WAKE = FluidMemory(coefficient=20.0, time_constant=0.6)
 WATER = Current(north=0.1)
 
@@ -62,7 +62,7 @@ def test_long_forgotten_water_is_drag_and_long_remembered_water_none():
 def test_the_measured_memory_is_the_integrated_one_and_windows_start_from_it():
     world = model(WAKE, WATER)
     run = moved(world)
-    found = replay(world, run, OPEN, ReplaySettings())
+    found = replay(world, run, OPEN)
     for prediction in found.horizons.values():
         known = np.isfinite(prediction.eta[:, 0])
         assert known.any()
@@ -89,10 +89,7 @@ def test_training_sees_the_remembered_water():
     rate = np.gradient(steady.nu, 0.01, axis=0)
     run = replace(steady, nu_dot=rate)
     clear = slice(50, -50)
-    left = [
-        np.abs(sample_run(w, run, OPEN, ReplaySettings()).a_res[clear]).max()
-        for w in (world, model(WATER))
-    ]
+    left = [np.abs(sample_run(w, run, OPEN).a_res[clear]).max() for w in (world, model(WATER))]
     assert left[0] < 0.05 * left[1]
 
 

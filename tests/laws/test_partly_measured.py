@@ -10,15 +10,14 @@ from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import Sums, subtract
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.replay import replay, simulate
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, model, motion, sticks
 
 ROTATIONS = np.array([False] * 3 + [True] * 3)
 READ, UNREAD = AXES[3:], AXES[:3]
-HORIZONS = ReplaySettings(horizons=(2.0, 5.0))
+HORIZONS = SimulationSettings().only(2.0, 5.0)
 
 
 def flown(seed: int, turns_alone: bool):
@@ -36,7 +35,7 @@ def flown(seed: int, turns_alone: bool):
     slope = np.gradient(nu, run.time, axis=0)
     run = replace(run, nu=nu, state_nu=nu, nu_dot=slope, measured=measured)
     wrong = truth + QuadraticDamping(surge=40.0, sway=40.0, yaw=2.0)
-    return run, replay(wrong, run, SignalSettings(), HORIZONS, open_loop=False)
+    return run, replay(wrong, run, HORIZONS, open_loop=False)
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,7 @@ from flown import observed
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
-from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 QUICK = {"max_points": 300, "tuning_points": 100, "iterations": 15}
 LEARNERS = {
@@ -36,7 +35,7 @@ def flown(tmp_path_factory):
 
 
 def cost(model, runs, test):
-    return measure_pitfalls(model, runs, test, LEARNERS, SignalSettings(), ReplaySettings())
+    return measure_pitfalls(model, runs, test, LEARNERS, SimulationSettings())
 
 
 def test_what_is_wrong_costs(flown):

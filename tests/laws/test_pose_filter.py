@@ -34,10 +34,10 @@ from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.measured_states import true_states, undo_mocap_view
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, model, motion, sticks
 
-OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
+OPEN = SimulationSettings(signals=SignalSettings(filter=Butterworth(cutoff=40.0)))
 cutoffs = st.floats(0.5, 40.0)
 series = arrays(float, (30, 3), elements=st.floats(-10, 10))
 
@@ -120,7 +120,7 @@ def driven(world, seconds=6.0):
     run = motion(0.6 * sticks(7, 3), seconds=seconds, start=start)
     true = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     shown = world.mocap_view.report(true, 0.01)
-    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN)
+    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN.signals)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)
     return true, replace(
         run, eta=shown[:, :7], nu=nu, nu_dot=nu_dot, state_nu=shown[:, 7:], usable=usable
@@ -135,7 +135,7 @@ MOVING = ("eta", "nu", "nu_dot", "state_nu")
 
 def missed(world, run):
     """Errors (RMS) of velocity and pose in windows of 2 s."""
-    found = replay(world, run, OPEN, ReplaySettings()).horizons["2"]
+    found = replay(world, run, OPEN).horizons["2"]
     both = run.usable & np.isfinite(found.nu[:, 0])
     assert both.sum() > 300
     return [np.sqrt(np.mean(e[both] ** 2)) for e in (found.nu - run.nu, found.eta - run.eta)]
@@ -173,7 +173,7 @@ def test_one_state_of_the_motion_behind_it_needs_no_more_than_its_neighbours(los
 
 def test_a_residual_has_nothing_left_to_learn():
     _, run = driven(FILTERED)
-    found, blind = (sample_run(world, run, OPEN, ReplaySettings()) for world in (FILTERED, CLEAR))
+    found, blind = (sample_run(world, run, OPEN) for world in (FILTERED, CLEAR))
     inner = (found.index > 100) & (found.index < 500)
     size = [np.sqrt(np.mean(one.a_res[inner] ** 2)) for one in (found, blind)]
     assert size[0] < 0.2 * size[1]
@@ -196,7 +196,7 @@ def test_binned_recordings_are_turned_back_too():
     )
     errors = []
     for world in (FILTERED, CLEAR):
-        found = replay(world, bins, OPEN, ReplaySettings()).horizons["2"]
+        found = replay(world, bins, OPEN).horizons["2"]
         known = bins.usable & np.isfinite(found.nu[:, 0])
         assert known.sum() > 30
         errors.append(np.sqrt(np.mean((found.nu - means)[known] ** 2)))

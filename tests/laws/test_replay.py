@@ -28,7 +28,7 @@ from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.prediction import Replay
 from rovsim.simulation.replay import replay, simulate
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import Camera, Turbulence
 from rovsim.simulation.windows import find_windows
 from worlds import at_rest, model, motion, sticks
@@ -242,13 +242,13 @@ def simulated(seconds=6.0, gap=None):
 
 
 # motion of the pilot only: a cut-off far above it leaves the prediction as it was
-OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
-SHORT = ReplaySettings().only(0.5)
+OPEN = SimulationSettings(signals=SignalSettings(filter=Butterworth(cutoff=40.0)))
+SHORT = SimulationSettings().only(0.5)
 
 
 def test_the_model_that_moved_the_vehicle_predicts_it():
     run = simulated()
-    found = replay(model(), run, OPEN, ReplaySettings())
+    found = replay(model(), run, OPEN)
     assert list(found.horizons) == ["open_loop", "0.5", "2", "5"]
     for prediction in found.horizons.values():
         known = np.isfinite(prediction.eta[:, 0])
@@ -262,7 +262,7 @@ def test_windows_of_a_perfect_model_have_no_edges(tmp_path):
     calm = Camera(position_noise=0, attitude_noise=0, bursts_per_minute=0, outliers_per_minute=0)
     still = Turbulence(force=0.0, moment=0.0)
     truth, (run,) = observed(tmp_path, duration=12.0, camera=calm, turbulence=still)
-    for prediction in replay(truth, run.motion, SignalSettings(), SHORT).horizons.values():
+    for prediction in replay(truth, run.motion, SHORT).horizons.values():
         errors, usable = subtract(run.motion, prediction), run.motion.usable
         assert np.all(rms(errors.nu) < 0.01 * np.std(run.motion.nu[usable], axis=0))
         assert np.all(rms(errors.nu_dot) < 0.015 * np.std(run.motion.nu_dot[usable], axis=0))
@@ -274,7 +274,7 @@ def test_what_happened_in_another_stretch_is_no_neighbourhood(split):
     whole, cut = simulated(gap=(split, split + 40)), simulated(gap=(split, split + 40))
     cut.nu[split:], cut.eta[split + 40 :, :3] = np.nan, 7.0
     whole.nu[split : split + 40] = np.nan
-    one, other = (replay(model(), r, SignalSettings(), SHORT).horizons["0.5"] for r in (whole, cut))
+    one, other = (replay(model(), r, SHORT).horizons["0.5"] for r in (whole, cut))
     np.testing.assert_array_equal(one.nu_dot[:split], other.nu_dot[:split])
 
 
@@ -284,25 +284,25 @@ def test_windows_stay_inside_usable_stretches():
         assert b - a == 50
         assert run.usable[a : b + 1].all()
     assert [a for a, _ in find_windows(run, 2.0)] == [0, 300]
-    found = replay(model(), run, OPEN, ReplaySettings()).horizons["2"]
+    found = replay(model(), run, OPEN).horizons["2"]
     known = np.flatnonzero(np.isfinite(found.eta[:, 0]))
     assert known.tolist() == [*range(1, 201), *range(301, 501)]
 
 
 def test_a_horizon_below_half_a_sample_has_no_windows():
-    found = replay(model(), simulated(), OPEN, ReplaySettings(horizons=(0.004, 2.0))).horizons
+    found = replay(model(), simulated(), OPEN.only(0.004, 2.0)).horizons
     assert np.isnan(found["0.004"].nu).all()
     assert np.isfinite(found["2"].nu).any()
 
 
 def test_a_run_without_a_usable_sample_predicts_nothing():
     run = simulated(seconds=1.0, gap=(0, 101))
-    for prediction in replay(model(), run, OPEN, ReplaySettings()).horizons.values():
+    for prediction in replay(model(), run, OPEN).horizons.values():
         assert np.isnan(prediction.nu).all()
 
 
 def test_a_replay_comes_back_from_its_file(tmp_path):
-    found = replay(model(), simulated(), OPEN, ReplaySettings())
+    found = replay(model(), simulated(), OPEN)
     found.write(tmp_path / "r.npz")
     again = Replay.read(tmp_path / "r.npz")
     assert (again.model, again.run, list(again.horizons)) == (
@@ -331,7 +331,7 @@ def test_zero_acceleration_keeps_the_body_velocity():
 def test_a_model_that_diverges_has_no_score_rather_than_that_of_its_first_seconds(binned):
     run = replace(simulated(), binned=binned, end=10.0)
     wild = model(QuadraticDamping(surge=-5e4, sway=-5e4, heave=-5e4))
-    found = score(run, replay(wild, run, OPEN, ReplaySettings())).open_loop
+    found = score(run, replay(wild, run, OPEN)).open_loop
     assert found.velocity_rmse["surge"] is None
     assert found.velocity_mae["surge"] is None
     assert found.acceleration_rmse["surge"] is None

@@ -14,12 +14,12 @@ from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, model, motion, sticks
 
 places = arrays(float, 3, elements=st.floats(-1, 1))
 states = arrays(float, 13, elements=st.floats(-1, 1)).filter(lambda s: np.linalg.norm(s[3:7]) > 0.1)
-OPEN = SignalSettings(filter=Butterworth(cutoff=40.0))
+OPEN = SimulationSettings(signals=SignalSettings(filter=Butterworth(cutoff=40.0)))
 
 
 def seen(offset, turn, tilt):
@@ -68,7 +68,7 @@ def driven(world, seconds=4.0):
     run = motion(0.6 * sticks(7, 1), seconds=seconds, start=start)
     true = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     shown = world.mocap_view.states(true)
-    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN)
+    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN.signals)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)
     return true, replace(
         run, eta=shown[:, :7], nu=nu, nu_dot=nu_dot, state_nu=shown[:, 7:], usable=usable
@@ -83,9 +83,9 @@ def test_the_twist_is_the_derivative_of_the_reported_pose():
 
 def test_replay_predicts_what_is_reported():
     _, run = driven(BAD)
-    wrong = replay(model(), run, OPEN, ReplaySettings()).horizons["2"]
+    wrong = replay(model(), run, OPEN).horizons["2"]
     compared = 0
-    for prediction in replay(BAD, run, OPEN, ReplaySettings()).horizons.values():
+    for prediction in replay(BAD, run, OPEN).horizons.values():
         both = run.usable & np.isfinite(prediction.eta[:, 0])
         np.testing.assert_allclose(prediction.eta[both], run.eta[both], atol=1e-9)
         compared += np.sum(both)
@@ -96,8 +96,8 @@ def test_replay_predicts_what_is_reported():
 def test_a_residual_learns_in_true_axes():
     """Behind the right view nothing is left to learn, and the features are the true motion."""
     true, run = driven(BAD)
-    found = sample_run(BAD, run, OPEN, ReplaySettings())
-    blind = sample_run(model(), run, OPEN, ReplaySettings())
+    found = sample_run(BAD, run, OPEN)
+    blind = sample_run(model(), run, OPEN)
     np.testing.assert_allclose(
         log(multiply(found.attitude * [1, -1, -1, -1], true[found.index, 3:7])), 0, atol=1e-9
     )
@@ -121,10 +121,10 @@ def test_binned_recordings_are_turned_back_too():
         binned=True,
         end=float(run.time[-1]),
     )
-    found = replay(BAD, bins, OPEN, ReplaySettings()).horizons["2"]
+    found = replay(BAD, bins, OPEN).horizons["2"]
     known = bins.usable & np.isfinite(found.nu[:, 0])
     assert known.sum() > 10
     error = np.sqrt(np.mean((found.nu - means)[known] ** 2, axis=0))
     assert error == pytest.approx(np.zeros(6), abs=0.02)  # samples are 10 ms apart, bins 100 ms
-    blind = replay(model(), bins, OPEN, ReplaySettings()).horizons["2"]
+    blind = replay(model(), bins, OPEN).horizons["2"]
     assert np.max(np.sqrt(np.mean((blind.nu - means)[known] ** 2, axis=0)) / error) > 3

@@ -20,12 +20,11 @@ from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scored import Scored, score
 from rovsim.evaluation.scores import Moments, Sums, subtract, summarize
 from rovsim.measurement.runs import Runs
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation import replay as replaying
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import model
 
 
@@ -105,7 +104,7 @@ def test_runs_taken_in_one_by_one_score_as_one_set():
 def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
     motion = replace(flown.motion, run=replace(flown.motion.run, split="test"))
     halves = [motion.part(slice(0, 5000)), motion.part(slice(5000, len(motion.time)))]
-    found = [replay(model(), half, SignalSettings(), ReplaySettings()) for half in halves]
+    found = [replay(model(), half, SimulationSettings()) for half in halves]
     step = score_step("nominal", zip(halves, found, strict=True))
     errors = [subtract(m, r.horizons["2"]) for m, r in zip(halves, found, strict=True)]
     nu = np.concatenate([e.nu for e in errors])
@@ -117,8 +116,8 @@ def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
 
 def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, monkeypatch):
     motion = replace(flown.motion, run=replace(flown.motion.run, split="test"))
-    how = SimpleNamespace(signals=SignalSettings(), replay=ReplaySettings())
-    whole = replay(model(), motion, how.signals, how.replay)
+    how = SimulationSettings()
+    whole = replay(model(), motion, how)
     made, held, predict = [], [], replaying.predict
 
     def watched(*given):

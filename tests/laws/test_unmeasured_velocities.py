@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.replay import replay, simulate
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from worlds import at_rest, model, motion, sticks
 
 ROTATIONS = np.array([False] * 3 + [True] * 3)
@@ -48,6 +47,6 @@ def test_what_was_measured_is_started_from_as_measured():
 
 def test_windows_of_the_comparison_profit():
     world, run, path = swum()
-    found = replay(world, run, SignalSettings(), ReplaySettings(horizons=(2.0,)), open_loop=False)
+    found = replay(world, run, SimulationSettings().only(2.0), open_loop=False)
     nu = found.horizons["2"].nu
     assert np.nanmax(np.abs(nu[:, :3] - path[:, 7:10])) == pytest.approx(0.0, abs=0.02)

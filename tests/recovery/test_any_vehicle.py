@@ -13,7 +13,7 @@ from rovsim.evaluation.scored import score
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import SUITABLE, TankRun, TankSettings
 
@@ -48,7 +48,7 @@ def flown(tmp_path, **settings):
 
 def check_replay(data, run):
     """A perfect model follows its own tank within the noise of cameras and water."""
-    found = replay(nominal(data.vehicle), run, SignalSettings(), ReplaySettings())
+    found = replay(nominal(data.vehicle), run, SimulationSettings())
     error = score(run, found).windows["2"].velocity_rmse
     assert max(error.surge, error.yaw) < 0.05
 

@@ -19,7 +19,7 @@ from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import Log, TankSettings
 from rovsim.simulation.synthetic_tank.true_run import fly_run
 from worlds import SHARED, needed
@@ -33,7 +33,7 @@ def test_the_nominal_model_explains_the_empty_practice_tank():
     for run in campaign.runs:
         if run.split == "test":
             motion = clean(read_run(campaign, run.id)[0], SignalSettings())
-            again = replay(model, motion, SignalSettings(), ReplaySettings())
+            again = replay(model, motion, SimulationSettings())
             found += Sums.of(subtract(motion, again.horizons["2"]))
     assert np.all(found.velocity_rmse <= [0.013] * 3 + [0.035] * 3)
 
@@ -90,10 +90,10 @@ def binned(request, tmp_path):
 
 def test_bins_are_compared_as_bins(binned):
     model, motion = binned
-    found = score(motion, replay(model, motion, SignalSettings(), ReplaySettings()))
+    found = score(motion, replay(model, motion, SimulationSettings()))
     for horizon in ("0.5", "2", "5"):
         assert found.windows[horizon].velocity_rmse["surge"] < 1.0
-    again = replay(model, motion, SignalSettings(), ReplaySettings())
+    again = replay(model, motion, SimulationSettings())
     predicted = again.horizons["2"]
     both = np.isfinite(predicted.nu).all(axis=1)
     assert both.mean() > 0.9
@@ -105,7 +105,7 @@ def test_bins_are_compared_as_bins(binned):
 def test_binned_training_pairs_miss_what_the_score_misses(binned):
     """a_res of one bin step is the acceleration error of a window of two bins."""
     model, motion = binned
-    found = sample_run(model, motion, SignalSettings(), ReplaySettings())
+    found = sample_run(model, motion, SimulationSettings())
     assert len(found.index) > 0.7 * len(motion.time)
     assert np.isfinite(found.a_res).all()
     a_sim_like = motion.nu_dot[found.index] - found.a_res

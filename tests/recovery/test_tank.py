@@ -19,7 +19,7 @@ from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.description import SEALED, describe
 from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
@@ -51,7 +51,7 @@ def recorded(tmp_path, **settings):
 
 
 def window_error(model, motion):
-    found = replay(model, motion, SignalSettings(), ReplaySettings())
+    found = replay(model, motion, SimulationSettings())
     return rms(subtract(motion, found.horizons["2"]).nu)
 
 

@@ -13,10 +13,9 @@ from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.evaluation.error_conditions.findings import explain
 from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.error_conditions.sentences import summarize
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.error_conditions import BLOCK
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks
 
@@ -161,7 +160,7 @@ def test_standard_errors_are_true(memory):
 def test_blocks_are_means_over_half_a_second():
     measured = motion(sticks(), seconds=3.0)
     measured = replace(measured, site=Site(np.array([[0, 4.0], [0, 3], [-1, 2]]), np.ones(3)))
-    found = sample_run(model(), measured, SignalSettings(), ReplaySettings())
+    found = sample_run(model(), measured, SimulationSettings())
     made = average_blocks(measured, found)
     mine = found.index // 50 == 2
     np.testing.assert_allclose(made.error[2], found.a_res[mine].mean(axis=0))
@@ -172,22 +171,22 @@ def test_blocks_are_means_over_half_a_second():
 def test_models_are_searched_on_train_runs():
     run = motion(sticks(), seconds=3.0, start=at_rest())
     train = replace(run, run=replace(run.run, id="t", split="train"))
-    search = ConditionSearch(model(), ["test", "train"], SignalSettings(), ReplaySettings())
+    search = ConditionSearch(model(), ["test", "train"], SimulationSettings())
     for one in (run, train):
         search.add(one)
     assert search.found.runs == ("t",)
-    assert ConditionSearch(model(), ["test"], SignalSettings(), ReplaySettings()).split == "test"
+    assert ConditionSearch(model(), ["test"], SimulationSettings()).split == "test"
 
 
 def test_forces_of_a_search_are_those_of_the_model():
     run = motion(np.zeros((1, 8)), seconds=40.0, start=at_rest())
     lifted = model().body.M_inv @ [0.0, 0.0, -60.0, 0.0, 0.0, 0.0]
     run = replace(run, nu_dot=run.nu_dot + lifted)
-    search = ConditionSearch(model(), ["test"], SignalSettings(), ReplaySettings())
+    search = ConditionSearch(model(), ["test"], SimulationSettings())
     search.add(run)
     heave = next(f for f in search.found.explanation.findings if f.axis == "heave")
     assert heave.condition == "throughout"
-    samples = sample_run(model(), run, SignalSettings(), ReplaySettings())
+    samples = sample_run(model(), run, SimulationSettings())
     mean = average_blocks(run, samples).error.mean(axis=0)
     assert heave.push == pytest.approx(model().M[2] @ mean)
     assert heave.push < -50.0

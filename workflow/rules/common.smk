@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.sections import PredictorSettings, SimulationSettings
+from rovsim.application.sections import PredictorSettings, SimulationSections
 from rovsim.diagnosis.settings import DiagnosisSettings
 
 R = study.folder

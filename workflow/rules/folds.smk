@@ -86,7 +86,7 @@ rule fold:
     benchmark:
         f"{F}/benchmarks/fold.tsv"
     params:
-        settings=study.section(SimulationSettings),
+        settings=study.section(SimulationSections),
         code=code_of("fold"),
     script:
         "../scripts/fold.py"
@@ -129,7 +129,7 @@ if folds.pitfalls:
         benchmark:
             f"{R}/benchmarks/pitfalls.tsv"
         params:
-            settings=study.section(SimulationSettings),
+            settings=study.section(SimulationSections),
             learners={
                 kind: study.learner(kind).model_dump_json() for kind in ("knn", "gp")
             },

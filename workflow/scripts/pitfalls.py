@@ -3,7 +3,7 @@
 import json
 
 from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
-from rovsim.application.sections import SimulationSettings
+from rovsim.application.sections import SimulationSections
 from rovsim.application.snakemake_job import job
 from rovsim.learning.learner import learner_settings
 
@@ -16,6 +16,6 @@ if __name__ == "__main__":
                 kind: learner_settings(json.loads(given), "conf/residual")
                 for kind, given in rule.params.learners.items()
             },
-            settings=rule.section(SimulationSettings),
+            settings=rule.section(SimulationSections),
         )
         found.write(rule.output())

@@ -1,7 +1,7 @@
 """Search one model's errors for what they vary with."""
 
 from rovsim.application.pipeline.error_conditions import find_error_conditions
-from rovsim.application.sections import SimulationSettings
+from rovsim.application.sections import SimulationSections
 from rovsim.application.snakemake_job import job
 
 if __name__ == "__main__":
@@ -9,6 +9,6 @@ if __name__ == "__main__":
         found = find_error_conditions(
             model=rule.model(rule.wildcards.model),
             motions=rule.motions(),
-            settings=rule.section(SimulationSettings),
+            settings=rule.section(SimulationSections),
         )
         found.write(rule.output())

@@ -8,11 +8,11 @@ from rovsim.core.schema import Section
 from rovsim.dynamics.learned.settings import Control
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 
-class SimulationSettings(Section):
-    """How measurements are cleaned, and how models are replayed beside them."""
+class SimulationSections(SimulationSettings):
+    """Both sections, as a configuration must have them: what it lacks is not made up."""
 
     signals: SignalSettings
     replay: ReplaySettings
@@ -26,13 +26,13 @@ class TimingSettings(Section):
     seconds: PositiveFloat = 2.0
 
 
-class PredictorSettings(SimulationSettings):
+class PredictorSettings(SimulationSections):
     """How the predictions of trained residuals are timed."""
 
     timing: TimingSettings
 
 
-class TrainingSettings(SimulationSettings):
+class TrainingSettings(SimulationSections):
     """What a trained residual depends on: which learner, on the runs of which control."""
 
     residual: dict[str, Any]

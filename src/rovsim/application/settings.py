@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Sequence
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
-from rovsim.application.sections import SimulationSettings, TimingSettings, TrainingSettings
+from rovsim.application.sections import SimulationSections, TimingSettings, TrainingSettings
 from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
 from rovsim.core.names import as_list
 from rovsim.core.schema import PathText, S, Section, checked
@@ -96,7 +96,7 @@ class CommandSettings(Section):
         return [Path(name) for name in as_list(self.effects_file or [])]
 
 
-class CampaignSettings(SimulationSettings, CommandSettings):
+class CampaignSettings(SimulationSections, CommandSettings):
     """What every command on a campaign takes."""
 
     campaign: PathText | None

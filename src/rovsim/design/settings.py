@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 from rovsim.core.schema import Section
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 # s: shorter shows little; longer nobody foresees, and a search over it would fill the memory
 SHORTEST, LONGEST = 10, 600
@@ -61,3 +61,8 @@ class Question(Section):
     replay: ReplaySettings = ReplaySettings()
     search: SearchSettings = SearchSettings()
     seed: int = Field(0, ge=0)
+
+    @property
+    def simulation(self) -> SimulationSettings:
+        """How measurements are cleaned and models replayed."""
+        return SimulationSettings(signals=self.signals, replay=self.replay)

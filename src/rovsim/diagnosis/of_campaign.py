@@ -99,12 +99,12 @@ def _look(
     base: Model, runs: Runs, settings: DiagnosisSettings
 ) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
     """Where the base fails, and where train runs stand still; each run is sampled once."""
-    how = settings.signals, settings.replay
-    search = ConditionSearch(base, set(runs.splits.values()), *how)
+    how = settings.simulation
+    search = ConditionSearch(base, set(runs.splits.values()), how)
 
     def sampled() -> Iterator[tuple[Motion, Samples]]:
         for motion in map(runs.motions.__getitem__, runs.of("train")):
-            samples = sample_run(base, motion, *how)
+            samples = sample_run(base, motion, how)
             search.take(motion, samples)
             yield motion, samples
 
@@ -122,13 +122,13 @@ def _climb(
     Where a law is proposed, it and what is beside it come last, before the noise floor. Also the
     test runs in which the base runs away.
     """
-    models, how = _list_models(diagnosis), settings.replay.only(WINDOW)
+    models, how = _list_models(diagnosis), settings.simulation.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]
         for model, score in zip(models, scores, strict=True):
             step()
-            replayed = replay(model, motion, settings.signals, how, open_loop=False)
+            replayed = replay(model, motion, how, open_loop=False)
             score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
     steps = [score.step for score in scores]
     floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)

@@ -6,7 +6,7 @@ from pydantic import Field, PositiveInt
 
 from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 MAX_TRAIN_SECONDS = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
 
@@ -36,3 +36,8 @@ class DiagnosisSettings(Section):
     signals: SignalSettings = SignalSettings()
     replay: ReplaySettings = ReplaySettings()
     seed: int = Field(0, ge=0)
+
+    @property
+    def simulation(self) -> SimulationSettings:
+        """How measurements are cleaned and models replayed."""
+        return SimulationSettings(signals=self.signals, replay=self.replay)

@@ -17,7 +17,6 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.force_budget import ForceBudget
@@ -29,7 +28,7 @@ from rovsim.simulation.measured_states import (
     undo_mocap_view,
 )
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL = "learned residual"
@@ -47,14 +46,12 @@ NOMINAL = {  # parts of the vehicle's own effects, in the order in which they ar
 }
 
 
-def balance_forces(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> ForceBudget:
+def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> ForceBudget:
     """Budget of a model's forces at the measured states of a run."""
-    found = sample_run(model, motion, signals, settings)
+    found = sample_run(model, motion, how)
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
-    for name, force in _cumulative(model, undo_mocap_view(model, motion), settings):
+    for name, force in _cumulative(model, undo_mocap_view(model, motion), how.replay):
         parts[name] = parts.get(name, 0.0) + force - before
         before = force
     missing = np.full((len(motion.time), 6), np.nan)

@@ -11,10 +11,9 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import spread_rows
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import Samples, sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 MOST_ROWS = 1 << 18  # 44 min at 100 Hz, some 40 MB; of more, every second, fourth, ... is kept
 
@@ -101,8 +100,7 @@ def gather_pairs(
     motions: Iterable[Motion],
     control: str,
     features: FeatureSettings,
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
     seed: int,
 ) -> Gathered:
     """What a residual on top of a model learns from: the train runs with this control.
@@ -119,5 +117,5 @@ def gather_pairs(
         )
     gathered = Gathered(features, seed)
     for motion in training_runs(motions, control):
-        gathered.take(motion.run.id, sample_run(model, motion, signals, settings))
+        gathered.take(motion.run.id, sample_run(model, motion, how))
     return gathered

@@ -15,12 +15,11 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import conjugate, multiply, rotate, short_way, to_euler
 from rovsim.dynamics.effects.base import StochasticCurrent
 from rovsim.dynamics.model import Model
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.noise_draws import NoiseDraws
 from rovsim.simulation.prediction import LEVEL, Band, Prediction
 from rovsim.simulation.replay import Case, Spans, predict_all
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.windows import predicted
 
@@ -50,8 +49,7 @@ def predict_band(
     model: Model,
     motion: Motion,
     spans: Spans,
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
 ) -> Band | None:
     """The band of a model in some windows of a run; None where it cannot be known.
 
@@ -68,9 +66,9 @@ def predict_band(
     found, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
     for some in _divide(spans, round(LONGEST / period)):
         first = max(some[0][0] - round(LEAD_IN / period), 0)
-        part = slice(first, some[-1][1] + round(signals.reach / period) + 1)
+        part = slice(first, some[-1][1] + round(how.signals.reach / period) + 1)
         own = [(a - first, b - first) for a, b in some]
-        drawn = _draw_band(model, motion.part(part), own, noise, signals, settings)
+        drawn = _draw_band(model, motion.part(part), own, noise, how)
         known = np.isfinite(drawn.nu).all(axis=(0, 2))
         found.nu[:, part][:, known] = drawn.nu[:, known]
         found.place[:, part][:, known] = drawn.place[:, known]
@@ -95,14 +93,13 @@ def _draw_band(
     motion: Motion,
     spans: Spans,
     noise: NoiseDraws,
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
 ) -> Band:
-    disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, settings.step).edges), DRAWS)
-    again = noise.resample_measurement_noise(motion, model.mocap_view, signals, DRAWS)
+    disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
+    again = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
     drawn = [model.draw(noise.random) for _ in range(DRAWS)]
     cases = [Case(*one) for one in zip(drawn, again, disturbed, strict=True)]
-    found = predict_all(cases, spans, signals, settings)
+    found = predict_all(cases, spans, how)
     reported = [_misread(own, motion, other) for own, other in zip(found, again, strict=True)]
     places = np.array([_place(own, motion, spans) for own in reported])
     return Band(band_ends(np.array([own.nu for own in reported])), band_ends(places))

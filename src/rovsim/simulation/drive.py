@@ -13,7 +13,6 @@ from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
 KEPT = 1 << 26  # bytes: fifty drives of a minute, what one step of a fit needs
@@ -195,11 +194,11 @@ class Drives:
         return (found,) if self._parts is None else found.joined(self._parts)
 
 
-def drive_by_log(model: Model, motion: Motion, grid: StepGrid, settings: ReplaySettings) -> Drive:
-    """What the logged commands of a run do to a model.
+def drive_by_log(model: Model, motion: Motion, grid: StepGrid, between: Between) -> Drive:
+    """What the logged commands of a run do to a model; `between` two logged lines.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
     model.check(motion.site, motion.commands.kind)
-    return Drives(motion.commands, grid.edges, settings.commands).of([model])[0]
+    return Drives(motion.commands, grid.edges, between).of([model])[0]

@@ -79,7 +79,7 @@ def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) ->
         BadInput: the run lacks what an effect of the model needs.
     """
     grid = StepGrid.over(motion, settings.step)
-    drive = drive_by_log(model, motion, grid, settings)
+    drive = drive_by_log(model, motion, grid, settings.commands)
     if motion.binned:
         return _average_at_bins(drive, nearest_steps(motion, grid))
     return _average_at_samples(drive, grid.stride)

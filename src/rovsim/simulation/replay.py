@@ -14,7 +14,6 @@ from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.rotations import normalized
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
@@ -24,7 +23,7 @@ from rovsim.simulation.filter_padding import Embedded, derive, embed
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import interpolate, interpolate_state, undo_mocap_view
 from rovsim.simulation.prediction import Prediction, Replay
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.unfiltered_motion import stage_outputs
 from rovsim.simulation.unmeasured_velocities import propagate_unmeasured_velocities
@@ -36,8 +35,7 @@ Spans = Sequence[tuple[int, int]]
 def replay(
     model: Model,
     motion: Motion,
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
     open_loop: bool = True,
 ) -> Replay:
     """Replay one run open loop, unless that is not wanted, and in windows.
@@ -48,15 +46,14 @@ def replay(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    horizons = dict(by_horizon(model, motion, signals, settings, open_loop))
+    horizons = dict(by_horizon(model, motion, how, open_loop))
     return Replay(model.name, motion.run, motion.time, horizons)
 
 
 def by_horizon(
     model: Model,
     motion: Motion,
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
     open_loop: bool = True,
 ) -> Iterator[tuple[str, Prediction]]:
     """The predictions of a replay, one after the other, with the names of their horizons.
@@ -64,8 +61,8 @@ def by_horizon(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    for name, spans in find_spans(motion, settings, open_loop).items():
-        yield name, predict(model, motion, spans, signals, settings)
+    for name, spans in find_spans(motion, how.replay, open_loop).items():
+        yield name, predict(model, motion, spans, how)
 
 
 def find_spans(
@@ -78,15 +75,13 @@ def find_spans(
     return spans
 
 
-def predict(
-    model: Model, motion: Motion, spans: Spans, signals: SignalSettings, settings: ReplaySettings
-) -> Prediction:
+def predict(model: Model, motion: Motion, spans: Spans, how: SimulationSettings) -> Prediction:
     """What the motion capture would report of a model in some windows of a run; see `predict_all`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    return predict_all([Case(model, motion)], spans, signals, settings)[0]
+    return predict_all([Case(model, motion)], spans, how)[0]
 
 
 class Case(NamedTuple):
@@ -97,16 +92,13 @@ class Case(NamedTuple):
     disturbed: Array | None = None
 
 
-def predict_all(
-    cases: Sequence[Case], spans: Spans, signals: SignalSettings, settings: ReplaySettings
-) -> list[Prediction]:
+def predict_all(cases: Sequence[Case], spans: Spans, how: SimulationSettings) -> list[Prediction]:
     """What the motion capture would report of models in some windows of a run.
 
     Args:
         cases: of runs with one clock.
         spans: first sample or bin of each window, and its last one.
-        signals: filter and derivative of the measurement.
-        settings: step length and how commands are held.
+        how: filter and derivative of the measurement, step length, how commands are held.
 
     Raises:
         BadInput: the run lacks what an effect of a model needs.
@@ -114,8 +106,8 @@ def predict_all(
     if not spans:
         return [Prediction.empty(len(case.motion.time)) for case in cases]
     if cases[0].motion.binned:
-        return [_predict_bins(case, spans, settings) for case in cases]
-    return _predict_samples(cases, spans, signals.suited(cases[0].motion), settings)
+        return [_predict_bins(case, spans, how.replay) for case in cases]
+    return _predict_samples(cases, spans, how)
 
 
 def simulate(
@@ -146,7 +138,7 @@ def simulate(
     steps = np.array([s[1] for s in starts], np.int64) * grid.stride
     state = np.array([s[2] for s in starts]).reshape(1, -1, 13)
     memory = remembered_at([model], lambda m: motion, grid.edges, first)
-    drive = drive_by_log(model, motion, grid, settings)
+    drive = drive_by_log(model, motion, grid, settings.commands)
     if disturbed is not None:
         drive = drive.pushed(disturbed @ model.M.T)
     batch, known = Batch([model], motion.site), find_measured(motion.measured)
@@ -157,12 +149,13 @@ def simulate(
 
 
 def _predict_samples(
-    cases: Sequence[Case], spans: Spans, signals: SignalSettings, settings: ReplaySettings
+    cases: Sequence[Case], spans: Spans, how: SimulationSettings
 ) -> list[Prediction]:
     """Predictions at the samples of a uniform clock, through the filter of the measurement."""
     first = cases[0].motion
+    signals = how.signals.suited(first)
     within = embed(first, spans, round(signals.reach / time_step(first.time)))
-    paths = [path for case in cases for path in _report_samples(case, within, settings)]
+    paths = [path for case in cases for path in _report_samples(case, within, how.replay)]
     motions = [case.motion for case in cases for _ in within]
     derived = iter(zip(paths, derive(paths, within * len(cases), motions, signals), strict=True))
     return [_gather(len(first.time), within, islice(derived, len(within))) for _ in cases]

@@ -12,7 +12,6 @@ from rovsim.dynamics.learned.features import assemble
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
@@ -24,7 +23,7 @@ from rovsim.simulation.measured_states import (
     undo_mocap_view,
 )
 from rovsim.simulation.replay import simulate
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 
 
@@ -48,9 +47,7 @@ class Samples:
         return assemble(settings, self.nu, self.a_sim, self.wrench, self.attitude)
 
 
-def sample_run(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
+def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
     """Samples of one run at its usable instants.
 
     All in true axes at CO: where the model says that the motion capture sees another point or other
@@ -59,20 +56,18 @@ def sample_run(
     """
     motion = undo_mocap_view(model, motion)
     make = _of_bins if motion.binned else _of_samples
-    found = make(model, motion, signals.suited(motion), settings)
+    found = make(model, motion, how)
     return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))
 
 
-def _of_samples(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
+def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
     """At each sample, under the thrust around it; the model's acceleration is filtered too."""
-    drive = drive_as_measured(model, motion, settings)
+    drive = drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)
-    period = time_step(motion.time)
+    smoothing, period = how.signals.suited(motion).filter, time_step(motion.time)
     kept = [np.arange(a, b) for a, b in motion.segments()]
     like = np.concatenate(
-        [signals.filter.smoothed(a_sim[k], period) for k in kept] or [np.empty((0, 6))]
+        [smoothing.smoothed(a_sim[k], period) for k in kept] or [np.empty((0, 6))]
     )
     index = np.concatenate([*kept, np.arange(0)])
     return Samples(
@@ -85,14 +80,12 @@ def _of_samples(
     )
 
 
-def _of_bins(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> Samples:
+def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
     """At each bin's start; the model makes the same backward difference of means of two bins."""
     fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
-    index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, settings)
+    index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)[index]
-    a_real_like = _differences_of_bins(model, motion, settings, index)
+    a_real_like = _differences_of_bins(model, motion, how.replay, index)
     return Samples(
         index,
         motion.state_nu[index],

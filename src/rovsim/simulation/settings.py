@@ -1,4 +1,4 @@
-"""How runs are replayed."""
+"""How measurements are cleaned, and how runs are replayed."""
 
 from typing import Annotated
 
@@ -7,6 +7,7 @@ from pydantic import Field, PositiveFloat, field_validator
 from rovsim.core.horizons import WINDOW
 from rovsim.core.run import Between
 from rovsim.core.schema import Section
+from rovsim.measurement.signals.chain import SignalSettings
 
 
 class ReplaySettings(Section):
@@ -28,3 +29,14 @@ class ReplaySettings(Section):
         if WINDOW not in horizons or len(set(horizons)) < len(horizons):
             raise ValueError(f"{WINDOW:g} s and others, each once")
         return horizons
+
+
+class SimulationSettings(Section):
+    """How measurements are cleaned, and how models are replayed beside them."""
+
+    signals: SignalSettings = SignalSettings()
+    replay: ReplaySettings = ReplaySettings()
+
+    def only(self, *horizons: float) -> "SimulationSettings":
+        """The same with these windows in s, perhaps none."""
+        return self.model_copy(update={"replay": self.replay.only(*horizons)})

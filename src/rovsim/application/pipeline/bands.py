@@ -4,7 +4,6 @@ from functools import partial
 from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.recordings import MeasuredCampaign
-from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.progress import counted
@@ -15,6 +14,7 @@ from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
 from rovsim.simulation.bands import predict_band, why_without_bands
 from rovsim.simulation.prediction import LEVEL, Band
 from rovsim.simulation.replay import find_spans
+from rovsim.simulation.settings import SimulationSettings
 
 
 def bands_when_asked(
@@ -26,11 +26,11 @@ def bands_when_asked(
     """
     recent = Recent[Band | None]()
     sure = [model for model in models if model.uncertainty is not None]
-    how = settings.replay.only(WINDOW)
+    how = settings.only(WINDOW)
 
     def of(model: Model, run: str) -> Band | None:
-        spans = find_spans(motions[run], how, open_loop=False)[HORIZON]
-        return predict_band(model, motions[run], spans, settings.signals, how)
+        spans = find_spans(motions[run], how.replay, open_loop=False)[HORIZON]
+        return predict_band(model, motions[run], spans, how)
 
     return {m.name: Remade(motions, partial(of, m), recent=recent) for m in sure}
 
@@ -62,10 +62,10 @@ def cover_test_runs(
 
 
 def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:
-    how = settings.replay.only(*(s for s in settings.replay.horizons if s >= WINDOW))
+    how = settings.only(*(s for s in settings.replay.horizons if s >= WINDOW))
     found = {}
-    for name, spans in find_spans(motion, how, open_loop=False).items():
-        band = predict_band(model, motion, spans, settings.signals, how) if spans else None
+    for name, spans in find_spans(motion, how.replay, open_loop=False).items():
+        band = predict_band(model, motion, spans, how) if spans else None
         if band is not None:
             found[name] = cover(motion, band, spans)
     return found

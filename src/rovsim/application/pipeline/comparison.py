@@ -7,7 +7,6 @@ import numpy as np
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
 from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
-from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.progress import counted
@@ -19,6 +18,7 @@ from rovsim.evaluation.scored import Scored
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.comparison import Comparison
 from rovsim.results.force_budget import BudgetTotals
+from rovsim.simulation.settings import SimulationSettings
 
 DRAWN = 12  # runs: a report of fifty figures can still be read
 
@@ -33,8 +33,9 @@ def compare(
     scored = Scored(model.name for model in models)
     searches = _searches(data, models, settings)
     shown = replay_when_asked(models, data.motions, settings)
-    how = (settings.signals, settings.replay)
-    budgets = Remade(data.motions, lambda run: balance_forces(models[-1], data.motions[run], *how))
+    budgets = Remade(
+        data.motions, lambda run: balance_forces(models[-1], data.motions[run], settings)
+    )
     forces = {}
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
@@ -76,4 +77,4 @@ def _searches(
 ) -> list[ConditionSearch]:
     splits = [data.quality[run].split for run in data.motions]
     moving = [model for model in models if not model.inert]
-    return [ConditionSearch(m, splits, settings.signals, settings.replay) for m in moving]
+    return [ConditionSearch(m, splits, settings) for m in moving]

@@ -2,13 +2,13 @@
 
 from typing import Sequence
 
-from rovsim.application.sections import SimulationSettings
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.simulation.settings import SimulationSettings
 
 
 def find_error_conditions(
@@ -16,7 +16,7 @@ def find_error_conditions(
 ) -> ErrorConditions:
     """What the errors of a model vary with, on the runs it may be judged on."""
     splits = [motion.run.split for motion in motions]
-    search = ConditionSearch(model, splits, settings.signals, settings.replay)
+    search = ConditionSearch(model, splits, settings)
     for motion in counted(motions, "searching"):
         search.add(motion)
     return list_conditions([search.found])

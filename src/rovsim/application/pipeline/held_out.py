@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.replays import score_models
-from rovsim.application.sections import SimulationSettings
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.held_out.pitfalls import measure_pitfalls
 from rovsim.evaluation.held_out.published_errors import (
@@ -16,6 +15,7 @@ from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
 from rovsim.results.pitfalls import Pitfalls
+from rovsim.simulation.settings import SimulationSettings
 
 
 def score_held_out(
@@ -65,8 +65,7 @@ def measure_pitfalls_by_run(
             [m for m in motions if m.run.id != test.run.id],
             test,
             dict(learners),
-            settings.signals,
-            settings.replay,
+            settings,
         )
         for test, model in zip(motions, models, strict=True)
     }

@@ -2,7 +2,6 @@
 
 from typing import Iterator, Mapping, Sequence
 
-from rovsim.application.sections import SimulationSettings
 from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import counted
@@ -11,6 +10,7 @@ from rovsim.evaluation.scored import Scored
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import by_horizon, replay
+from rovsim.simulation.settings import SimulationSettings
 
 Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 
@@ -22,14 +22,10 @@ def replay_when_asked(
 
     Made when they are asked for; all models share what is kept of them.
     """
-    how, recent = settings.replay.only(WINDOW), Recent[Replay]()
+    how, recent = settings.only(WINDOW), Recent[Replay]()
 
     def by(model: Model) -> Remade[Replay]:
-        return Remade(
-            motions,
-            lambda run: replay(model, motions[run], settings.signals, how),
-            recent=recent,
-        )
+        return Remade(motions, lambda run: replay(model, motions[run], how), recent=recent)
 
     return {model.name: by(model) for model in models}
 
@@ -52,7 +48,7 @@ def score_run(
     found = Replay(model.name, motion.run, motion.time, {})
 
     def horizons() -> Iterator[tuple[str, Prediction]]:
-        for name, prediction in by_horizon(model, motion, settings.signals, settings.replay):
+        for name, prediction in by_horizon(model, motion, settings):
             if name in kept:
                 found.horizons[name] = prediction
             yield name, prediction

@@ -47,8 +47,7 @@ def train(
             motions,
             settings.control,
             learner.features,
-            settings.signals,
-            settings.replay,
+            settings,
             settings.seed,
         )
         trained = fit(*gathered.pairs, learner, settings.seed, progress)
@@ -65,7 +64,7 @@ def time_predictors(
     models: Sequence[Model], base: Model, motion: Motion, settings: PredictorSettings
 ) -> Timing:
     """Each residual's library call and its exported predictor, on one run."""
-    pairs, how = sample_run(base, motion, settings.signals, settings.replay), settings.timing
+    pairs, how = sample_run(base, motion, settings), settings.timing
     return Timing(
         inference={
             model.name: time_both_ways(

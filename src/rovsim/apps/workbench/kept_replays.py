@@ -11,14 +11,13 @@ from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.runs import Runs
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.results.comparison import Metrics
 from rovsim.results.ladder import Step
 from rovsim.simulation.bands import Band, predict_band
 from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import find_spans, replay
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 
 @dataclass(eq=False)
@@ -26,8 +25,7 @@ class KeptReplays:
     """Of some runs, filtered and replayed as the settings say."""
 
     runs: Runs
-    signals: SignalSettings
-    how: ReplaySettings
+    how: SimulationSettings
     _replays: Recent[Replay] = field(default_factory=Recent)
     _bands: Recent[Band | None] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
@@ -41,7 +39,7 @@ class KeptReplays:
         how = self.how.only(*spans)
         return self._replays.get(
             key,
-            lambda: replay(model, self.runs.motions[run], self.signals, how, not spans),
+            lambda: replay(model, self.runs.motions[run], how, not spans),
         )
 
     def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
@@ -53,15 +51,15 @@ class KeptReplays:
         """Within what the model may lie, given all that it leaves open; None where nobody knows."""
         spans = () if horizon is None else (horizon,)
         motion, how = self.runs.motions[run], self.how.only(*spans)
-        (found,) = find_spans(motion, how, open_loop=not spans).values()
+        (found,) = find_spans(motion, how.replay, open_loop=not spans).values()
         return self._bands.get(
             (model, run, horizon),
-            lambda: predict_band(model, motion, found, self.signals, how) if found else None,
+            lambda: predict_band(model, motion, found, how) if found else None,
         )
 
     def thrust(self, model: Model, run: str) -> Array:
         """What it makes of the commands of a run at its samples or bins (n, 6), N and N m."""
-        motion, how = self.runs.motions[run], self.how
+        motion, how = self.runs.motions[run], self.how.replay
         return self._thrusts.get((model, run), lambda: drive_as_measured(model, motion, how).wrench)
 
     def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
@@ -85,5 +83,5 @@ class KeptReplays:
     def searched(self, model: Model) -> SearchedModel:
         """Where a model fails."""
         if model not in self._searched:
-            self._searched[model] = search_runs(model, self.runs, self.signals, self.how)
+            self._searched[model] = search_runs(model, self.runs, self.how)
         return self._searched[model]

@@ -93,7 +93,7 @@ class Workbench:
     @cached_property
     def replays(self) -> KeptReplays:
         """What models make of the recordings."""
-        return KeptReplays(self.data.runs, self.settings.signals, self.settings.replay)
+        return KeptReplays(self.data.runs, self.settings)
 
     @cached_property
     def baseline(self) -> Model:

@@ -18,10 +18,9 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.dynamics.effects.base import Effect, MeasurementFilter
 from rovsim.dynamics.model import Model
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 
@@ -62,7 +61,7 @@ def problem(
 
 
 def _residual(model: Model, motion: Motion) -> Array:
-    return sample_run(model, motion, SignalSettings(), ReplaySettings()).a_res[::EVERY]
+    return sample_run(model, motion, SimulationSettings()).a_res[::EVERY]
 
 
 def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:

@@ -7,10 +7,9 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
 from rovsim.evaluation.error_conditions.findings import ErrorExplanation, explain
 from rovsim.measurement.runs import Runs
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import Samples, sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,18 +39,11 @@ class ConditionSearch:
     Args:
         model: the model.
         splits: those of the runs that will come.
-        signals: how they were cleaned.
-        settings: how commands are held.
+        how: measurements were cleaned, and commands are held.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        splits: Collection[str],
-        signals: SignalSettings,
-        settings: ReplaySettings,
-    ) -> None:
-        self._model, self._how = model, (signals, settings)
+    def __init__(self, model: Model, splits: Collection[str], how: SimulationSettings) -> None:
+        self._model, self._how = model, how
         self.split = choose_split(model, splits)
         self._runs: list[str] = []
         self._parts: list[Blocks] = []
@@ -59,7 +51,7 @@ class ConditionSearch:
     def add(self, motion: Motion) -> None:
         """Take in a run; one of the other split is passed by."""
         if motion.run.split == self.split:
-            self.take(motion, sample_run(self._model, motion, *self._how))
+            self.take(motion, sample_run(self._model, motion, self._how))
 
     def take(self, motion: Motion, samples: Samples) -> None:
         """Take in a run of which there are samples; one of the other split is passed by."""
@@ -80,11 +72,9 @@ class ConditionSearch:
         return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)
 
 
-def search_runs(
-    model: Model, runs: Runs, signals: SignalSettings, settings: ReplaySettings
-) -> SearchedModel:
+def search_runs(model: Model, runs: Runs, how: SimulationSettings) -> SearchedModel:
     """Search the runs of a campaign, one after the other, for conditions in which it fails."""
-    search = ConditionSearch(model, set(runs.splits.values()), signals, settings)
+    search = ConditionSearch(model, set(runs.splits.values()), how)
     for name in runs.of(search.split):
         search.add(runs.motions[name])
     return search.found

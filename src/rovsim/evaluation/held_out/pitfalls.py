@@ -12,12 +12,11 @@ from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
 from rovsim.learning.learner import Trained, train
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.binned import backward_difference
-from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.pitfalls import Cost
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 
 ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
 SHARE = "share of the residual acceleration that is predicted"
@@ -46,11 +45,9 @@ def on_wrong_clock(motion: Motion) -> Motion:
     )
 
 
-def replay_error(
-    model: Model, motion: Motion, signals: SignalSettings, settings: ReplaySettings
-) -> float | None:
+def replay_error(model: Model, motion: Motion, how: SimulationSettings) -> float | None:
     """Velocity RMSE of an open-loop replay, each axis in units of how much it moves, their mean."""
-    found = replay(model, motion, signals, settings).horizons[OPEN_LOOP]
+    found = replay(model, motion, how).horizons[OPEN_LOOP]
     return normalize(measured_spread([motion]), rms(subtract(motion, found).nu))
 
 
@@ -64,8 +61,7 @@ def measure_pitfalls(
     runs: Sequence[Motion],
     test: Motion,
     learners: dict[str, LearnerSettings],
-    signals: SignalSettings,
-    settings: ReplaySettings,
+    how: SimulationSettings,
 ) -> dict[str, Cost]:
     """Each mistake that can be made on one held-out run: `right` and `wrong`.
 
@@ -77,11 +73,10 @@ def measure_pitfalls(
         runs: the training runs, of both controls.
         test: the run they are judged on.
         learners: settings of `knn` and `gp`.
-        signals: the signal chain.
-        settings: of the replays.
+        how: the signal chain, and how runs are replayed.
     """
-    found = {m.run.id: sample_run(model, m, signals, settings) for m in runs}
-    asked = sample_run(model, test, signals, settings)
+    found = {m.run.id: sample_run(model, m, how) for m in runs}
+    asked = sample_run(model, test, how)
 
     def taught(kind: str, names: Sequence[str]) -> tuple[Trained, Array]:
         own = [found[name] for name in names]
@@ -94,8 +89,8 @@ def measure_pitfalls(
     costs: dict[str, Cost] = {}
     if test.binned:
         costs["wrong clock"] = Cost(
-            right=replay_error(model, test, signals, settings),
-            wrong=replay_error(model, on_wrong_clock(test), signals, settings),
+            right=replay_error(model, test, how),
+            wrong=replay_error(model, on_wrong_clock(test), how),
         )
     right = explained(gp.predict, X, asked.a_res)
     lost, twice = (explained(gp.predict, x, asked.a_res) for x in (X + FAR * scale, X / scale))

@@ -27,7 +27,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures.signature import Seen
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.samples import sample_run
-from rovsim.simulation.settings import ReplaySettings
+from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (
     SUITABLE,
@@ -78,7 +78,7 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
     """What the nominal model misses in this tank, and what the hidden effect adds to it."""
     motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
     missing, rest = (
-        average_blocks(motion, sample_run(model, motion, SignalSettings(), ReplaySettings()))
+        average_blocks(motion, sample_run(model, motion, SimulationSettings()))
         for model in (nominal(truth.vehicle), truth)
     )
     k = AXES.index(signature.axis)

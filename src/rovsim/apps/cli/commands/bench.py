@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from rovsim.application.pipeline.recordings import measure
-from rovsim.application.sections import SimulationSettings
+from rovsim.application.sections import SimulationSections
 from rovsim.application.settings import BenchSettings, CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import measure_accuracy
@@ -35,7 +35,7 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 
 
-class Settings(SimulationSettings, CommandSettings):
+class Settings(SimulationSections, CommandSettings):
     """What `rovsim bench` takes."""
 
     tank: TankSettings
@@ -77,7 +77,7 @@ def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str,
     model = nominal(data.vehicle)
     found: dict[str, list] = {"train": [], "test": []}
     for motion in data.motions.values():
-        taken = sample_run(model, motion, settings.signals, settings.replay)
+        taken = sample_run(model, motion, settings)
         found[motion.run.split].append((motion.run.control, taken))
     return model, found
 
