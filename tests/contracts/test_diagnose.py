@@ -182,6 +182,23 @@ def test_a_drag_that_feeds_energy_in_is_told_when_it_is_added(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("two_found")
+def test_no_effects_are_no_effects(tmp_path, capsys):
+    main(["add", "diagnosis=diagnosis.json", "model=new.yaml", "effects=[]"])
+    assert "effects=[] names no effect" in unfolded(capsys.readouterr().out)
+    assert read_yaml(tmp_path / "new.yaml")["effects"] == []
+
+
+def test_what_mlflow_cannot_keep_is_no_error_of_a_diagnosis(campaign, tmp_path, capsys):
+    (tmp_path / "broken.db").write_text("no database")
+    uri = f"tracking.uri=sqlite:///{tmp_path / 'broken.db'}"
+    main(["diagnose", f"campaign={campaign}", f"out={tmp_path / 'found'}", uri])
+    said = capsys.readouterr()
+    assert "The recordings cannot tell" in unfolded(said.out)
+    assert "complete, but MLflow does not have it" in unfolded(said.err)
+    assert (tmp_path / "found" / "report.html").is_file()
+
+
+@pytest.mark.usefixtures("two_found")
 def test_values_that_were_found_one_by_one_are_told(capsys):
     for effects, told in (("lift,thruster_lag", True), ("lift", False), ("thruster_lag", False)):
         main(["add", "diagnosis=diagnosis.json", "model=new.yaml", f"effects=[{effects}]"])

@@ -132,6 +132,14 @@ def test_files_of_the_same_name_are_told_apart_by_their_folders(tmp_path):
     assert [model.name for model in loaded] == told
 
 
+def test_a_file_is_not_called_as_a_built_in_model(tmp_path):
+    write_yaml(tmp_path / "a" / "nominal.yaml", {"vehicle": "bluerov2_heavy"})
+    (loaded,) = load_models(
+        str(tmp_path / "a" / "nominal.yaml"), load_vehicle("bluerov2_heavy"), built_in()
+    )
+    assert loaded.name == "a-nominal"
+
+
 def test_one_file_by_two_names_is_refused(tmp_path):
     path = tmp_path / "lag.yaml"
     write_yaml(path, {"vehicle": "bluerov2_heavy"})

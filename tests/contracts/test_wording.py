@@ -141,6 +141,9 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
         assert ERROR_MEANING in " ".join(said.split())
     assert ladder.columns[0].heading == ERROR
     assert f"the {ERROR} falls from" in told
+    worse = content["diagnosis"].error.model_copy(update={"with_effects": 9.9})
+    harmful = content["diagnosis"].model_copy(update={"error": worse})
+    assert "rises from" in terminal.tell_diagnosis(harmful, built_in())
     assert ERROR in kind("ladder").caption
 
 

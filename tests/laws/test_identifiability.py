@@ -1,6 +1,7 @@
 """Values known only together, from covariances made up for the purpose."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -152,6 +153,13 @@ def advised(*usable):
     """What to record where nothing was selected, and what was never commanded."""
     found = TrainDiagnosis(fit(alike()).hypothesis.base, UsableRuns(*usable), fit(alike()))
     return advise(found, [], [], built_in()), found.not_commanded
+
+
+def test_a_model_that_runs_away_is_not_adequate():
+    usable, found = UsableRuns((), (), (), (), 60.0), fit(alike())
+    assert TrainDiagnosis(found.hypothesis.base, usable, found).verdict == "adequate"
+    lost = replace(usable, lost={"a": 15.9})
+    assert TrainDiagnosis(found.hypothesis.base, lost, found).verdict == "insufficient_data"
 
 
 def test_a_thruster_that_was_never_commanded_is_named():

@@ -58,7 +58,8 @@ class TrainDiagnosis:
             return "unexplained"
         if self.selected:
             return "missing_effects"
-        return "insufficient_data" if self.usable.still else "adequate"
+        unseen = self.usable.still or self.usable.lost
+        return "insufficient_data" if unseen else "adequate"
 
     @property
     def not_commanded(self) -> tuple[str, ...]:

@@ -17,8 +17,8 @@ from rovsim.results.diagnosis import Diagnosis
 def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
     """The models that names and files stand for, each once.
 
-    A model is called by its file's stem; files that share one are called `folder-stem`, with as
-    many folders as it takes.
+    A model is called by its file's stem; files that share one, or have a built-in model's, are
+    called `folder-stem`, with as many folders as it takes.
 
     Raises:
         BadInput: one cannot be loaded, or two are of the same file.
@@ -30,7 +30,7 @@ def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalog
 
 
 def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
-    """Different names of models: those that are shared, with the folders of their files in front.
+    """Different names of models: those that are taken, with the folders of their files in front.
 
     Args:
         names: of the models, a file's stem or that of a built-in model.
@@ -43,9 +43,9 @@ def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
     deepest = max((len(file.parts) for file in files if file), default=0)
     found = list(names)
     for depth in range(1, deepest):
-        shared = {name for name in found if found.count(name) > 1}
+        taken = {name for name in found if name in BUILT_IN or found.count(name) > 1}
         found = [
-            _with_folders(own, file, depth) if file and name in shared else name
+            _with_folders(own, file, depth) if file and name in taken else name
             for own, name, file in zip(names, found, files, strict=True)
         ]
     twice = [k for k, name in enumerate(found) if found.count(name) > 1]
@@ -127,7 +127,6 @@ def write_with_effects(
         )
     require_replaceable(out, f"schema: {SCHEMA}")  # not as a diagnosis has it, of its base
     found = Diagnosis.read(diagnosis)
-    wanted = list(effects) if effects else None
-    added = apply.add_effects(found, diagnosis, base, wanted, catalogue)
+    added = apply.add_effects(found, diagnosis, base, effects, catalogue)
     write_model(added.model, out, provenance={"base": base, "effects": added.names, **story})
     return added

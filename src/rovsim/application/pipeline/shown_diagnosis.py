@@ -5,6 +5,7 @@ from typing import Any, Mapping, Sequence
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking import track_diagnosis
+from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.reporting.html.folder import present
 from rovsim.reporting.html.picture import Drawn
@@ -21,8 +22,10 @@ def show_diagnosis(
     effect_files: Sequence[Path],
     params: Mapping[str, Any],
     tracking: TrackingSettings | None,
-) -> None:
+) -> str:
     """Draw what is not yet drawn, write the page, and log everything where there is MLflow.
+
+    Returns why nothing could be logged, or nothing: the diagnosis stands without.
 
     Args:
         out: folder that has the `diagnosis.json`.
@@ -39,6 +42,11 @@ def show_diagnosis(
     assert found is not None
     catalogue = load_catalogue(effect_files)
     files = present(out, campaign, data, provenance, catalogue, drawn=drawn)
-    if tracking is not None:
+    if tracking is None:
+        return ""
+    try:
         kept = [out / "diagnosis.json", *files]
         track_diagnosis(tracking, campaign, base, found, params, kept)
+    except (RovsimError, OSError) as error:
+        return str(error)
+    return ""

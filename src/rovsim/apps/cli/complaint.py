@@ -1,4 +1,4 @@
-"""One message and exit code 2; it is here alone, because half of the package is slow to import."""
+"""Messages beside a result, and instead of one; unlike half of the package it is fast to import."""
 
 import sys
 from typing import NoReturn
@@ -7,7 +7,12 @@ from rovsim.core.columns import fold
 
 
 def complain(message: str) -> NoReturn:
-    """Say what is wrong with the input, and end."""
+    """Say what is wrong with the input, and end with exit code 2."""
+    warn(message)
+    sys.exit(2)
+
+
+def warn(message: str) -> None:
+    """Say what went wrong beside the result, and go on."""
     lines = [line for one in f"rovsim: {message}".splitlines() for line in fold(one)]
     print("\n".join(lines), file=sys.stderr)
-    sys.exit(2)

@@ -36,6 +36,10 @@ VERDICTS = {
     "unexplained": "Something is missing that the catalogue does not know.",
     "insufficient_data": "The recordings cannot tell: too short, or some axis never moved.",
 }
+LOST = (
+    "The recordings cannot tell: before they end the model runs away, although it is corrected at "
+    "every reading."
+)
 MOST_PUSHES = 3  # moments of a disturbance that are told
 NO_TEST = (
     "No test run could be used, so there is no error to report. "
@@ -121,6 +125,8 @@ def _sentence(found: Diagnosis) -> str:
         return AWAY
     if nothing and found.looked_at is not None and not found.looked_at.of:
         return NO_TRAIN
+    if found.verdict == "insufficient_data" and found.not_followed_from_s:
+        return LOST
     return VERDICTS[found.verdict]
 
 
@@ -197,7 +203,8 @@ def error_sentence(found: Diagnosis) -> str:
         return _away_sentence(found.runs_away_in, after)
     if not math.isfinite(before):
         return NO_TEST
-    now = f"falls from {significant(before)} to {significant(after)}"
+    way = "rises" if after > before else "falls"
+    now = f"{way} from {significant(before)} to {significant(after)}"
     text = f"On the test runs the {ERROR} {now if found.selected else 'is ' + significant(before)}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"

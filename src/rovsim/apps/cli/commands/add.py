@@ -55,7 +55,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     )
     text = f"{base} + {' + '.join(names)}"
     if not names:
-        text = f"{base} as it is, for the diagnosis selected no effect"
+        none = "the diagnosis selected" if settings.effects is None else "effects=[] names"
+        text = f"{base} as it is, for {none} no effect"
     if not diagnosed:
         text += f".\n{OTHER.format(base=base)}"
     if one_by_one:

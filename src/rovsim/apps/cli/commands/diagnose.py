@@ -16,6 +16,7 @@ from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
+from rovsim.apps.cli.complaint import warn
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import join_files, say
 from rovsim.core.extras import installed
@@ -99,4 +100,6 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             tracking,
         )
         with reported("writing the page and logging" if tracking else "writing the page"):
-            last.result()
+            unlogged = last.result()
+    if unlogged:
+        warn(f"the diagnosis is complete, but MLflow does not have it: {unlogged}")

@@ -14,6 +14,7 @@ Then: rovsim ui campaign=DIR
 import os
 import tempfile
 from pathlib import Path
+from shlex import quote
 
 from rovsim.application.intake.compose import propose
 from rovsim.application.intake.guesses import list_guesses, list_taken
@@ -74,7 +75,7 @@ def _told(proposal: CampaignProposal, file: Path) -> str:
             for q in proposal.questions
         ]
         parts.append(f"{len(asked)} to be answered in {file}:\n" + "\n".join(asked))
-    parts.append(f"{file}\nThen: rovsim compare campaign={file.parent}")
+    parts.append(f"{file}\nThen: rovsim compare {quote(f'campaign={file.parent}')}")
     return "\n\n".join(parts)
 
 
