@@ -161,4 +161,4 @@ def _floor(
         return None
     # what was reached is itself drawn by chance: a root mean square of w windows
     chance = 1.0 / np.sqrt(2.0 * floor.windows)
-    return None if floor.error > (1.0 + chance) * reached else min(floor.error, reached)
+    return None if floor.error > (1.0 + chance) * reached else floor.error
