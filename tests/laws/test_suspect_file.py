@@ -29,6 +29,8 @@ SPECIAL = Candidate(ConstantWrench, ConstantWrench(), ("yaw",))
 class Workspace:
     """Readings that vary linearly with each number, under white noise of unit variance."""
 
+    noticed = True
+
     def __init__(self, columns, readings):
         each = iter(range(len(columns)))
         owned = [(one, tuple(next(each) for _ in one.free)) for one in (*FILE, SPECIAL)]
@@ -67,6 +69,9 @@ class Workspace:
             Hypothesis(BASE, tuple(t for t in found.hypothesis.terms if t not in gone))
             for gone in groups
         ]
+
+    def find_relevant(self, found, without):
+        return [self.noticed]
 
     def score(self, found):
         h = found.hypothesis
@@ -118,6 +123,12 @@ def test_a_file_that_promises_more_than_its_fit_keeps_is_not_taken(monkeypatch):
         return true(one) - 1e3 * any(term.id in STATED for term in one.hypothesis.terms)
 
     monkeypatch.setattr(workspace, "score", score)
+    assert suspect_file(workspace, found) is found
+
+
+def test_a_file_whose_errors_nobody_would_notice_is_not_taken():
+    workspace, found = make(0, off=1.0, special=0.0)
+    workspace.noticed = False
     assert suspect_file(workspace, found) is found
 
 

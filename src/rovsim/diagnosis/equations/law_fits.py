@@ -15,7 +15,6 @@ from rovsim.diagnosis.equations.products.library import push
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 
@@ -86,7 +85,7 @@ class LawFits:
         """Whether it explains more than chance, and users would see it in some axis' windows."""
         if more.score - score < self.chance:
             return False
-        return bool(find_relevant(self.workspace, more.fit, [less.hypothesis.model])[0])
+        return bool(self.workspace.find_relevant(more.fit, [less.hypothesis.model])[0])
 
     def find_likeliest(
         self, laws: Mapping[Key, tuple[Form, Hypothesis]], beside: Fit

@@ -10,7 +10,6 @@ from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, sol
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.forward_selection import find_relevant
 from rovsim.diagnosis.selection.search_result import SearchResult
 
 FOLDS = 6
@@ -22,7 +21,7 @@ def drop_idle(selection: SearchResult) -> SearchResult:
     while fit.hypothesis.terms:
         fewer = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
         smaller = [workspace.fit(one) for one in fewer]
-        noticed = find_relevant(workspace, fit, [one.model for one in fewer])
+        noticed = workspace.find_relevant(fit, [one.model for one in fewer])
         idle = [
             one
             for one, seen, rest in zip(fewer, noticed, smaller, strict=True)

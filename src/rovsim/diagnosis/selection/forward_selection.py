@@ -1,13 +1,8 @@
 """Which effects are missing: add the most likely one, refit all, try to swap, drop what is idle."""
 
 from dataclasses import replace
-from typing import Sequence
-
-import numpy as np
-from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
@@ -31,7 +26,6 @@ from rovsim.diagnosis.selection.vehicle_file.steps import (
     suspect_file,
 )
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
-from rovsim.dynamics.model import Model
 
 ROUNDS = 3  # of trials, when none of the first matters
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
@@ -61,26 +55,17 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
                 break
             if off and uncertain_file.explains(workspace, best, name):
                 continue
-            if find_relevant(workspace, best, [current.hypothesis.model])[0]:
+            if workspace.find_relevant(best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
     more = add_file(workspace, current) if off else current
     if not _beats_chance(workspace, more, current, threshold):
         return None
-    noticed = find_relevant(workspace, more, [current.hypothesis.model])[0]
+    noticed = workspace.find_relevant(more, [current.hypothesis.model])[0]
     return prune(workspace, more) if noticed else None
 
 
 def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: float) -> bool:
     return more is not less and workspace.score(more) - workspace.score(less) >= threshold
-
-
-def find_relevant(workspace: SearchWorkspace, fit: Fit, without: Sequence[Model]) -> Array:
-    """Whether some axis' error in 2 s windows is noticeably larger with each other model (m,)."""
-    rmse = score_windows([fit.hypothesis.model, *without], workspace.bank.runs).rmse
-    measured = rmse[0] > 0.0
-    # a model that cannot exist is infinitely worse
-    ratio = np.nan_to_num(rmse[1:, measured] / rmse[0, measured], nan=np.inf)
-    return np.max(ratio, axis=1, initial=0.0) - 1.0 > workspace.settings.relevant
 
 
 def try_swaps(

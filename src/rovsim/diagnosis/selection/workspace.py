@@ -17,6 +17,7 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import inner_products, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.residual_source import Linearised
+from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.fit import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
 from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
@@ -24,6 +25,7 @@ from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_ca
 from rovsim.diagnosis.selection.vehicle_file.stated import doubt_gain
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.dynamics.model import Model
 
 HOPELESS_LR = 100.0  # what is less likely by e^50 need not be known better
 
@@ -242,3 +244,11 @@ class SearchWorkspace:
             products, self.sensitivities.blocks, self.penalty, self.settings.draws, seed
         )
         return max(0.0, float(np.quantile(decreases, 1.0 - self.settings.false_alarm)))
+
+    def find_relevant(self, fit: Fit, without: Sequence[Model]) -> Array:
+        """Whether some axis' error in 2 s windows is noticeably larger with each model (m,)."""
+        rmse = score_windows([fit.hypothesis.model, *without], self.bank.runs).rmse
+        measured = rmse[0] > 0.0
+        # a model that cannot exist is infinitely worse
+        ratio = np.nan_to_num(rmse[1:, measured] / rmse[0, measured], nan=np.inf)
+        return np.max(ratio, axis=1, initial=0.0) - 1.0 > self.settings.relevant
