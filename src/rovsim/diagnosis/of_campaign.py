@@ -148,7 +148,8 @@ def _floor(
 ) -> float | None:
     """What a perfect model would score; None where that cannot be estimated.
 
-    Part of what is taken for noise may be structure: a floor above what was reached is none.
+    Part of what is taken for noise may be structure: a floor above what was reached, by more than
+    chance, is none.
     """
     if diagnosis.fit is None or reached is None:
         return None
