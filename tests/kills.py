@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.run import Benchmark
 from small_study import ROOT, SMALL

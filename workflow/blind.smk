@@ -7,7 +7,7 @@ Cases that this code has answered are left out; in the end `rovsim blind` scores
 
 import sys
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.errors import RovsimError
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from chromium import DESK, FLAGS, LOG, PHONE, PICTURES, Tab, installed, started
+from rovsim.application.configuration import compose
 from rovsim.application.pipeline.design import Designed, write_flight
-from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.design.settings import Question

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from small_study import ROOT, SMALL, copy_of

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.dynamics.catalogue import built_in

@@ -13,7 +13,7 @@ import pytest
 import yaml
 from mlflow.tracking import MlflowClient
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.apps.cli import main as cli
 from rovsim.apps.cli.completion import commands
 from rovsim.apps.cli.main import listed, main, override, quoted
@@ -297,7 +297,9 @@ def test_help_is_quick_because_it_imports_nothing_heavy(words):
     assert done.stdout.strip().endswith("[]")
 
 
-@pytest.mark.parametrize("module", ["application.settings", "apps.cli.commands.ui"])
+@pytest.mark.parametrize(
+    "module", ["application.configuration", "application.settings", "apps.cli.commands.ui"]
+)
 def test_settings_are_read_before_the_compiler_is_loaded(module):
     """What is asked wrongly is refused at once, and the first page is there at once."""
     code = (

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.apps.cli.completion import SCRIPTS, commands, complete, effects, settings, suggest
 from rovsim.apps.cli.main import main
 from rovsim.core.mappings import flattened

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.benchmarks.designs.cases import SECONDS, ask, hide, list_cases
 from rovsim.benchmarks.designs.table import tabulate
 from rovsim.dynamics.catalogue import built_in

@@ -7,7 +7,7 @@ import pytest
 
 from fuzz.entries import DiagnosisJson
 from rovsim import AXES
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json

@@ -4,8 +4,8 @@ import shutil
 
 import pytest
 
+from rovsim.application.configuration import compose
 from rovsim.application.provenance import digest_recordings
-from rovsim.application.settings import compose
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import BadInput

@@ -2,8 +2,8 @@
 
 import pytest
 
+from rovsim.application.configuration import compose
 from rovsim.application.pipeline.recordings import measure, open_campaign
-from rovsim.application.settings import compose
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
 from rovsim.diagnosis.observer.filter_bank import FilterBank

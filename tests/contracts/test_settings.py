@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from rovsim.application.configuration import compose
 from rovsim.application.sections import SimulationSections, TrainingSettings
-from rovsim.application.settings import CampaignSettings, Settings, compose, select
+from rovsim.application.settings import CampaignSettings, Settings, select
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section, checked
 from rovsim.simulation.settings import SimulationSettings

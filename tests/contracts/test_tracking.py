@@ -9,7 +9,8 @@ import pytest
 from mlflow.store.tracking import sqlalchemy_store
 from mlflow.tracking import MlflowClient
 
-from rovsim.application.settings import TrackingSettings, compose
+from rovsim.application.configuration import compose
+from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import ranking, tell_ranking, track
 from rovsim.apps.cli.sweep import check_launcher, check_sweep, choose_out, name_run
 from rovsim.core.errors import BadInput

@@ -11,8 +11,8 @@ from starlette.datastructures import QueryParams
 
 import synthetic_study
 from chores import counting, dying, failing
+from rovsim.application.configuration import compose
 from rovsim.application.pipeline.comparison import compare
-from rovsim.application.settings import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import app, data, models, parts, tasks, why
 from rovsim.apps.workbench.draft import Draft

@@ -13,9 +13,9 @@ from fuzz.entry import Entry, Text, command
 from fuzz.hostile import value_of
 from fuzz.models import step
 from recordings import Swim, campaign_content, write_campaign, write_run
+from rovsim.application.configuration import compose
 from rovsim.application.intake.compose import propose
 from rovsim.application.pipeline.models import write_with_effects
-from rovsim.application.settings import compose
 from rovsim.apps.cli.main import override
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.mappings import flattened

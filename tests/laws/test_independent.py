@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rovsim.application.settings import compose, select
+from rovsim.application.configuration import compose
+from rovsim.application.settings import select
 from rovsim.apps.cli.commands.blind import Settings
 from rovsim.benchmarks.blind.flight import SIMULATORS, fly
 from rovsim.benchmarks.blind.independent.campaign import STATED, record_campaign

@@ -16,7 +16,7 @@ from rovsim.core.second_process import call, second_process
 from rovsim.core.termination import Terminated, heeding_termination
 
 UNKNOWN = "tabnanny"  # a module of Python that nothing else imports
-FAILS = "rovsim.application.settings:compose", ["no_such_key=1"]
+FAILS = "rovsim.application.configuration:compose", ["no_such_key=1"]
 PARENT = """
 from rovsim.core.second_process import call, second_process
 if __name__ == "__main__":

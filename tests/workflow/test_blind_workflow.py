@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.benchmarks.blind.run import Benchmark, file_name
 
 pytest.importorskip("pysindy")

@@ -2,7 +2,8 @@
 
 conf_search        where Hydra looks
 sections           sections of the configuration that several steps take
-settings           the configuration, composed once
+settings           what each command and rule takes of it
+configuration      composed once, by Hydra
 pipeline           the way of the data, one step a file
 study              the study as the workflow sees it
 leave_one_run_out  each run of a study held out once

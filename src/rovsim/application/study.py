@@ -7,9 +7,10 @@ from typing import Any, Mapping
 
 from filelock import FileLock, Timeout
 
+from rovsim.application.configuration import compose
 from rovsim.application.provenance import digest, imports_of, own_digest, provenance
 from rovsim.application.sections import TrainingSettings
-from rovsim.application.settings import Settings, compose, select
+from rovsim.application.settings import Settings, select
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.model_names import EFFECTS, NOMINAL, REFITTED, name_learned
 from rovsim.core.schema import Section

@@ -71,7 +71,7 @@ def _main(words: list[str]) -> None:
 
 
 def _run(command: str, overrides: list[str], sweep: bool) -> None:
-    from rovsim.application.settings import compose
+    from rovsim.application.configuration import compose
     from rovsim.apps.cli.dispatch import run_command
     from rovsim.apps.cli.untaken import require_taken
 

@@ -4,7 +4,8 @@ from pathlib import Path
 from shutil import which
 from typing import Any, Sequence
 
-from rovsim.application.settings import Settings, compose, settings_of
+from rovsim.application.configuration import compose, settings_of
+from rovsim.application.settings import Settings
 from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import BadInput, RovsimError

@@ -8,6 +8,7 @@ from typing import Sequence
 
 from pandas import DataFrame
 
+from rovsim.application.configuration import compose
 from rovsim.application.export.sizes import flights
 from rovsim.application.export.targets import target
 from rovsim.application.export.write import export_model, model_parts, write_export
@@ -24,7 +25,7 @@ from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import describe_origin, digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings
-from rovsim.application.settings import Settings, compose, select
+from rovsim.application.settings import Settings, select
 from rovsim.apps.notebook import html
 from rovsim.apps.notebook.progress import in_a_cell
 from rovsim.apps.notebook.shown import ShownComparison, ShownDiagnosis, ShownExport, ShownModel

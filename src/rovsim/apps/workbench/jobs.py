@@ -6,7 +6,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.binding import BindableProperty, bind_from
 
-from rovsim.application.settings import compose
+from rovsim.application.configuration import compose
 from rovsim.apps.workbench import tasks
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.model_names import NOMINAL, name_learned

@@ -8,7 +8,8 @@ import time
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
-from rovsim.application.settings import WorkbenchSettings, compose
+from rovsim.application.configuration import compose
+from rovsim.application.settings import WorkbenchSettings
 from rovsim.apps.workbench.folders import DESCRIPTION, remember, tell_unopenable
 from rovsim.apps.workbench.work import LongWork, reap
 from rovsim.core.errors import RovsimError

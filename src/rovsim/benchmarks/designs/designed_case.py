@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from rovsim.application.configuration import compose
 from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
-from rovsim.application.settings import Settings, compose
+from rovsim.application.settings import Settings
 from rovsim.benchmarks.blind.case import Range
 from rovsim.benchmarks.designs.cases import ask, hide
 from rovsim.design.plan import Plan, plan
