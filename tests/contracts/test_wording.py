@@ -141,10 +141,18 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
         assert ERROR_MEANING in " ".join(said.split())
     assert ladder.columns[0].heading == ERROR
     assert f"the {ERROR} falls from" in told
-    worse = content["diagnosis"].error.model_copy(update={"with_effects": 9.9})
-    harmful = content["diagnosis"].model_copy(update={"error": worse})
-    assert "rises from" in terminal.tell_diagnosis(harmful, built_in())
     assert ERROR in kind("ladder").caption
+
+
+@pytest.mark.parametrize(
+    ("after", "told"),
+    [(9.9, "rises from 0.179 to 9.90"), (0.1791, "stays at 0.179"), (0.1, "falls from 0.179")],
+)
+def test_what_became_of_the_error_is_told_as_far_as_its_digits_show(content, after, told):
+    errors = {"nominal": 0.179, "with_effects": after}
+    error = content["diagnosis"].error.model_copy(update=errors)
+    found = content["diagnosis"].model_copy(update={"error": error})
+    assert told in terminal.tell_diagnosis(found, built_in())
 
 
 @pytest.mark.parametrize(

@@ -203,9 +203,8 @@ def error_sentence(found: Diagnosis) -> str:
         return _away_sentence(found.runs_away_in, after)
     if not math.isfinite(before):
         return NO_TEST
-    way = "rises" if after > before else "falls"
-    now = f"{way} from {significant(before)} to {significant(after)}"
-    text = f"On the test runs the {ERROR} {now if found.selected else 'is ' + significant(before)}."
+    now = _change(before, after) if found.selected else f"is {significant(before)}"
+    text = f"On the test runs the {ERROR} {now}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"
         if not found.noise.disturbance:
@@ -216,6 +215,14 @@ def error_sentence(found: Diagnosis) -> str:
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
     return f"{text} {ERROR_MEANING}."
+
+
+def _change(before: float, after: float) -> str:
+    """What became of an error, as far as its printed digits tell."""
+    then, now = significant(before), significant(after)
+    if then == now:
+        return f"stays at {now}"
+    return f"{'rises' if after > before else 'falls'} from {then} to {now}"
 
 
 def _away_sentence(runs: Sequence[str], after: float) -> str:
