@@ -1,13 +1,19 @@
 """The study, from raw exports to figures: `snakemake --cores 2 [--config campaign=DIR]`."""
 
 import sys
+from pathlib import Path
 
-from rovsim.application.leave_one_run_out import LeaveOneRunOut
-from rovsim.application.study import Study
+from rovsim.application.study.dependencies import Dependencies
+from rovsim.application.study.leave_one_run_out import LeaveOneRunOut
+from rovsim.application.study.lock import hold
+from rovsim.application.study.models import StudyModels
+from rovsim.application.study.study import Study
 from rovsim.core.errors import RovsimError
 
 study = Study(config)
+models = StudyModels(study)
 folds = LeaveOneRunOut(study)
+depends = Dependencies(study)
 try:
     study.check()
     folds.check()
@@ -20,7 +26,7 @@ except RovsimError as error:
 
 onstart:
     try:
-        study.hold()
+        hold(Path(study.folder))
     except RovsimError as error:
         print(f"rovsim: {error}", file=sys.stderr)
         sys.exit(2)

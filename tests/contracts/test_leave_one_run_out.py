@@ -11,9 +11,9 @@ import pytest
 
 from recordings import write_campaign, write_lines
 from rovsim.application.configuration import compose
-from rovsim.application.leave_one_run_out import LeaveOneRunOut
 from rovsim.application.pipeline.held_out import measure_pitfalls_by_run
-from rovsim.application.study import Study
+from rovsim.application.study.leave_one_run_out import LeaveOneRunOut
+from rovsim.application.study.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.bounded_cache import ReadAgain
 from rovsim.core.errors import BadInput

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from pages import fenced
-from rovsim.application.study import Study
+from rovsim.application.study.dependencies import Dependencies
+from rovsim.application.study.study import Study
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.apply import add_effects
@@ -113,14 +114,15 @@ def test_the_study_takes_it_and_sees_edits():
     study = Study({"effects_file": "floor_cushion.py"})
     assert study.catalogue.files == (Path("floor_cushion.py"),)
     assert "floor_cushion" in study.catalogue
+    depends = Dependencies(study)
     replay, smooth = (ROOT / "workflow" / "scripts" / f"{name}.py" for name in ("replay", "filter"))
-    before = {script: study.code(script) for script in (replay, smooth)}
+    before = {script: depends.code(script) for script in (replay, smooth)}
     text = Path("floor_cushion.py").read_text()
     Path("floor_cushion.py").write_text(f"# a comment changes nothing\n{text}")
-    assert study.code(replay) == before[replay]
+    assert depends.code(replay) == before[replay]
     Path("floor_cushion.py").write_text(text.replace("scale=3.0", "scale=2.0"))
-    assert study.code(replay) != before[replay]
-    assert study.code(smooth) == before[smooth]
+    assert depends.code(replay) != before[replay]
+    assert depends.code(smooth) == before[smooth]
     assert Study({}).catalogue.files == ()
 
 

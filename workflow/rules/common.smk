@@ -12,7 +12,7 @@ F = f"{R}/folds/{{fold}}"
 def code_of(script, *more, without=""):
     """Digest of what a script imports: an edit re-runs what it touches."""
     path = Path(workflow.basedir, "workflow", "scripts", f"{script}.py")
-    return study.code(path, *more, without=without)
+    return depends.code(path, *more, without=without)
 
 
 def clean_runs():
@@ -25,7 +25,7 @@ def clean_runs():
 
 def model_files(wildcards):
     """A model's file; the baselines have none."""
-    written = wildcards.model in study.files
+    written = wildcards.model in models.with_files
     return [f"{R}/models/{wildcards.model}/model.yaml"] if written else []
 
 

@@ -11,7 +11,7 @@ rule diagnose:
         f"{R}/benchmarks/diagnose.tsv"
     priority: 10  # most of the study waits for it
     params:
-        settings=study.section(DiagnosisSettings),
+        settings=depends.section(DiagnosisSettings),
         code=code_of("diagnose"),
     script:
         "../scripts/diagnose.py"
@@ -45,7 +45,7 @@ rule refit:
     benchmark:
         f"{R}/benchmarks/refit.tsv"
     params:
-        settings=study.section(DiagnosisSettings),
+        settings=depends.section(DiagnosisSettings),
         code=code_of("refit"),
     script:
         "../scripts/refit.py"

@@ -86,7 +86,7 @@ rule fold:
     benchmark:
         f"{F}/benchmarks/fold.tsv"
     params:
-        settings=study.section(SimulationSections),
+        settings=depends.section(SimulationSections),
         code=code_of("fold"),
     script:
         "../scripts/fold.py"
@@ -129,9 +129,9 @@ if folds.pitfalls:
         benchmark:
             f"{R}/benchmarks/pitfalls.tsv"
         params:
-            settings=study.section(SimulationSections),
+            settings=depends.section(SimulationSections),
             learners={
-                kind: study.learner(kind).model_dump_json() for kind in ("knn", "gp")
+                kind: depends.learner(kind).model_dump_json() for kind in ("knn", "gp")
             },
             code=code_of("pitfalls"),
         script:

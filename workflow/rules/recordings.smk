@@ -10,7 +10,7 @@ if study.synthetic:
             f"{R}/benchmarks/tank.tsv"
         params:
             settings=study.settings.tank.model_dump_json(),
-            code=study.own_code("simulation.synthetic_tank"),
+            code=depends.own_code("simulation.synthetic_tank"),
         script:
             "../scripts/tank.py"
 
@@ -28,7 +28,7 @@ rule read:
         f"{R}/benchmarks/read/{{run}}.tsv"
     params:
         campaign=study.campaign_file,
-        settings=study.signal("outliers"),
+        settings=depends.signal("outliers"),
         code=code_of("read", without="rovsim.dynamics.effects"),
     script:
         "../scripts/read.py"

@@ -11,7 +11,7 @@ rule replay:
     benchmark:
         f"{R}/benchmarks/replay/{{model}}.tsv"
     params:
-        settings=study.section(SimulationSections),
+        settings=depends.section(SimulationSections),
         code=code_of("replay"),
     script:
         "../scripts/replay.py"
@@ -30,7 +30,7 @@ rule search:
     benchmark:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
-        settings=study.section(SimulationSections),
+        settings=depends.section(SimulationSections),
         code=code_of("search"),
     script:
         "../scripts/search.py"
@@ -48,7 +48,7 @@ rule budget:
     benchmark:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
-        settings=study.section(SimulationSections),
+        settings=depends.section(SimulationSections),
         code=code_of("budget"),
     script:
         "../scripts/budget.py"

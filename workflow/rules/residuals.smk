@@ -2,7 +2,7 @@ rule train:
     "Learn what the acceleration of a model misses, on the train runs of one control."
     input:
         motions=lambda w: expand(
-            f"{R}/motions/{{run}}.npz", run=study.control_runs(w.control)
+            f"{R}/motions/{{run}}.npz", run=study.train_runs(w.control)
         ),
         campaign=lambda w: study.campaign_file,
         model=lambda w: [f"{R}/models/effects/model.yaml"] if w.base else [],
@@ -14,7 +14,7 @@ rule train:
     benchmark:
         f"{R}/benchmarks/train/{{base}}{{residual}}_{{control}}.tsv"
     params:
-        settings=lambda w: study.training(w.residual, w.control),
+        settings=lambda w: depends.training(w.residual, w.control),
         code=code_of("train"),
     script:
         "../scripts/train.py"
@@ -25,7 +25,7 @@ rule timing:
     input:
         motion=f"{R}/motions/{study.runs('test')[0]}.npz",
         campaign=lambda w: study.campaign_file,
-        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.trained),
+        models=expand(f"{R}/models/{{model}}/model.yaml", model=models.trained),
     output:
         f"{R}/timing.json",
     log:
@@ -34,7 +34,7 @@ rule timing:
         f"{R}/benchmarks/timing.tsv"
     threads: workflow.cores
     params:
-        settings=study.section(PredictorSettings),
+        settings=depends.section(PredictorSettings),
         code=code_of("timing"),
     script:
         "../scripts/timing.py"

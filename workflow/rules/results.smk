@@ -8,12 +8,12 @@ FIGURES = [figure.name for figure in folds.figures]
 rule compare:
     "All scores in one file, the ladder, and how errors grow."
     input:
-        scores=expand(f"{R}/scores/{{model}}.json", model=study.models),
+        scores=expand(f"{R}/scores/{{model}}.json", model=models.all),
         replays=expand(
-            f"{R}/replay/{{model}}/{{run}}.npz", model=study.models, run=study.runs()
+            f"{R}/replay/{{model}}/{{run}}.npz", model=models.all, run=study.runs()
         ),
         motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
-        searches=expand(f"{R}/where/{{model}}.json", model=study.searched),
+        searches=expand(f"{R}/where/{{model}}.json", model=models.searched),
         diagnosis=f"{R}/diagnosis.json",
     output:
         where=f"{R}/where.json",
@@ -75,7 +75,7 @@ for figure in list_run_figures():
             f"figure_{figure.name}"
         input:
             motion=f"{R}/motions/{{run}}.npz",
-            replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=study.drawn),
+            replays=expand(f"{R}/replay/{{model}}/{{{{run}}}}.npz", model=models.drawn),
             budget=[f"{R}/budget/{{run}}.npz"] if "budget" in figure.needs else [],
         output:
             png=report(
@@ -139,7 +139,7 @@ rule report:
     params:
         campaign=study.name,
         runs=study.runs(),
-        provenance=study.provenance(),
+        provenance=depends.provenance(),
         code=code_of("report"),
     script:
         "../scripts/report.py"
@@ -153,7 +153,7 @@ rule track:
         diagnosis=f"{R}/diagnosis.json",
         figures=expand(f"{R}/figures/{{name}}.png", name=FIGURES),
         report=f"{R}/report.html",
-        models=expand(f"{R}/models/{{model}}/model.yaml", model=study.files),
+        models=expand(f"{R}/models/{{model}}/model.yaml", model=models.with_files),
     output:
         f"{R}/tracked.json",
     log:
@@ -163,7 +163,7 @@ rule track:
     params:
         campaign=study.name,
         settings=study.settings.tracking.model_dump_json(),
-        diagnosis=study.section(DiagnosisSettings),
+        diagnosis=depends.section(DiagnosisSettings),
         code=code_of("track"),
     script:
         "../scripts/track.py"

@@ -9,7 +9,7 @@ rule resample:
     benchmark:
         f"{R}/benchmarks/resample/{{run}}.tsv"
     params:
-        settings=study.signal("outliers", "resample"),
+        settings=depends.signal("outliers", "resample"),
         code=code_of("resample"),
     script:
         "../scripts/resample.py"
@@ -26,7 +26,7 @@ rule filter:
     benchmark:
         f"{R}/benchmarks/filter/{{run}}.tsv"
     params:
-        settings=study.signal("filter"),
+        settings=depends.signal("filter"),
         code=code_of("filter"),
     script:
         "../scripts/filter.py"
@@ -44,7 +44,7 @@ rule differentiate:
     benchmark:
         f"{R}/benchmarks/differentiate/{{run}}.tsv"
     params:
-        settings=study.signal("differentiate"),
+        settings=depends.signal("differentiate"),
         code=code_of("differentiate", without="rovsim.dynamics.effects"),
     script:
         "../scripts/differentiate.py"

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from rovsim.application.study import PHYSICS, Study
+from rovsim.application.study.models import PHYSICS
+from rovsim.application.study.study import Study
 from rovsim.core.errors import BadInput
 from rovsim.core.model_names import EFFECTS, NOMINAL, name_learned
 from rovsim.learning.learner import learner
@@ -45,7 +46,7 @@ class LeaveOneRunOut:
         if len(self.runs) == 1:
             raise BadInput(
                 "only one run",
-                where=self.study.campaign_path or "conf/tank",
+                where=self.study.given_by,
                 expected="two runs or more, to leave one out",
                 remedy="Add runs to the campaign, or set folds.leave_one_run_out=false.",
             )

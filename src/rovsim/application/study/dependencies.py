@@ -1,0 +1,88 @@
+"""What a rule depends on beside its files: its part of the settings, and the code behind it."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Mapping
+
+from rovsim.application.configuration import compose
+from rovsim.application.provenance import digest, imports_of, own_digest, provenance
+from rovsim.application.sections import TrainingSettings
+from rovsim.application.settings import select
+from rovsim.application.study.study import Study
+from rovsim.core.schema import Section
+from rovsim.dynamics.vehicle import vehicle_file
+from rovsim.learning.learner import learner_settings
+from rovsim.learning.settings import LearnerSettings
+from rovsim.measurement.campaign import Campaign
+
+# What a script imports to be run at all; the values of its settings are parameters of its rule.
+SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
+
+
+@dataclass(frozen=True)
+class Dependencies:
+    """Settings as JSON and digests of code: a rule runs again where one of its own changes."""
+
+    study: Study
+    _residuals: dict[str, Mapping[str, object]] = field(default_factory=dict, init=False)
+
+    def section(self, kind: type[Section]) -> str:
+        """A part of the settings: only what a rule reads, and re-runs for."""
+        return select(self.study.settings, kind).model_dump_json()
+
+    def signal(self, *names: str) -> str:
+        """Parts of the signal chain."""
+        return self.study.settings.signals.model_dump_json(include=set(names))
+
+    def training(self, residual: str, control: str) -> str:
+        """What a trained residual depends on."""
+        chosen = {"residual": self._residual(residual), "control": control}
+        settings = self.study.settings.model_copy(update=chosen)
+        return select(settings, TrainingSettings).model_dump_json()
+
+    def learner(self, kind: str) -> LearnerSettings:
+        """Settings of one residual, whichever the configuration chose as default."""
+        return learner_settings(self._residual(kind), "conf/residual")
+
+    def _residual(self, kind: str) -> Mapping[str, object]:
+        """Composed once: Hydra takes as long as all that a rule asks for beside it."""
+        if kind not in self._residuals:
+            self._residuals[kind] = self._compose_residual(kind)
+        return self._residuals[kind]
+
+    def _compose_residual(self, kind: str) -> Mapping[str, object]:
+        overrides = self.study.snakemake.overrides
+        kept = [word for word in overrides if not word.startswith("residual=")]
+        if kind != self.study.settings.residual["kind"]:
+            kept = [word for word in kept if not word.startswith("residual.")]
+        return compose([*kept, f"residual={kind}"]).residual
+
+    def code(self, script: Path, *more: str, without: str = "") -> str:
+        """Digest of what a script imports, however deep: an edit re-runs what it touches.
+
+        Args:
+            script: of a rule.
+            more: modules that it finds by their names.
+            without: a package whose edits change nothing that the script writes.
+        """
+        names = [name for name in (*imports_of(script), *more) if name not in SURROUNDINGS]
+        return digest(*names, without=without, described=self._described)
+
+    def own_code(self, package: str) -> str:
+        """Digest of a package alone. A recorded campaign stands when rovsim's physics is edited."""
+        return own_digest(f"rovsim.{package}", self._described)
+
+    @property
+    def _described(self) -> list[Path]:
+        """Files of the vehicle and of the user's effects: an edit changes what models do."""
+        campaign = self.study.campaign
+        if isinstance(campaign, Campaign):
+            vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
+        else:
+            vehicle = vehicle_file(self.study.settings.tank.vehicle)
+        return [vehicle, *self.study.catalogue.files]
+
+    def provenance(self) -> dict[str, Any]:
+        """Settings, code and versions behind the study."""
+        campaign = self.study.campaign if isinstance(self.study.campaign, Campaign) else None
+        return provenance(self.study.settings, self.study.catalogue, campaign)

@@ -1,0 +1,30 @@
+"""One study of a campaign at a time."""
+
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from rovsim.core.errors import BadInput
+
+HELD: dict[Path, FileLock] = {}  # until the process ends
+
+
+def hold(folder: Path) -> None:
+    """Keep other studies out of a folder until this process ends, however it ends.
+
+    Snakemake's own lock is a file that outlives a process that was killed.
+
+    Raises:
+        BadInput: another process writes there.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    HELD[folder] = FileLock(folder / ".study.lock", blocking=False)
+    try:
+        HELD[folder].acquire()
+    except Timeout:
+        raise BadInput(
+            "another study writes here",
+            where=folder,
+            expected="one study of a campaign at a time",
+            remedy="Wait until it ends, or stop it: what it finished is kept.",
+        ) from None

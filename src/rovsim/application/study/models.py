@@ -1,0 +1,51 @@
+"""Which models a study makes, searches and shows."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from rovsim.application.study.study import Study
+from rovsim.core.model_names import EFFECTS, NOMINAL, REFITTED, name_learned
+from rovsim.dynamics.model import BASELINES
+
+PHYSICS = (REFITTED, EFFECTS)
+DRAWN = (NOMINAL, EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
+
+
+@dataclass(frozen=True)
+class StudyModels:
+    """Names of the models of a study."""
+
+    study: Study
+
+    @cached_property
+    def trained(self) -> list[str]:
+        """Residuals x controls that have a train run."""
+        wanted = self.study.settings.study
+        controls = [c for c in wanted.controls if self.study.train_runs(c)]
+        return [name_learned(kind, control) for kind in wanted.residuals for control in controls]
+
+    @cached_property
+    def on_effects(self) -> list[str]:
+        """Residuals trained on top of the effects that were found."""
+        wanted = self.study.settings.study.on_effects
+        return [f"{EFFECTS}+{name}" for name in self.trained if name in wanted]
+
+    @property
+    def with_files(self) -> list[str]:
+        """Models with a file of their own: all but the baselines."""
+        return [*PHYSICS, *self.trained, *self.on_effects]
+
+    @property
+    def all(self) -> list[str]:
+        """Every model, in the order of the ladder."""
+        return [*BASELINES, *self.with_files]
+
+    @property
+    def searched(self) -> list[str]:
+        """Models searched for conditions in which they fail; the last is reported first."""
+        return [*self.trained, EFFECTS, NOMINAL]
+
+    @property
+    def drawn(self) -> list[str]:
+        """Models shown in time series."""
+        return [m for m in DRAWN if m in self.all] or self.all[:3]

@@ -1,0 +1,58 @@
+"""What Snakemake was told: the configuration, and the effects that there are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Mapping
+
+from rovsim.application.configuration import compose
+from rovsim.application.settings import Settings
+from rovsim.core.errors import unlisted
+from rovsim.dynamics.catalogue import Catalogue, load_catalogue
+
+KEYS = ("campaign", "overrides", "effects_file")  # keys of `snakemake --config`
+
+
+@dataclass(frozen=True)
+class SnakemakeConfig:
+    """`told`: the `config` of Snakemake."""
+
+    told: Mapping[str, Any]
+
+    @cached_property
+    def overrides(self) -> list[str]:
+        """Of conf/, one word each."""
+        given = self.told.get("overrides", [])
+        return given.split() if isinstance(given, str) else list(given)
+
+    @cached_property
+    def settings(self) -> Settings:
+        """conf/, with the overrides and effect files given to Snakemake."""
+        composed, named = compose(self.overrides), self.told.get("effects_file")
+        return composed.model_copy(update={"effects_file": named}) if named else composed
+
+    @cached_property
+    def catalogue(self) -> Catalogue:
+        """All effects, with those of the user's own files.
+
+        Raises:
+            BadInput: one of the files cannot be used.
+        """
+        return load_catalogue(self.settings.effect_files)
+
+    @cached_property
+    def campaign_path(self) -> Path | None:
+        """The user's campaign, None for the synthetic one."""
+        path = self.told.get("campaign", self.settings.campaign)
+        return None if path is None else Path(str(path))
+
+    def check(self) -> None:
+        """Look at its keys.
+
+        Raises:
+            BadInput: there is none of this name.
+        """
+        for key in self.told:
+            if key not in KEYS:
+                found = f"unknown key '{key}'"
+                raise unlisted(key, KEYS, found=found, where="snakemake --config")
