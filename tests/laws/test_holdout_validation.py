@@ -7,7 +7,9 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
+from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.windows import Windows
+from rovsim.diagnosis.selection import holdout_validation
 from rovsim.diagnosis.selection.holdout_validation import (
     HoldoutValidation,
     find_sure_improvement,
@@ -104,7 +106,7 @@ class Workspace:
 
 class Found:
     def __init__(self, h, finite=True):
-        self.hypothesis, self.is_finite = h, finite
+        self.hypothesis, self.is_finite, self.noise = h, finite, FIRST_NOISE
 
 
 def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
@@ -125,3 +127,30 @@ def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     assert passed.best.hypothesis.terms == ()
     assert not whole
     assert Windows(holdout[0]).spans
+
+
+def test_of_two_answers_the_one_that_replays_runs_it_was_not_fitted_to_is_better(tmp_path):
+    truth = [{"effect": "quadratic_damping", "parameters": {"surge": {"value": 120.0}}}]
+    flown = [observed(tmp_path / str(k), duration=20.0, effects=truth, seed=k) for k in range(3)]
+    base, runs = flown[0][0], [run for _, (run,) in flown]
+    right = Found(Hypothesis(base, (Term(QuadraticDamping(surge=60.0), ("surge",)),)))
+    wrong = Found(Hypothesis(base, (Term(LinearDamping(sway=1.0), ("sway",)),)))
+    holdout = HoldoutValidation((), runs)
+    assert holdout.prefers_between_runs(right, wrong) is True
+    assert holdout.prefers_between_runs(wrong, right) is False
+    assert holdout.prefers_between_runs(right, right) is None
+    assert HoldoutValidation((), runs[:1]).prefers_between_runs(right, wrong) is None
+
+
+def test_every_run_is_left_out_once_in_four_groups_at_most(tmp_path, monkeypatch):
+    base, (run,) = observed(tmp_path, duration=20.0)
+    runs, seen = [replace(run) for _ in range(6)], []
+
+    def fit_without(fit, whole, left_out):
+        seen.append([k for k, one in enumerate(whole) if any(one is r for r in left_out)])
+        return base
+
+    monkeypatch.setattr(holdout_validation, "fit_without", fit_without)
+    one = Found(Hypothesis(base))
+    assert HoldoutValidation((), runs).prefers_between_runs(one, one) is None
+    assert seen[::2] == [[0, 4], [1, 5], [2], [3]]

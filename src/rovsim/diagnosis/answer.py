@@ -105,9 +105,12 @@ def choose(one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation)
     """Of two answers the one that surely replays better; else what is complete, or the likelier.
 
     Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
-    stretches that took no part, at the values that replay the others best, as it would end.
+    stretches that took no part, at the values that replay the others best, as it would end; where
+    these do not tell, each run at the values that replay the other runs best.
     """
     better = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
+    if better is None:
+        better = holdout.prefers_between_runs(one.fit, other.fit)
     if better is not None:
         return one if better else other
     return one if not other.complete and one.score >= other.score else other

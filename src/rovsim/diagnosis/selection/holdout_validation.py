@@ -19,7 +19,7 @@ from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD
+from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD, fit_without
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.stated import STATED
 from rovsim.dynamics.model import Model
@@ -34,6 +34,7 @@ SLIGHT_SHARE = 0.005  # of the error: what is let go one by one adds up to about
 CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
 MIN_WINDOWS = 2  # one tells nothing of chance
 REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
+FOLDS = 4  # groups of runs that are left out, one after the other; single runs if there are fewer
 LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
 
 
@@ -108,10 +109,22 @@ class HoldoutValidation:
         """Whether the first replays better; None if nothing was kept apart, or by chance."""
         if not self.runs:
             return None
-        own, others = self._errors([one, other])
-        if find_sure_improvement(others, own) > 0.0:
-            return True
-        return False if find_sure_improvement(own, others) > 0.0 else None
+        return _find_better(*self._errors([one, other]))
+
+    def prefers_between_runs(self, one: Fit, other: Fit) -> bool | None:
+        """Whether the first replays whole runs better, at the values that replay the others best.
+
+        What is fitted as well by values that mean nothing elsewhere is lost in a run of another
+        kind. None where there is but one run, or by chance.
+        """
+        groups = [self.whole[k::FOLDS] for k in range(min(FOLDS, len(self.whole)))]
+        if len(groups) < 2:
+            return None
+        errors = []
+        for group in groups:
+            models = [fit_without(fit, self.whole, group) for fit in (one, other)]
+            errors.append(replace(self, runs=group)._errors(models))
+        return _find_better(*np.concatenate(errors, axis=1))
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
         """Where physics is left that no name explains: only what makes a difference there.
@@ -194,6 +207,13 @@ def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
     stated = tuple(term for term in h.terms if term.id in STATED)
     groups: list[tuple[Term, ...]] = [(term,) for term in h.terms if term.id not in STATED]
     return [*groups, stated] if stated else groups
+
+
+def _find_better(one: Array, other: Array) -> bool | None:
+    """Whether the first of two errors (w,) is surely smaller; None where neither is."""
+    if find_sure_improvement(other, one) > 0.0:
+        return True
+    return False if find_sure_improvement(one, other) > 0.0 else None
 
 
 def _ratio(error: Array, other: Array) -> float:

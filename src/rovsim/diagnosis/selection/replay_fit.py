@@ -96,9 +96,7 @@ def soften(x: Array) -> Array:
 def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     """The same terms at the values that make windows smallest, and how sure these are."""
     source = Replays(bank.runs)
-    seen = levenberg_marquardt(
-        fit.hypothesis, source, fit.noise, Prior.around(fit.hypothesis.x, REACH)
-    )
+    seen = _fit(fit, source)
     covariance = estimate_covariance_of_few(
         source.whiten(seen.e, fit.noise),
         source.whiten(seen.J, fit.noise),
@@ -107,3 +105,14 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     fresh = bank.redesign(seen.at.model, fit.noise)
     again = judge(fresh.linearise(seen.at), fresh, fit.noise)
     return replace(again, covariance=covariance)
+
+
+def fit_without(fit: Fit, runs: Sequence[ObservedRun], left_out: Sequence[ObservedRun]) -> Model:
+    """The same terms at the values that replay the other runs best."""
+    others = tuple(run for run in runs if all(run is not one for one in left_out))
+    return _fit(fit, Replays(others)).at.model
+
+
+def _fit(fit: Fit, source: Replays) -> Linearised:
+    prior = Prior.around(fit.hypothesis.x, REACH)
+    return levenberg_marquardt(fit.hypothesis, source, fit.noise, prior)
