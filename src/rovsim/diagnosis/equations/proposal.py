@@ -91,8 +91,8 @@ def propose_law(
 
     A law holds if it gains more than the best of so many terms would by chance, if it helps on
     blocks it was not fitted to, if the runs are replayed better with it than by the best that the
-    catalogue can do, and stretches that took no part in anything no worse. It is `whole` if nothing
-    is left on its axis but noise.
+    catalogue can do, and the stretches that were kept apart no worse. It is `whole` if nothing is
+    left on its axis but noise.
 
     Args:
         selection: what the search selected.

@@ -17,6 +17,7 @@ vehicle_file         one that is off explains as well what is rarer
 steady_current       or one that wanders?
 search_result        where that ended, and what else the effects could be
 filter_delay         beside what the camera does
+paired_comparison    errors of two models, window by window
 holdout_validation   stretches that took no part must be replayed no worse
 cross_validation     what does not help where it was not fitted goes
 cluster_robust       nor what few stretches of time make sure, where a velocity is not measured

@@ -3,6 +3,11 @@
 A likelihood can be wrong about what matters to a user; a replay is what users do. So the last part
 of every train run is kept apart. An effect without which these stretches are replayed better goes,
 and an answer that replays them worse than the model before is no answer.
+
+No value is fitted to them before the last fit to all runs. But they decide more than once, so that
+they are less and less fresh: which effects harm (`judge`), which earn nothing beside physics
+without a name (`keep_earning`), whether the cameras smooth (`refuses`), which of two answers
+(`prefers`), and whether a law holds (`keeps`).
 """
 
 from dataclasses import dataclass, replace
@@ -11,14 +16,19 @@ from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.stats import norm
-from scipy.stats import t as student
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import evaluate_possible
 from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection.fit import Fit
+from rovsim.diagnosis.selection.paired_comparison import (
+    WORSE_SHARE,
+    find_better,
+    find_sure_improvement,
+    ratio,
+    surely_costs,
+)
 from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD, fit_without
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.stated import STATED
@@ -29,13 +39,9 @@ Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 
 HOLDOUT_SHARE = 0.2  # of each run's time
 MIN_RUN_SECONDS = 60.0  # a fifth of less shows too few windows of 2 s
-WORSE_SHARE = 0.02  # of the error: less is within what the windows happen to hold
 SLIGHT_SHARE = 0.005  # of the error: what is let go one by one adds up to about WORSE_SHARE
-CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
-MIN_WINDOWS = 2  # one tells nothing of chance
 REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
 FOLDS = 4  # groups of runs that are left out, one after the other; single runs if there are fewer
-LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
 
 
 def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:
@@ -90,9 +96,9 @@ class HoldoutValidation:
         return find_sure_improvement(errors[0], errors[1]) > 0.0
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
-        """Whether one model errs less than the other by that share on all runs."""
+        """Whether one model errs less than the other by that share on all runs, held out or not."""
         one, other = replace(self, runs=self.whole)._errors([more, less])
-        return _ratio(one, other) < 1.0 - share
+        return ratio(one, other) < 1.0 - share
 
     def keeps(self, more: Model, less: Model) -> bool:
         """Whether one model errs no more than the other on stretches that were kept apart.
@@ -103,13 +109,13 @@ class HoldoutValidation:
         if not self.runs:
             return True
         one, other = self._errors([more, less])
-        return _ratio(one, other) <= 1.0
+        return ratio(one, other) <= 1.0
 
     def prefers(self, one: Model, other: Model) -> bool | None:
         """Whether the first replays better; None if nothing was kept apart, or by chance."""
         if not self.runs:
             return None
-        return _find_better(*self._errors([one, other]))
+        return find_better(*self._errors([one, other]))
 
     def prefers_between_runs(self, one: Fit, other: Fit) -> bool | None:
         """Whether the first replays whole runs better, at the values that replay the others best.
@@ -124,7 +130,7 @@ class HoldoutValidation:
         for group in groups:
             models = [fit_without(fit, self.whole, group) for fit in (one, other)]
             errors.append(replace(self, runs=group)._errors(models))
-        return _find_better(*np.concatenate(errors, axis=1))
+        return find_better(*np.concatenate(errors, axis=1))
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
         """Where physics is left that no name explains: only what makes a difference there.
@@ -144,7 +150,7 @@ class HoldoutValidation:
             idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
             if not idle:
                 break
-            idle.sort(key=lambda k: _ratio(errors[1 + k], errors[0]))
+            idle.sort(key=lambda k: ratio(errors[1 + k], errors[0]))
             left = (selection.fit(fewer[k]) for k in idle)
             without = next((fit for fit in left if fit.is_finite), None)
             if without is None:
@@ -170,7 +176,7 @@ class HoldoutValidation:
         h, fewer = fit.hypothesis, selection.workspace.drop(fit, groups)
         errors = self._errors([h.model, *(one.model for one in fewer)])
         for k, one in enumerate(fewer):
-            if _ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:
+            if ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:
                 fewer[k] = selection.fit(one).hypothesis
         return fewer, self._errors([h.model, *(one.model for one in fewer)])
 
@@ -207,56 +213,3 @@ def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
     stated = tuple(term for term in h.terms if term.id in STATED)
     groups: list[tuple[Term, ...]] = [(term,) for term in h.terms if term.id not in STATED]
     return [*groups, stated] if stated else groups
-
-
-def _find_better(one: Array, other: Array) -> bool | None:
-    """Whether the first of two errors (w,) is surely smaller; None where neither is."""
-    if find_sure_improvement(other, one) > 0.0:
-        return True
-    return False if find_sure_improvement(one, other) > 0.0 else None
-
-
-def _ratio(error: Array, other: Array) -> float:
-    """Of two errors (w,) over all windows; infinite where a model diverged."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
-
-
-def surely_costs(error: Array, usual: Array, least: float) -> bool:
-    """Whether an error (w,) is surely larger than the usual one, and by more than that share.
-
-    Several times as large it may be because of a few windows in which a model is lost: these make
-    the mean large and nothing sure.
-    """
-    more = _ratio(error, usual) - 1.0
-    return more > LOST_SHARE or (more > least and _is_surely_less(usual, error))
-
-
-def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN_STANDARD_ERRORS) -> bool:
-    """Whether an error (w,) is less than another, beyond what windows differ by chance."""
-    less = other - one
-    return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
-
-
-def _find_limit(windows: int, tried: int) -> float:
-    """Standard errors that the best of so many differences reaches as seldom as one is certain.
-
-    Of Student's t, for the spread is that of few windows; `np.std` divides by their number.
-    """
-    chance = norm.sf(CERTAIN_STANDARD_ERRORS) / tried
-    return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
-
-
-def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
-    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
-
-    Of so many that were `tried` the best is smaller by chance as well.
-    """
-    if not np.isfinite(other).all():
-        return 0.0
-    if not np.isfinite(error).all():
-        return np.inf
-    share = 1.0 - _ratio(other, error)
-    if share <= WORSE_SHARE or len(error) < MIN_WINDOWS:
-        return 0.0
-    return share if _is_surely_less(other, error, _find_limit(len(error), tried)) else 0.0

@@ -1,0 +1,67 @@
+"""Errors of two models in the same windows: is one of them surely smaller?
+
+Windows differ more from each other than models do, so that differences are judged window by window.
+"""
+
+import numpy as np
+from numpy import ndarray as Array
+from scipy.stats import norm
+from scipy.stats import t as student
+
+WORSE_SHARE = 0.02  # of the error: less is within what the windows happen to hold
+CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
+MIN_WINDOWS = 2  # one tells nothing of chance
+LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
+
+
+def find_better(one: Array, other: Array) -> bool | None:
+    """Whether the first of two errors (w,) is surely smaller; None where neither is."""
+    if find_sure_improvement(other, one) > 0.0:
+        return True
+    return False if find_sure_improvement(one, other) > 0.0 else None
+
+
+def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
+    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
+
+    Of so many that were `tried` the best is smaller by chance as well.
+    """
+    if not np.isfinite(other).all():
+        return 0.0
+    if not np.isfinite(error).all():
+        return np.inf
+    share = 1.0 - ratio(other, error)
+    if share <= WORSE_SHARE or len(error) < MIN_WINDOWS:
+        return 0.0
+    return share if _is_surely_less(other, error, _find_limit(len(error), tried)) else 0.0
+
+
+def surely_costs(error: Array, usual: Array, least: float) -> bool:
+    """Whether an error (w,) is surely larger than the usual one, and by more than that share.
+
+    Several times as large it may be because of a few windows in which a model is lost: these make
+    the mean large and nothing sure.
+    """
+    more = ratio(error, usual) - 1.0
+    return more > LOST_SHARE or (more > least and _is_surely_less(usual, error))
+
+
+def ratio(error: Array, other: Array) -> float:
+    """Of two errors (w,) over all windows; infinite where a model diverged."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
+
+
+def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN_STANDARD_ERRORS) -> bool:
+    """Whether an error (w,) is less than another, beyond what windows differ by chance."""
+    less = other - one
+    return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
+
+
+def _find_limit(windows: int, tried: int) -> float:
+    """Standard errors that the best of so many differences reaches as seldom as one is certain.
+
+    Of Student's t, for the spread is that of few windows; `np.std` divides by their number.
+    """
+    chance = norm.sf(CERTAIN_STANDARD_ERRORS) / tried
+    return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))
