@@ -12,6 +12,7 @@ evaluation   how far model and measurement are apart
 learning     trained residuals
 diagnosis    which physical effects a model lacks
 design       the next flight
+intake       files that nobody has described yet
 reporting    figures, tables, pages
 application  settings, the pipeline, tracking
 benchmarks   how right and how fast

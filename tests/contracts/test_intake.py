@@ -14,20 +14,20 @@ from ruamel.yaml import YAML
 import bags
 from damage import damaged
 from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
-from rovsim.application.intake.compose import propose
-from rovsim.application.intake.motions import CommandFile, MotionFile
-from rovsim.application.intake.names import run_ids, run_key
-from rovsim.application.intake.pairing import pair
-from rovsim.application.intake.proposal import ANSWER, CampaignProposal, Question
-from rovsim.application.intake.write import write_proposal
-from rovsim.application.intake.yaml_file import as_yaml
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
+from rovsim.intake.compose import propose
+from rovsim.intake.motions import CommandFile, MotionFile
+from rovsim.intake.names import run_ids, run_key
+from rovsim.intake.pairing import pair
+from rovsim.intake.proposal import ANSWER, CampaignProposal, Question
+from rovsim.intake.survey import CommandCandidate, Track
+from rovsim.intake.survey.csv_files import look_into_csv
+from rovsim.intake.survey.starts import find_start
+from rovsim.intake.write import write_proposal
+from rovsim.intake.yaml_file import as_yaml
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording.readers import Export, mocap_readers
-from rovsim.measurement.survey import CommandCandidate, Track
-from rovsim.measurement.survey.csv_files import look_into_csv
-from rovsim.measurement.survey.starts import find_start
 from said import unfolded
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from rovsim.application.intake.guesses import list_guesses
-from rovsim.application.intake.proposal import ANSWER, CampaignProposal, Question
 from rovsim.apps.workbench.new_campaign import TOPICS, tell_unanswered
-from rovsim.measurement.survey.timing import Timing
+from rovsim.intake.guesses import list_guesses
+from rovsim.intake.proposal import ANSWER, CampaignProposal, Question
+from rovsim.intake.survey.timing import Timing
 
 NO_LOG = "guess: no log of commands was among the files"
 RUNS = [{"id": "run_1", "control": "3dof"}, {"id": "run_2", "control": "6dof"}]

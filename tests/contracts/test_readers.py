@@ -21,11 +21,11 @@ from recordings import (
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix
+from rovsim.intake.survey import look
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import assess, usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
-from rovsim.measurement.survey import look
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
 every_text = pytest.mark.parametrize("name", sorted(TEXT))

@@ -14,7 +14,6 @@ from fuzz.hostile import value_of
 from fuzz.models import step
 from recordings import Swim, campaign_content, write_campaign, write_run
 from rovsim.application.configuration import compose
-from rovsim.application.intake.compose import propose
 from rovsim.application.pipeline.models import write_with_effects
 from rovsim.apps.cli.main import override
 from rovsim.core.array_files import read_arrays, write_arrays
@@ -23,6 +22,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.held_out.published_errors import read_published
+from rovsim.intake.compose import propose
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.readers import mocap_readers

@@ -9,6 +9,5 @@ study              the study as the workflow sees it, and each run of it held ou
 snakemake_job      what surrounds the script of a rule
 provenance         where a result came from
 tracking           MLflow
-intake             from files that nobody has described to a `campaign.yaml`
 export             a model written for another simulator
 """

@@ -14,5 +14,4 @@ quality        how good a recording is
 remarks        the same in sentences
 held_out       test runs that repeat train runs
 runs           the usable runs of a campaign
-survey         what is in files that nobody has described yet
 """

@@ -5,11 +5,11 @@ from typing import Callable, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim.application.intake.guesses import list_guesses
-from rovsim.application.intake.proposal import CampaignProposal, Question
 from rovsim.apps.workbench.folders import DESCRIPTION, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 from rovsim.core.errors import RovsimError
+from rovsim.intake.guesses import list_guesses
+from rovsim.intake.proposal import CampaignProposal, Question
 from rovsim.reporting.wording import listed
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"

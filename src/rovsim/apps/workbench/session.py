@@ -91,7 +91,7 @@ class Session:
         Raises:
             BadInput: an answer is missing, or the file cannot be written.
         """
-        from rovsim.application.intake.write import write_proposal
+        from rovsim.intake.write import write_proposal
 
         write_proposal(self.proposal.fully(answers), self.described)
         self.scratch.cleanup()

@@ -3,8 +3,6 @@
 from dataclasses import replace
 from pathlib import Path
 
-from rovsim.application.intake.compose import propose
-from rovsim.application.intake.proposal import CampaignProposal
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_models, load_one_model
@@ -18,6 +16,8 @@ from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in, load_catalogue
 from rovsim.dynamics.model import Model
+from rovsim.intake.compose import propose
+from rovsim.intake.proposal import CampaignProposal
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder
 from rovsim.simulation.synthetic_tank.campaign import make_campaign

@@ -16,14 +16,14 @@ import tempfile
 from pathlib import Path
 from shlex import quote
 
-from rovsim.application.intake.compose import propose
-from rovsim.application.intake.guesses import list_guesses, list_taken
-from rovsim.application.intake.proposal import CampaignProposal
-from rovsim.application.intake.write import check_place, write_proposal
 from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.intake.compose import propose
+from rovsim.intake.guesses import list_guesses, list_taken
+from rovsim.intake.proposal import CampaignProposal
+from rovsim.intake.write import check_place, write_proposal
 
 
 class Settings(CommandSettings):

@@ -1,0 +1,168 @@
+"""Which way the axes of the world and of the body point in a file."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.rotations import matrix
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.intake.survey.contents import Track
+from rovsim.measurement.recording.readers import FileAxes
+
+# Columns: forward, starboard, down in the file's body axes.
+BODY = {
+    "flu": np.diag([1.0, -1.0, -1.0]),
+    "frd": np.eye(3),
+    "fur": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+}
+# The way down in the file's world axes.
+DOWN = {"z_up": (0.0, 0.0, -1.0), "ned": (0.0, 0.0, 1.0), "y_up": (0.0, -1.0, 0.0)}
+LEVEL = 0.7  # mean of the cosine of the tilt: 45 degrees
+CLOSE = 0.8  # correlation of depth and height
+RESTING = 5.0  # m/s2 of specific force, about half of gravity
+AXIS = "xyz"
+
+
+@dataclass(frozen=True)
+class Axes:
+    """World and body axes, empty where nobody can tell, and what speaks for them."""
+
+    world: str
+    body: str
+    said: str
+    likely: tuple[tuple[str, str], ...] = ()  # pairs of both that are possible
+
+
+def find_axes(
+    own: FileAxes, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]
+) -> Axes:
+    """The axes of files of a format that may have these; `turned`: correlation along each of 24."""
+    worlds, bodies = own.world, own.body
+    if own.fixed:
+        return Axes(worlds[0], bodies[0], own.said)
+    body, said = _body(_upright(turned, tracks, worlds), bodies)
+    if not body:
+        body, by_force = _by_force(tracks, bodies)
+        said = by_force or said
+    pairs = _level(tracks, worlds, bodies)
+    if body:
+        possible = {world for world, other in pairs if other == body}
+        if len(possible) == 1:
+            world = possible.pop()
+            return Axes(world, body, f"{said}; the vehicle then swims upright on average")
+        return Axes(_by_depth(tracks, worlds), body, said)
+    world = _by_depth(tracks, worlds)
+    match = [pair for pair in pairs if pair[0] == world]
+    if world and len(match) == 1:
+        return Axes(
+            world, match[0][1], f"{AXIS[-1]} goes with the depth, and the vehicle is upright"
+        )
+    if own.usual in pairs:
+        return Axes(*own.usual, own.said)
+    return Axes(world, "", said, tuple(pairs))
+
+
+def _upright(
+    turned: Sequence[tuple[float, Array]], tracks: Sequence[Track], worlds: Sequence[str]
+) -> list[tuple[float, Array]]:
+    """The turns in which the vehicle is upright or upside down on average, if any is."""
+    mean = _mean_attitude(tracks)
+    if mean is None:
+        return list(turned)
+    vertical = [np.abs(DOWN[world]) @ mean for world in worlds]
+    kept = [(s, axes) for s, axes in turned if any(abs(v @ axes[:, 2]) > LEVEL for v in vertical)]
+    return kept or list(turned)
+
+
+def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
+    """Mean of the rotation matrices (3, 3) over all runs alike; None where none was measured."""
+    turns = [R.mean(axis=0) for t in tracks if (R := _attitudes(t)) is not None]
+    return np.mean(turns, axis=0) if turns else None
+
+
+def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple[str, str]:
+    """Body axes by the motion that the commands cause, and what it says."""
+    if not turned or turned[0][0] < MIN_CORRELATION:
+        best = f" (likeness {turned[0][0]:.2f})" if turned else ""
+        return "", f"no motion that its commands explain{best}" if turned else ""
+    score, axes = turned[0]
+    rival = turned[1][0] if len(turned) > 1 else 0.0
+    name = next((n for n in bodies if np.array_equal(axes, BODY[n])), "")
+    if score < AHEAD * rival:
+        return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
+    if name:
+        return (
+            name,
+            f"the commanded motion shows along them (likeness {score:.2f}, next {rival:.2f})",
+        )
+    told = [
+        f"{word} shows along {_named(axes[:, k])}"
+        for k, word in enumerate(("surge", "sway", "heave"))
+    ]
+    return "", (
+        f"commanded {', '.join(told)} of the file's body (likeness {score:.2f}): the rigid body is "
+        "turned: make it anew along the vehicle's axes, or write the columns of a csv along them"
+    )
+
+
+def _named(column: Array) -> str:
+    k = int(np.argmax(np.abs(column)))
+    return f"{'-' if column[k] < 0 else '+'}{AXIS[k]}"
+
+
+def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]:
+    """Body axes by gravity: specific force at rest points up."""
+    found = [
+        t.export.channels["specific_force"].value
+        for t in tracks
+        if "specific_force" in t.export.channels
+    ]
+    if not found:
+        return "", ""
+    up = float(np.nanmean(np.vstack(found)[:, 2]))
+    name = "flu" if up > RESTING else "frd" if up < -RESTING else ""
+    return (name if name in bodies else ""), f"specific force along z is {up:+.1f} m/s² on average"
+
+
+def _level(
+    tracks: Sequence[Track], worlds: Sequence[str], bodies: Sequence[str]
+) -> list[tuple[str, str]]:
+    """Pairs of world and body axes in which the vehicle is upright on average."""
+    mean = _mean_attitude(tracks)
+    if mean is None:
+        return []
+    return [
+        (world, body)
+        for world in worlds
+        for body in bodies
+        if mean @ BODY[body][:, 2] @ np.array(DOWN[world]) > LEVEL
+    ]
+
+
+def _attitudes(track: Track) -> Array | None:
+    """Rotation matrices (n, 3, 3) of what was measured of the attitude."""
+    if track.posed:
+        return matrix(track.export.attitude[track.export.found])
+    channel = track.export.channels.get("attitude")
+    return (
+        None if channel is None else matrix(channel.value[np.isfinite(channel.value).all(axis=1)])
+    )
+
+
+def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
+    """World axes by a logged depth beside the height."""
+    signs = []
+    for track in tracks:
+        depth = track.export.channels.get("depth")
+        if depth is None or not track.posed:
+            continue
+        seen = track.export.found
+        z = np.interp(depth.time, track.export.time[seen], track.export.position[seen, 2])
+        if min(np.std(z), np.std(depth.value)) > 0:
+            signs.append(float(np.corrcoef(z, depth.value[:, 0])[0, 1]))
+    if not signs or min(abs(s) for s in signs) < CLOSE or len({s > 0 for s in signs}) > 1:
+        return ""
+    name = "ned" if signs[0] > 0 else "z_up"
+    return name if name in worlds else ""

@@ -1,0 +1,72 @@
+"""Which body or topic is the vehicle, where a file holds several."""
+
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+
+from rovsim.core.errors import BadInput
+from rovsim.core.robust import usual_range
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.intake.survey.contents import Contents, Track
+from rovsim.measurement.quality import STILL_POSITION
+
+
+@dataclass(frozen=True)
+class Body:
+    """The body, empty where it has to be asked for; those to choose from."""
+
+    name: str
+    said: str
+    choices: tuple[str, ...]
+
+
+def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Body:
+    """The body to read in all files; `score` tells how alike its motion and the commands are.
+
+    Raises:
+        BadInput: no body is in all of them.
+    """
+    names = [track.body for track in motions[0].tracks]
+    common = [n for n in names if all(any(t.body == n for t in m.tracks) for m in motions)]
+    if not common:
+        raise _nothing_common(motions)
+    if len(common) == 1:
+        return Body(common[0], "" if len(names) == 1 else "the only one in all files", (common[0],))
+    scores = {name: score(name) for name in common}
+    first, second = sorted(common, key=lambda name: -scores[name])[:2]
+    if scores[first] >= MIN_CORRELATION and scores[first] > AHEAD * scores[second]:
+        said = f"of {', '.join(common)} the one that follows the commands ({scores[first]:.2f})"
+        return Body(first, said, tuple(common))
+    moving = [name for name in common if any(_moves(m, name) for m in motions)]
+    if len(moving) == 1:
+        return Body(
+            moving[0], f"guess: of {', '.join(common)} the only one that moves", tuple(common)
+        )
+    return Body("", "", tuple(moving or common))
+
+
+def track_of(contents: Contents, body: str) -> Track:
+    """The motion of a body in a file."""
+    return next((track for track in contents.tracks if track.body == body), contents.tracks[0])
+
+
+def _moves(contents: Contents, body: str) -> bool:
+    track = track_of(contents, body)
+    if not track.posed:
+        return True
+    place = track.export.position[track.export.found]
+    low, high = usual_range(place)
+    return bool(np.max(high - low) > STILL_POSITION)
+
+
+def _nothing_common(motions: Sequence[Contents]) -> BadInput:
+    listed = "; ".join(
+        f"{m.named.name}: {', '.join(t.body for t in m.tracks)}" for m in motions[:5]
+    )
+    return BadInput(
+        f"no body is in all files ({listed})",
+        where="the files",
+        expected="runs of one vehicle, its rigid body or topic called the same in each",
+        remedy="Run init for each vehicle, with another out=.",
+    )

@@ -1,0 +1,126 @@
+"""What looks wrong in recordings that are beside their commands: clocks, attitudes, thrusters."""
+
+from itertools import combinations
+from typing import Container, Iterator, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.run import Commands, RunInfo, Site
+from rovsim.evaluation.commanded_motion.clocks import tell_following, tell_together
+from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
+from rovsim.evaluation.commanded_motion.predicted import velocity
+from rovsim.intake.facts import Facts
+from rovsim.intake.motions import CommandFile, MotionFile
+from rovsim.intake.survey.starts import find_start
+from rovsim.intake.vehicles import Fit, as_logged
+from rovsim.measurement.quality import EXCITED, usable_reason
+from rovsim.measurement.recording import Recording
+from rovsim.measurement.recording.tidying import measured_rate
+from rovsim.measurement.rough_motion import even_poses
+
+
+def unusable(motion: MotionFile) -> str | None:
+    """Why rovsim will not use a motion: too short, or it does not move."""
+    export = motion.track.export
+    commands = Commands(np.empty(0), np.empty((0, 6)), "wrench")
+    recording = Recording(
+        RunInfo("", "", ""),
+        Site.unknown(),
+        export.time,
+        export.position,
+        export.attitude,
+        export.found,
+        commands,
+        export.rate or measured_rate(export.time),
+        export.nu,
+        export.channels,
+    )
+    return usable_reason(recording)
+
+
+def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterator[str]:
+    """Runs, but those `told` of, whose motion does not follow its commands, or not in time."""
+    runs = {k: one for k, one in facts.choice.runs.items() if k not in told}
+    starts = {k: find_start(facts.pairs[k].motion.path) for k in runs}
+    if said := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
+        yield f"all runs: {said}"
+        return
+    for k, one in runs.items():
+        if said := tell_following(one, axes, starts[k]):
+            yield f"{facts.ids[k]}: {said}"
+
+
+def check_attitudes(
+    motion: MotionFile, log: CommandFile, fit: Fit, axes: Sequence[Array], lag: float, angles: bool
+) -> str:
+    """Whether the commanded motion shows better with attitudes or positions read otherwise."""
+    caused = log.caused(fit)
+    if caused is None or not motion.track.posed or motion.track.export.nu is not None:
+        return ""
+    found = find_convention(even_poses(motion.track.export), caused, axes, lag, angles)
+    return "" if found is None else str(found)
+
+
+def _alike(a: Array, b: Array) -> Array:
+    """Correlations (c,) of columns, where all that were measured are known; else NaN."""
+    here = np.isfinite(a).any(axis=0) & np.isfinite(b).any(axis=0)
+    found = np.full(a.shape[1], np.nan)
+    a, b = a[:, here], b[:, here]
+    known = np.isfinite(a).all(axis=1) & np.isfinite(b).all(axis=1)
+    if known.any() and here.any():
+        a, b = (x[known] - x[known].mean(axis=0) for x in (a, b))
+        found[here] = (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
+    return found
+
+
+def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
+    """Whether two outputs swapped, or one reversed, would explain the motion better."""
+    commands, measured = as_logged(log.drive, fit, log.path), motion.measured
+    if commands is None or measured is None or any(fit.vehicle.angles):
+        return ""
+    if commands.kind != "thruster":
+        return ""
+    nu = _turned(measured.nu, axes)
+    scores = {
+        label: _score(nu, measured.time - lag, Commands(commands.time, value, "thruster"), fit)
+        for label, value in _orders(commands.value, fit.columns)
+    }
+    own = scores.pop("")
+    label = max(scores, key=lambda key: scores[key])
+    if scores[label] < max(own + BETTER, MIN_CORRELATION):
+        return ""
+    return (
+        f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "
+        f"against {own:.2f}). Check the order and the signs of 'commands.columns'"
+    )
+
+
+def _turned(nu: Array, axes: Array) -> Array:
+    """Velocities (n, 6) along FRD, of those along a file's axes; NaN stays with its axis."""
+    place = np.argmax(np.abs(axes), axis=0)
+    sign = axes[place, np.arange(3)]
+    return np.hstack([nu[:, place] * sign, nu[:, 3 + place] * sign])
+
+
+def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
+    """How alike body velocities (n, 6) FRD and those that commands cause are."""
+    caused = velocity(fit.vehicle, commands, time)
+    excited = caused.std(axis=0) > EXCITED
+    alike = _alike(nu, caused)[excited]
+    measured = np.isfinite(alike)
+    return float(alike[measured].mean()) if measured.any() else 0.0
+
+
+def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
+    """The commands as logged, with two outputs swapped, and with one reversed."""
+    yield "", value
+    for a, b in combinations(range(len(names)), 2):
+        swapped = value.copy()
+        swapped[:, [a, b]] = value[:, [b, a]]
+        yield f"{names[a]} and {names[b]} swapped", swapped
+    for k, name in enumerate(names):
+        turned = value.copy()
+        turned[:, k] *= -1.0
+        yield f"{name} reversed", turned

@@ -1,0 +1,95 @@
+"""Which vehicle: of those whose columns fit, the one that the motion is like."""
+
+from dataclasses import dataclass, replace
+from typing import Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.dynamics.vehicle import default_vehicle
+from rovsim.evaluation.commanded_motion.cross_correlation import (
+    AHEAD,
+    MIN_CORRELATION,
+    CrossCorrelation,
+)
+from rovsim.intake.motions import correlate, turned
+from rovsim.intake.pairing import Pair
+from rovsim.intake.vehicles import Fit
+
+SAME = 0.03  # correlation by which vehicles of one hull differ
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The vehicle, None where nobody can tell; the correlation of its runs along each body axes.
+
+    `likeliest`: the vehicle whose correlations these are, where there are any.
+    """
+
+    fit: Fit | None
+    said: str
+    fits: tuple[Fit, ...]
+    turned: tuple[tuple[float, Array], ...]
+    runs: dict[int, CrossCorrelation]
+    likeliest: Fit | None = None
+
+
+def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
+    """The vehicle of these runs: no other hull explains them nearly as well."""
+    if not fits:
+        return Choice(None, "no vehicle file has as many commands", (), (), {})
+    compared = {fit.name: _compared(fit, pairs) for fit in fits}
+    turns = {name: turned(found) for name, found in compared.items() if found}
+    scores = {name: _score(compared[name], turns[name]) for name in turns}
+    ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
+    first = _first(ordered, scores)
+    told = Choice(
+        None,
+        _told(ordered, scores),
+        tuple(ordered),
+        tuple(turns.get(first.name, [])),
+        compared[first.name],
+        first,
+    )
+    rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
+    known = scores.get(first.name, 0.0) >= MIN_CORRELATION
+    alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)
+    named = first.by_name and len(ordered) == 1
+    return replace(told, fit=first) if named or (known and alone) else told
+
+
+def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]) -> float:
+    """Correlation along the best axes, less where the vehicle is too fast or too slow (Lin 1989).
+
+    The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
+    standard deviations.
+    """
+    ratios = np.array([one.strength for one in found.values()])
+    return turns[0][0] * float(np.mean(2.0 * ratios / (1.0 + ratios**2)))
+
+
+def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
+    """The best; of one hull with thrusters that do nearly as well, the default vehicle."""
+    best = ordered[0]
+    for fit in ordered:
+        near = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
+        if near and fit.name == default_vehicle() and _one_hull(fit, best):
+            return fit
+    return best
+
+
+def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
+    found = {k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)}
+    return {k: one for k, one in found.items() if one is not None and one.excited.any()}
+
+
+def _one_hull(a: Fit, b: Fit) -> bool:
+    """Whether two vehicles differ in their thrusters' curves alone."""
+    return a.vehicle.hydrodynamics == b.vehicle.hydrodynamics
+
+
+def _told(fits: Sequence[Fit], scores: dict[str, float]) -> str:
+    if not scores:
+        return f"the columns fit {', '.join(fit.name for fit in fits)}"
+    told = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]
+    return f"the columns fit, and the motion is like that of (likeness) {', '.join(told)}"

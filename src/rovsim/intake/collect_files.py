@@ -1,0 +1,144 @@
+"""All files that were named: what each holds, or one message for each that cannot be used."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Mapping, Sequence
+
+from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.progress import counted
+from rovsim.intake.one_unit import list_others
+from rovsim.intake.survey import Contents, gather, look
+from rovsim.intake.survey.csv_files import UnknownColumns
+from rovsim.intake.survey.sizes import Key, Unit, UnknownUnit
+from rovsim.intake.together import put_together
+from rovsim.measurement.recording.one_run import SeveralRuns
+
+ASKED = (UnknownUnit, SeveralRuns)  # errors that stop init for a file of a folder, too
+
+MOST_TOLD = 5  # files and reasons in one message
+
+
+@dataclass(frozen=True, eq=False)
+class CollectedFiles:
+    """Files with motions, files with commands alone, and why others of a folder were left out.
+
+    `apart`: files that may belong together, and why they were not taken for one run. `unknown`:
+    what else of columns of numbers there is, a sentence a file.
+    """
+
+    motions: tuple[Contents, ...]
+    logs: tuple[Contents, ...]
+    left_out: tuple[str, ...] = ()
+    apart: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
+
+
+def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
+    """Look into files, bags and folders; copies of files that need one are put into `scratch`.
+
+    Raises:
+        RovsimError: a message for each file that was named and cannot be used.
+        BadInput: no motion in any, or motions of several formats.
+    """
+    named, inside = gather(paths)
+    every, refused = _look_into_all([*named, *inside], scratch)
+    asked = [path for path in inside if isinstance(refused.get(path), ASKED)]
+    bad = [str(refused[path]) for path in (*named, *asked) if path in refused]
+    if bad:
+        raise RovsimError("\n".join(bad))
+    found = list(every.values())
+    left_out = tuple(
+        f"{path.name}{_place(refused[path])} is left out: {refused[path].found}. "
+        f"{refused[path].remedy}".rstrip()
+        for path in inside
+        if path in refused
+    )
+    motions = tuple(one for one in found if one.tracks)
+    logs = tuple(one for one in found if not one.tracks)
+    _check(motions, logs, list(refused.values()), paths)
+    runs, apart = put_together(motions)
+    unknown = [f"{one.named.name}: {one.unknown}" for one in found if one.unknown]
+    unknown += [
+        f"{path}: {refused[path].found}"
+        for path in inside
+        if isinstance(refused.get(path), UnknownColumns)
+    ]
+    return CollectedFiles(runs, logs, left_out, apart, tuple(unknown))
+
+
+def _place(error: BadInput) -> str:
+    """The line and column of an error, in brackets; empty where it tells none."""
+    place = error.where.partition(", ")[2]
+    return f" ({place})" if place else ""
+
+
+def _look_into_all(
+    paths: Sequence[Path], scratch: Path
+) -> tuple[dict[Path, Contents], dict[Path, BadInput]]:
+    """What each file holds, in their order, or why it cannot be used."""
+    found: dict[Path, Contents] = {}
+    refused: dict[Path, BadInput] = {}
+
+    def look_into(path: Path, units: Mapping[Key, Unit]) -> None:
+        place = scratch / str(paths.index(path))
+        place.mkdir(parents=True, exist_ok=True)
+        try:
+            found[path] = look(path, place, units)
+            refused.pop(path, None)
+        except BadInput as error:
+            refused[path] = error
+            found.pop(path, None)
+
+    for path in counted(paths, "looking into the files"):
+        look_into(path, {})
+    for path, units in list_others(found, refused).items():
+        look_into(path, units)
+    return {path: found[path] for path in paths if path in found}, refused
+
+
+def _check(
+    motions: Sequence[Contents],
+    logs: Sequence[Contents],
+    refused: list[BadInput],
+    paths: Sequence[Path],
+) -> None:
+    where = paths[0] if len(paths) == 1 else "the files"
+    if not motions:
+        raise _no_motion(logs, refused, where)
+    formats: dict[str, list[str]] = {}
+    for one in motions:
+        formats.setdefault(one.format, []).append(one.named.name)
+    if len(formats) > 1:
+        each = (f"{name}: {', '.join(files[:MOST_TOLD])}" for name, files in formats.items())
+        listed = "; ".join(each)
+        raise BadInput(
+            f"motions of {len(formats)} formats ({listed})",
+            where=where,
+            expected="one format of motions in a campaign",
+            remedy="Run init for each of them, with another out=.",
+        )
+
+
+def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: object) -> BadInput:
+    """The error of files without a motion: why each was refused, and what may be done about it."""
+    held = "no recording"
+    if logs:
+        held = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
+    alike: dict[tuple[str, str], list[str]] = {}
+    for error in refused:
+        name = Path(error.where.partition(", ")[0]).name
+        alike.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
+    told = [
+        f"{', '.join(names[:MOST_TOLD])}: {found}"
+        for (found, _), names in [*alike.items()][:MOST_TOLD]
+    ]
+    remedies = [remedy for _, remedy in alike if remedy]
+    remedies += [note for log in logs for note in log.notes]
+    if not remedies:
+        remedies = ["Name the export of the motion capture, the bag or the log as well."]
+    return BadInput(
+        held + (f" ({'; '.join(told)})" if told else ""),
+        where=where,
+        expected="at least one file that tells how the vehicle moved",
+        remedy=" ".join([*dict.fromkeys(remedies)][:MOST_TOLD]),
+    )

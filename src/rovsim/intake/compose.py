@@ -1,0 +1,114 @@
+"""From files to a proposal."""
+
+from pathlib import Path
+from typing import Iterator, Sequence
+
+from numpy import ndarray as Array
+
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, rotations
+from rovsim.intake import checks, sections
+from rovsim.intake.axes import BODY
+from rovsim.intake.collect_files import collect_files
+from rovsim.intake.draft import Draft
+from rovsim.intake.facts import Facts, find_facts
+from rovsim.intake.places import Places
+from rovsim.intake.proposal import CampaignProposal
+from rovsim.intake.runs import missing, runs
+from rovsim.intake.survey.timing import Timing
+from rovsim.intake.unread import list_unread, tell_unread
+from rovsim.intake.vehicles import Fit
+from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.velocities import doubt_velocities
+
+
+def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal:
+    """What a campaign.yaml in the folder `out` would say of these files.
+
+    Copies of files that only rovsim cannot read as they are lie in `scratch` until it is written.
+
+    Raises:
+        RovsimError: files that cannot be used, a message for each.
+    """
+    found = collect_files(paths, scratch)
+    facts, places, draft = find_facts(found), Places.beside(found, out), Draft()
+    draft.content["name"] = places.name
+    sections.vehicle(facts, draft)
+    if places.folder:
+        draft.content["folder"] = places.folder
+        draft.say("folder", "where the recordings lie: they stay there, nothing was copied")
+    sections.mocap(facts, draft)
+    sections.commands(facts, draft)
+    runs(facts, places, draft)
+    tell_unread(facts, draft)
+    notes = dict.fromkeys(note for one in (*found.motions, *found.logs) for note in one.notes)
+    return CampaignProposal(
+        draft.content,
+        {place: tuple(lines) for place, lines in draft.comments.items()},
+        tuple(draft.questions),
+        (*_lines(facts), *notes, *list_unread(facts, draft), *found.left_out),
+        (*found.apart, *_checked(facts)),
+        places.copies,
+    )
+
+
+def _lines(facts: Facts) -> Iterator[str]:
+    """A line for each run."""
+    for name, one in zip(facts.ids, facts.pairs, strict=True):
+        log = f" with {one.log.path.name}" if one.log and one.log.path != one.motion.path else ""
+        timing = Timing.of(one.motion.track.export.time)
+        yield f"{name}: {one.motion.name}{log}, {timing}{missing(one)}"
+
+
+def _unused(facts: Facts) -> Iterator[str]:
+    """What may hold commands, and is no run's."""
+    if not facts.logs:
+        for one in facts.collected.unknown:
+            yield f"not used as commands: {one}. The runs say 'commands: none'"
+    used = [one.log for one in facts.pairs]
+    if not any(one.options for one in facts.pairs):
+        yield from (f"{log.path.name} belongs to no run" for log in facts.logs if log not in used)
+
+
+def _checked(facts: Facts) -> Iterator[str]:
+    """What looks wrong."""
+    for name, one in zip(facts.ids, facts.pairs, strict=True):
+        if reason := checks.unusable(one.motion):
+            yield f"{name} will not be used: {reason}"
+    every = (*facts.motions, *facts.collected.logs)
+    yield from (
+        f"{file.named.name}: {d}" for one in every for file in one.files for d in file.doubts
+    )
+    for name, one in zip(facts.ids, facts.pairs, strict=True):
+        yield from (f"{name}: {said}" for said in doubt_velocities(one.motion.track.export))
+    yield from _unused(facts)
+    if facts.choice.likeliest is not None and facts.choice.runs:
+        yield from _against_commands(facts, facts.choice.likeliest)
+
+
+def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
+    """What looks wrong in runs beside their commands."""
+    runs, body = facts.choice.runs, facts.axes.body
+    axes = BODY[body] if body else facts.choice.turned[0][1]
+    most = max(runs, key=lambda n: int(runs[n].excited.sum()))
+    told = dict(_by_convention(facts, fit, axes, most))
+    if body and facts.choice.fit:
+        yield from checks.check_clocks(facts, axes, told)
+    log = facts.pairs[most].shown
+    if log and facts.choice.fit and not told:
+        lag = runs[most].best(axes)[1]
+        told[most] = checks.check_order(facts.pairs[most].motion, log, fit, axes, lag)
+    yield from (f"{facts.ids[k]}: {said}" for k, said in told.items() if said)
+
+
+def _by_convention(facts: Facts, fit: Fit, axes: Array, most: int) -> Iterator[tuple[int, str]]:
+    """Runs whose attitudes look like those of another convention: `most`, and what is unlike."""
+    possible = [axes] if facts.axes.body else rotations()
+    angles = "y_up" not in mocap_readers()[facts.motions[0].format].axes.world
+    for k, found in facts.choice.runs.items():
+        score, lag = found.best(axes)
+        one, unlike = facts.pairs[k], score < MIN_CORRELATION
+        if one.shown and (k == most or unlike):
+            late = 0.0 if unlike else lag
+            said = checks.check_attitudes(one.motion, one.shown, fit, possible, late, angles)
+            if said:
+                yield k, said

@@ -1,0 +1,135 @@
+"""What files tell about a campaign, taken together."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Sequence
+
+import numpy as np
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.intake.axes import Axes, find_axes
+from rovsim.intake.bodies import Body, find_body, track_of
+from rovsim.intake.choice import Choice, choose
+from rovsim.intake.collect_files import CollectedFiles
+from rovsim.intake.motions import CommandFile, MotionFile, correlate, highest
+from rovsim.intake.names import run_ids
+from rovsim.intake.pairing import Pair, pair
+from rovsim.intake.survey import Contents
+from rovsim.intake.together import list_stems
+from rovsim.intake.vehicles import Fit, fitting
+from rovsim.measurement.recording.readers import mocap_readers
+
+OTHER_LOG = "Run init for each kind of log, with another out=."
+ATTITUDE = (
+    "If these are measured angles, name them after their unit: roll_deg, pitch_deg, yaw_deg, or "
+    "roll_rad …; they are then read beside the rest of the run."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """Runs with their commands, the body, the vehicle and the axes; what is not known is empty."""
+
+    collected: CollectedFiles
+    logs: tuple[CommandFile, ...]
+    body: Body
+    pairs: tuple[Pair, ...]
+    choice: Choice
+    axes: Axes
+    ids: tuple[str, ...]
+
+    @property
+    def motions(self) -> tuple[Contents, ...]:
+        """The files of the motions, in the order of the runs."""
+        return self.collected.motions
+
+    @property
+    def log(self) -> CommandFile | None:
+        """A log that stands for all of them."""
+        paired = [one.log for one in self.pairs if one.log is not None]
+        return next(iter([*paired, *self.logs]), None)
+
+    @property
+    def kind_asked(self) -> bool:
+        """Whether only a person can say what kind of commands these are."""
+        return any(log.drive.asked for log in self.logs)
+
+
+def find_facts(found: CollectedFiles) -> Facts:
+    """All that the files tell.
+
+    Raises:
+        BadInput: they are not runs of one vehicle, or not logged alike.
+    """
+    logs = _logs(found)
+    fits = _fits(logs)
+
+    def score(motion: MotionFile, log: CommandFile) -> float:
+        return max((highest(correlate(motion, log, fit)) for fit in fits), default=0.0)
+
+    body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
+    motions = [
+        MotionFile(one.named, track_of(one, body.name), tuple(file.named for file in one.beside))
+        for one in found.motions
+    ]
+    pairs = pair(motions, logs, score)
+    choice = _supposing(logs, choose(fits, pairs) if fits else _no_choice(logs))
+    known = body.name or body.choices == ("",)
+    own = mocap_readers()[found.motions[0].format].axes
+    axes = find_axes(own, [m.track for m in motions], choice.turned if known else ())
+    ids = run_ids(list_stems(found.motions))
+    return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
+
+
+def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], score) -> float:
+    """How alike a body's motions are to the commands in the same files, or to those of any."""
+    scores = []
+    for contents in found.motions:
+        motion = MotionFile(contents.named, track_of(contents, name))
+        own = [log for log in logs if log.path == contents.named] or logs
+        scores.append(max((score(motion, log) for log in own), default=0.0))
+    return float(np.mean(scores))
+
+
+def _logs(found: CollectedFiles) -> list[CommandFile]:
+    """Logs of commands: files of their own, else those in the files of the motions."""
+    alone = [CommandFile(one.named, one.drives[0]) for one in found.logs if one.drives]
+    if alone:
+        return alone
+    inside = []
+    for one in (file for motion in found.motions for file in motion.files):
+        moving = [drive for drive in one.drives if drive.moves]
+        for drive in (moving or list(one.drives))[:1]:
+            inside.append(CommandFile(one.named, drive))
+    return inside
+
+
+def _fits(logs: Sequence[CommandFile]) -> list[Fit]:
+    """Vehicles that fit every log."""
+    for log in logs[1:]:
+        _check_same(logs[0], log)
+    return fitting(logs[0].drive) if logs else []
+
+
+def _check_same(first: CommandFile, log: CommandFile) -> None:
+    if set(log.drive.columns) != set(first.drive.columns):
+        raise BadInput(
+            f"the commands {', '.join(log.drive.columns)}; those of {Path(first.path).name} are "
+            f"{', '.join(first.drive.columns)}",
+            where=log.path,
+            expected="the same columns in every log of commands",
+            remedy=ATTITUDE if set(log.drive.columns) <= set(AXES[3:]) else OTHER_LOG,
+        )
+
+
+def _supposing(logs: Sequence[CommandFile], choice: Choice) -> Choice:
+    """No vehicle, where it was compared with commands whose kind has to be asked."""
+    if not any(log.drive.asked for log in logs):
+        return choice
+    return replace(choice, fit=None, said=f"if the commands are N and N m, {choice.said}")
+
+
+def _no_choice(logs: Sequence[CommandFile]) -> Choice:
+    said = "no vehicle file takes such commands" if logs else "there are no commands that tell"
+    return Choice(None, said, (), (), {})

@@ -1,0 +1,79 @@
+"""What was taken for a campaign.yaml, and what of it is a guess: lines for whoever reads them."""
+
+from types import MappingProxyType
+from typing import Any, Iterator, Mapping
+
+from rovsim.intake.proposal import ANSWER, CampaignProposal
+from rovsim.intake.sections import KINDS, MEANING
+from rovsim.reporting.wording import listed
+
+GUESS = "guess: "
+
+
+def list_taken(proposal: CampaignProposal) -> list[str]:
+    """Vehicle, axes and commands, with what their words mean; not what is still asked."""
+    return [f"{name}: {told}" for name, told in _taken(proposal.content) if told]
+
+
+def _taken(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    mocap, commands = content.get("mocap", {}), content.get("commands", {})
+    yield "vehicle", _known(content, "vehicle")
+    yield "axes of the world", _meant(_known(mocap, "world_axes"), MEANING)
+    yield "axes of the body", _meant(_known(mocap, "body_axes"), MEANING)
+    yield "commands", _meant(_known(commands, "kind"), KINDS)
+    columns, axes = commands.get("columns", []), commands.get("axes", [])
+    if isinstance(columns, list) and columns:
+        pairs = [f"{c} ({a})" for c, a in zip(columns, axes, strict=False)] or columns
+        yield "columns of commands", ", ".join(pairs)
+
+
+def _known(section: Mapping[str, Any], key: str) -> str:
+    value = section.get(key, ANSWER)
+    return "" if value == ANSWER else str(value)
+
+
+def _meant(word: str, meanings: Mapping[str, str]) -> str:
+    return f"{word}, {meanings[word]}" if word in meanings else word
+
+
+def list_guesses(
+    proposal: CampaignProposal, topics: Mapping[str, str] = MappingProxyType({})
+) -> list[str]:
+    """What was taken and why, a line each: of the campaign, then of runs, alike ones together.
+
+    `topics`: what places are called, where not by their keys.
+    """
+    told: list[str] = []
+    runs: dict[str, list[str]] = {}  # that a reason is of
+    for place, lines in proposal.comments.items():
+        for line in lines:
+            why = line.removeprefix(GUESS)
+            if line == why:
+                continue
+            if place.startswith("runs."):
+                runs.setdefault(why, []).append(_run(proposal, place))
+            else:
+                told.append(f"{topics.get(place, place)}: {_value(proposal, place)}{why}")
+    for why, names in runs.items():
+        told.append(f"Run{'s' if len(names) > 1 else ''} {listed(names)}: {why}")
+    return told
+
+
+def _run(proposal: CampaignProposal, place: str) -> str:
+    """Id of the run that a key is of."""
+    return _find(proposal, ".".join(place.split(".")[:2]))["id"]
+
+
+def _find(proposal: CampaignProposal, place: str) -> Any:
+    """What campaign.yaml would hold at a place."""
+    value: Any = proposal.content
+    for part in place.split("."):
+        value = value[int(part)] if isinstance(value, list) else value[part]
+    return value
+
+
+def _value(proposal: CampaignProposal, place: str) -> str:
+    value = _find(proposal, place)
+    is_list = isinstance(value, list) and value and isinstance(value[0], str)
+    told = ", ".join(value) if is_list else value
+    return f"{told}; " if isinstance(told, str) else ""

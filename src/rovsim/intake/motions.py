@@ -1,0 +1,101 @@
+"""Motions and logs of commands beside each other: how alike, for each vehicle that may be it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Mapping
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.evaluation.commanded_motion.cross_correlation import (
+    REACH,
+    SHORTEST,
+    CrossCorrelation,
+    cross_correlate,
+    rotations,
+)
+from rovsim.evaluation.commanded_motion.predicted import cause
+from rovsim.intake.survey.contents import CommandCandidate, Track
+from rovsim.intake.vehicles import Fit, as_logged
+from rovsim.measurement.rough_motion import Velocities, velocities
+
+LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFile:
+    """One run's motion; its rough velocities are computed when they are needed.
+
+    `beside`: further files of the run.
+    """
+
+    path: Path
+    track: Track
+    beside: tuple[Path, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The names of its files."""
+        return ", ".join(path.name for path in (self.path, *self.beside))
+
+    @cached_property
+    def measured(self) -> Velocities | None:
+        """Rough body velocities, None where nothing of the kind was measured."""
+        if len(self.track.export.time) < 2:
+            return None
+        found = velocities(self.track.export)
+        return found if np.isfinite(found.nu).any() else None
+
+
+@dataclass(frozen=True, eq=False)
+class CommandFile:
+    """One log of commands, and the velocity that each vehicle would get of it."""
+
+    path: Path
+    drive: CommandCandidate
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_caused", {})
+
+    def caused(self, fit: Fit) -> tuple[Array, Array] | None:
+        """Times (m,) s and body velocities (m, 6) FRD; None where the log is not of that kind."""
+        known: dict = self._caused  # type: ignore[attr-defined]
+        if fit.name not in known:
+            known[fit.name] = self._velocity(fit)
+        return known[fit.name]
+
+    def _velocity(self, fit: Fit) -> tuple[Array, Array] | None:
+        commands = as_logged(self.drive, fit, self.path)
+        if commands is None or len(commands.time) < 2:
+            return None
+        return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
+
+
+def correlate(motion: MotionFile, log: CommandFile, fit: Fit) -> CrossCorrelation | None:
+    """A motion and what a log would cause, correlated; clocks that never meet are moved first."""
+    caused = log.caused(fit)
+    if motion.measured is None or caused is None:
+        return None
+    time, nu = caused
+    clock = motion.measured.time
+    if np.ptp(clock) < SHORTEST:
+        return None
+    apart = clock[-1] < time[0] or time[-1] < clock[0]
+    shift = float(clock[0] - time[0]) if apart else 0.0
+    reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if apart else REACH
+    return cross_correlate(motion.measured, time, nu, shift, min(reach, LONGEST))
+
+
+def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
+    """Mean of the best correlation over runs along each of the 24 axes, the best first."""
+    scored = [
+        (float(np.mean([one.best(axes)[0] for one in found.values()])), axes)
+        for axes in rotations()
+    ]
+    return sorted(scored, key=lambda pair: -pair[0])
+
+
+def highest(found: CrossCorrelation | None) -> float:
+    """Best mean correlation along any axes; 0 without a comparison."""
+    return 0.0 if found is None else max(found.best(axes)[0] for axes in rotations())

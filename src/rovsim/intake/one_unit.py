@@ -1,0 +1,64 @@
+"""One unit for columns of one name: what the size of numbers tells in one file holds in all."""
+
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+from typing import Mapping
+
+from rovsim.core.errors import BadInput
+from rovsim.intake.survey.contents import Contents
+from rovsim.intake.survey.sizes import Key, Unit, UnknownUnit
+
+
+def list_others(
+    found: Mapping[Path, Contents], refused: Mapping[Path, BadInput]
+) -> dict[Path, dict[Key, Unit]]:
+    """Files whose own numbers do not tell the unit that others do, and that unit.
+
+    Raises:
+        BadInput: two files tell two units for columns of the same names.
+    """
+    told: dict[Key, list[tuple[Path, Unit]]] = defaultdict(list)
+    for path, one in found.items():
+        for key, unit in one.units.items():
+            told[key].append((path, unit))
+    again: dict[Path, dict[Key, Unit]] = defaultdict(dict)
+    for key, units in told.items():
+        if len({u.factor for _, u in units if u.sure}) > 1 and not any(u.shared for _, u in units):
+            continue  # each file has its own
+        first, unit = _first(key, units)
+        others = [path for path, own in units if unit.sure and own.factor != unit.factor]
+        for path in (*others, *_asking(key, refused, unit.sure)):
+            again[path][key] = _as_in(first, unit)
+    return dict(again)
+
+
+def _asking(key: Key, refused: Mapping[Path, BadInput], sure: bool) -> list[Path]:
+    """Files that ask for the unit of these columns, and may take that of others."""
+    return [
+        path
+        for path, error in refused.items()
+        if isinstance(error, UnknownUnit) and error.key == key and (sure or not error.large)
+    ]
+
+
+def _first(key: Key, units: list[tuple[Path, Unit]]) -> tuple[Path, Unit]:
+    """The file that tells the unit most surely."""
+    sure = {unit.factor: (path, unit) for path, unit in reversed(units) if unit.sure}
+    if len(sure) > 1:
+        said = " and ".join(f"{_short(unit)} in {path.name}" for path, unit in sure.values())
+        raise BadInput(
+            f"the columns {', '.join(key)} are{said}, by their size",
+            where="the files",
+            expected="one unit for columns of one name",
+            remedy="Rename these columns after their units.",
+        )
+    return next(iter(sure.values()), units[0])
+
+
+def _as_in(path: Path, unit: Unit) -> Unit:
+    return replace(unit, said=f"{_short(unit)}, as in {path.name}" if unit.said else "")
+
+
+def _short(unit: Unit) -> str:
+    return unit.said.partition(",")[0]

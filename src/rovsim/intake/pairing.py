@@ -1,0 +1,167 @@
+"""Which log of commands belongs to which motion: by file, by what they cause, by name, by clock."""
+
+import re
+from dataclasses import dataclass
+from itertools import takewhile
+from pathlib import Path
+from typing import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.intake.motions import CommandFile, MotionFile
+from rovsim.intake.names import run_key, sensor_key
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A motion and its commands; `log` None without any or where `options` are to choose from.
+
+    `likely`: the log that its motion speaks for, though something else speaks against it.
+    """
+
+    motion: MotionFile
+    log: CommandFile | None
+    said: str
+    options: tuple[CommandFile, ...] = ()
+    likely: CommandFile | None = None
+
+    @property
+    def shown(self) -> CommandFile | None:
+        """The log whose commands show in the motion, as far as anybody can tell."""
+        return self.log or self.likely
+
+
+def pair(
+    motions: Sequence[MotionFile],
+    logs: Sequence[CommandFile],
+    score: Callable[[MotionFile, CommandFile], float],
+) -> list[Pair]:
+    """The commands of each motion; `score` tells how alike two are, 0 where nobody knows."""
+    own = {log.path: log for log in logs}
+    if all(motion.path in own for motion in motions):
+        return [Pair(m, own[m.path], "in the same file") for m in motions]
+    if not logs:
+        return [Pair(m, None, "") for m in motions]
+    table = np.array([[score(m, log) for log in logs] for m in motions])
+    by_content = _by_content(table)
+    by_name = _by_name(motions, logs)
+    by_clock = _by_clock(motions, logs)
+    return [
+        _decided(m, list(logs), table[k], by_content[k], by_name[k], by_clock[k])
+        for k, m in enumerate(motions)
+    ]
+
+
+def _by_content(table: Array) -> list[int | None]:
+    """The log that is more like each motion than any other, and like no other motion more."""
+    found: list[int | None] = []
+    for k, row in enumerate(table):
+        best = int(np.argmax(row))
+        rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
+        sure = row[best] >= MIN_CORRELATION and row[best] >= AHEAD * max(rivals, default=0.0)
+        found.append(best if sure else None)
+    return found
+
+
+def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
+    """The log whose name differs only in the words for motion, sensor and commands.
+
+    Where that tells nothing, the one that starts with the same words, else the only log in the
+    folder of a motion that is alone there.
+    """
+    found: list[int | None] = [None] * len(motions)
+    for key in (_by_role, _by_sensor):
+        _add_by(key, motions, logs, found)
+    for k, log in _by_first_words(motions, logs):
+        found[k] = log if found[k] is None else found[k]
+    _add_by(_by_folder, motions, logs, found)
+    return found
+
+
+def _add_by(
+    key: Callable[[Path], str],
+    motions: Sequence[MotionFile],
+    logs: Sequence[CommandFile],
+    found: list[int | None],
+) -> None:
+    """Pairs that share a key with no other file, where none was found."""
+    ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
+    for k, one in enumerate(ours):
+        if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
+            found[k] = theirs.index(one)
+
+
+def _by_first_words(
+    motions: Sequence[MotionFile], logs: Sequence[CommandFile]
+) -> Iterator[tuple[int, int]]:
+    """Pairs whose names start with more words alike than with any other, and end without number."""
+    table = np.array([[_alike(m.path.stem, log.path.stem) for log in logs] for m in motions])
+    for k, row in enumerate(table):
+        best = int(np.argmax(row))
+        rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
+        if row[best] > max(rivals, default=0):
+            yield k, best
+
+
+def _alike(one: str, other: str) -> int:
+    """How many words two names start with alike; none where what is left has a number."""
+    ours, theirs = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
+    pairs = zip(ours, theirs, strict=False)
+    count = len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
+    left = "".join(ours[count:] + theirs[count:])
+    return 0 if re.search(r"\d", left) else count
+
+
+def _by_role(path: Path) -> str:
+    return run_key(path.stem)
+
+
+def _by_sensor(path: Path) -> str:
+    return sensor_key(path.stem)
+
+
+def _by_folder(path: Path) -> str:
+    return str(path.absolute().parent)
+
+
+def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
+    """The only log that runs while a motion does, where clocks go on from run to run."""
+    spans = [(log.drive.time.min(), log.drive.time.max()) for log in logs]
+    meets = np.array([[m.track.start < b and a < m.track.end for a, b in spans] for m in motions])
+    return [
+        int(np.argmax(row)) if row.sum() == 1 and meets[:, np.argmax(row)].sum() == 1 else None
+        for row in meets
+    ]
+
+
+def _decided(
+    motion: MotionFile,
+    logs: list[CommandFile],
+    scores: Array,
+    content: int | None,
+    name: int | None,
+    clock: int | None,
+) -> Pair:
+    if content is not None and name in (None, content):
+        how = f"its commands cause this motion (likeness {scores[content]:.2f})"
+        return Pair(
+            motion, logs[content], how + (", and the names agree" if name is not None else "")
+        )
+    if content is not None and name is not None:
+        said = (
+            f"by its name {logs[name].path.name}, but the motion is that of "
+            f"{logs[content].path.name} (likeness {scores[content]:.2f} against {scores[name]:.2f})"
+        )
+        return Pair(motion, None, said, (logs[content], logs[name]), logs[content])
+    for place, said in ((name, "by its name"), (clock, "the only log at that time")):
+        if place is not None:
+            weak = f"; the motion does not show it (likeness {scores[place]:.2f})"
+            return Pair(
+                motion, logs[place], said + (weak if 0 < scores[place] < MIN_CORRELATION else "")
+            )
+    if len(logs) == 1:
+        return Pair(motion, logs[0], "the only log of commands")
+    order = np.argsort(-scores)
+    return Pair(motion, None, "no name, clock or motion tells which", tuple(logs[k] for k in order))

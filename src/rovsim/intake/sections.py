@@ -1,0 +1,138 @@
+"""The sections of campaign.yaml: each says what is known, marks guesses, and asks for the rest."""
+
+from typing import Any
+
+from numpy import ndarray as Array
+
+from rovsim.core.robust import usual_range
+from rovsim.core.shipped import conf_names
+from rovsim.intake.draft import Draft
+from rovsim.intake.facts import Facts
+from rovsim.intake.survey.contents import CommandCandidate
+from rovsim.measurement.recording.readers import mocap_readers
+
+MEANING = {
+    "z_up": "right-handed, z up",
+    "ned": "right-handed, z down",
+    "y_up": "right-handed, y up: what Motive exports unless it was changed",
+    "flu": "x forward, y left, z up",
+    "frd": "x forward, y right, z down",
+    "fur": "x forward, y up, z right",
+}
+KINDS = {
+    "pwm": "pulses in µs, 1500 at rest",
+    "normalized": "-1 to 1 for each thruster",
+    "demand": "-1 to 1 for each axis, through the vehicle's mixer",
+    "wrench": "N and N m for each axis",
+}
+WALLS = (
+    "tank: {{x: [0, 10], y: [0, 5], z: [0, 3]}} would tell walls, floor and surface (m, along the "
+    "axes of the world); the motion is within {}"
+)
+
+
+def vehicle(facts: Facts, draft: Draft) -> None:
+    """Which vehicle file."""
+    choice = facts.choice
+    if choice.fit is not None:
+        draft.content["vehicle"] = choice.fit.name
+        draft.say("vehicle", f"guess: {choice.said}")
+        return
+    names = [fit.name for fit in choice.fits] or conf_names("vehicle")
+    asks = f"Which vehicle was it ({choice.said})? Its name, or the path of your own vehicle file:"
+    draft.content["vehicle"] = draft.ask("vehicle", asks, names, free=True)
+
+
+def mocap(facts: Facts, draft: Draft) -> None:
+    """What measured the motion, of which body, along which axes."""
+    first, track = facts.motions[0], facts.pairs[0].motion.track
+    section: dict[str, Any] = {"format": first.format}
+    draft.content["mocap"] = section
+    if facts.body.choices != ("",):
+        asks = "Which one is the vehicle?"
+        section["body"] = facts.body.name or draft.ask("mocap.body", asks, facts.body.choices)
+        draft.say("mocap.body", facts.body.said)
+    if track.topics:
+        section["topics"] = dict(track.topics)
+    _axes(facts, draft, section)
+    if track.export.nu is not None:
+        section["velocity"] = "mean"
+        draft.say(
+            "mocap.velocity",
+            "guess: a line's velocity is the mean up to the next line; 'instant' where it holds at "
+            "its time",
+        )
+    if track.posed:
+        draft.say("mocap", WALLS.format(_extent(track.export.position[track.export.found])))
+
+
+def _extent(position: Array) -> str:
+    low, high = usual_range(position)
+    return ", ".join(f"{n} {a:.2f} to {b:.2f}" for n, a, b in zip("xyz", low, high, strict=True))
+
+
+def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
+    axes = facts.axes
+    own = mocap_readers()[section["format"]].axes
+    if axes.body and axes.world:
+        section |= {"world_axes": axes.world, "body_axes": axes.body}
+        draft.say("mocap.world_axes", axes.said)
+        return
+    pairs = " or ".join(f"{world} with {body}" for world, body in axes.likely)
+    level = f" The vehicle is upright on average in {pairs}." if pairs else ""
+    why = f" ({axes.said})" if axes.said else ""
+    for key, known, choices, what in (
+        ("world_axes", axes.world, own.world, "world"),
+        ("body_axes", axes.body, own.body, "rigid body"),
+    ):
+        asks = f"Which way do the axes of the {what} point{why}?{level}"
+        meant: dict[str, str] = {name: MEANING[name] for name in choices}
+        section[key] = known or draft.ask(f"mocap.{key}", asks, meant)
+
+
+def commands(facts: Facts, draft: Draft) -> None:
+    """How the commands were logged."""
+    if facts.log is None:
+        return
+    drive, fit = facts.log.drive, facts.choice.fit
+    section: dict[str, Any] = {"format": drive.format}
+    section |= {"topic": drive.topic} if drive.topic else {}
+    kind = None if facts.kind_asked else fit.kind if fit else drive.kind
+    asks = f"What are these ({_first_asked(facts).said})?"
+    section["kind"] = kind or draft.ask("commands.kind", asks, _kinds(facts))
+    draft.say("commands.kind", drive.said if kind else "")
+    section["columns"] = list(fit.columns) if fit else _columns(facts, draft)
+    section |= {"axes": list(drive.axes)} if drive.axes else {}
+    section |= {"auxiliary": list(drive.auxiliary)} if drive.auxiliary else {}
+    if fit and kind in ("pwm", "normalized") and not fit.by_name:
+        draft.say("commands.columns", "guess: in the order of the vehicle's thrusters")
+    others = {d.topic for one in facts.motions for d in one.drives if d.topic} - {drive.topic}
+    if others:
+        draft.say("commands.topic", f"other commands there: {', '.join(sorted(map(str, others)))}")
+    draft.content["commands"] = section
+
+
+def _first_asked(facts: Facts) -> CommandCandidate:
+    """The log whose kind has to be asked, if there is one, else that which stands for all."""
+    assert facts.log is not None
+    asked = (log.drive for log in facts.logs if log.drive.asked)
+    return next(asked, facts.log.drive)
+
+
+def _kinds(facts: Facts) -> dict[str, str]:
+    """Kinds to choose from: columns that are named after axes are one of two."""
+    of_axes = ("demand", "wrench")
+    asked = facts.kind_asked and _first_asked(facts).kind in of_axes
+    return {name: KINDS[name] for name in (of_axes if asked else KINDS)}
+
+
+def _columns(facts: Facts, draft: Draft) -> list[str] | str:
+    """All columns of the log, if every vehicle that fits takes all; else a question."""
+    assert facts.log is not None
+    drive = facts.log.drive
+    taken = dict.fromkeys(fit.columns for fit in facts.choice.fits)
+    if all(len(columns) == len(drive.columns) for columns in taken):
+        return list(drive.columns)
+    answers = [f"[{', '.join(columns)}]" for columns in taken]
+    asks = f"Which of {', '.join(drive.columns)} go to the vehicle's thrusters, in its order?"
+    return draft.ask("commands.columns", asks, answers, free=True)

@@ -1,0 +1,252 @@
+"""Motions and commands in ROS 2 bags."""
+
+import re
+from pathlib import Path
+from typing import Any, Callable, Iterator
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.core.pwm import PILOT, absent
+from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
+from rovsim.intake.survey.csv_files import within
+from rovsim.measurement.campaign_file import Mocap, Topics
+from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
+from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
+from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
+from rovsim.measurement.recording.tidying import tidy_export
+
+# Topics that say where the vehicle should be, or where something else is.
+WISHES = re.compile(r"goal|waypoint|setpoint|initialpose|target|desired|landing|mission|gp_", re.I)
+# Key of `mocap.topics` -> types, and the words of the topic that is taken first and of none.
+CHANNELS = {
+    "imu": (("Imu",), "data$", "raw"),
+    "depth": (("FluidPressure",), "static|depth|bar", "diff"),
+    "velocity": (
+        ("DVL", "TwistStamped", "TwistWithCovarianceStamped"),
+        "dvl",
+        "wind|gps|cmd|mocap",
+    ),
+    "battery": (("BatteryState",), "battery", "$^"),
+}
+# Types of commands, what was told to the thrusters first.
+OUTPUTS = (
+    "RCOut",
+    "MultiArray",
+    "Wrench",
+    "WrenchStamped",
+    "ManualControl",
+    "OverrideRCIn",
+    "RCIn",
+)
+
+NOT_POSES = (
+    "Transforms on {} are not read: write the vehicle's to a topic of PoseStamped or "
+    "TransformStamped, and record that."
+)
+NOT_COMMANDS = (
+    "{} says how fast the vehicle should be, and not what was sent to its thrusters: record RCOut, "
+    "a MultiArray, a Wrench or ManualControl as well"
+)
+
+
+def look_into_bag(path: Path) -> Contents:
+    """Read which topics tell of motion and of commands, and try each.
+
+    Raises:
+        BadInput: no bag, or nothing of the kind in it.
+    """
+    notes: list[str] = []
+    with opened(path, by="rovsim init") as bag:
+        topics = bag.topics
+        drives = tuple(_drives(bag, notes))
+    poses = _pose_topics(topics)
+    beside = {key: topic for key in CHANNELS if (topic := _channel(topics, key))}
+    tracks = tuple(_tracks(path, poses, notes))
+    if not tracks and beside:
+        tracks = tuple(_of_channels(path, beside, notes))
+    elif beside:
+        listed = ", ".join(f"{key}: {topic}" for key, topic in beside.items())
+        notes.append(f"{path.name}: the bag also holds {listed}; 'mocap.topics' would read them.")
+    if not tracks:
+        notes += _unread(topics, "", "TFMessage", NOT_POSES)
+    wished = () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NOT_COMMANDS)
+    if tracks or drives:
+        return Contents(
+            path, "rosbag2", tracks, drives, notes=tuple(notes), unknown=" ".join(wished)
+        )
+    notes += wished
+    raise BadInput(
+        f"no topic of motion or of commands among {len(topics)}",
+        where=path,
+        expected=f"{', '.join(POSES)}, Imu, pressure, or outputs to thrusters",
+        remedy=" ".join(notes) or "Record these topics as well.",
+    )
+
+
+def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[str, ...]:
+    """A sentence on topics of such names and types that rovsim does not read, if there are any."""
+    found = [
+        topic
+        for topic, name in topics.items()
+        if re.search(named, topic, re.I) and re.fullmatch(kind, _short(name))
+    ]
+    return (said.format(", ".join(found)),) if found else ()
+
+
+def _pose_topics(topics: dict[str, str]) -> list[str]:
+    found = [t for t, kind in topics.items() if _short(kind) in POSES and not WISHES.search(t)]
+    alone = [t for t in found if _short(topics[t]) != "Odometry"]
+    stems = {t.rsplit("/", 1)[0] for t in alone}
+    # the odometry beside a pose says the same once more
+    return alone + [t for t in found if t not in alone and t.rsplit("/", 1)[0] not in stems]
+
+
+def _short(kind: str) -> str:
+    return kind.rsplit("/", 1)[-1]
+
+
+def _channel(topics: dict[str, str], key: str) -> str | None:
+    types, first, never = CHANNELS[key]
+    found = [
+        topic
+        for topic, kind in topics.items()
+        if _short(kind) in types and not re.search(never, topic, re.I) and not WISHES.search(topic)
+    ]
+    if key == "velocity":
+        found = [t for t in found if re.search(first, t, re.I) or _short(topics[t]) == "DVL"]
+    found.sort(key=lambda topic: not re.search(first, topic, re.I))
+    return found[0] if found else None
+
+
+def _tracks(path: Path, topics: list[str], notes: list[str]) -> Iterator[Track]:
+    for topic in topics:
+        mocap = Mocap(format="rosbag2", body=topic, world_axes="z_up", body_axes="flu")
+        try:
+            yield Track(topic, tidy_export(read_bag(path, mocap), path)[0])
+        except BadInput as error:
+            notes.append(f"{topic} is not read: {error.found}.")
+
+
+def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterator[Track]:
+    mocap = Mocap(format="rosbag2", world_axes="z_up", body_axes="flu", topics=Topics(**beside))
+    try:
+        yield Track("", tidy_export(read_bag(path, mocap), path)[0], beside)
+    except BadInput as error:
+        notes.append(f"{', '.join(beside.values())}: {error.found}.")
+
+
+def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
+    found = [t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)]
+    for topic in sorted(found, key=lambda topic: _place(bag.topics[topic])):
+        try:
+            drive = _drive(bag, topic)
+            if drive.columns:
+                yield drive
+        except BadInput as error:
+            notes.append(f"{topic} is not read: {error.found}.")
+
+
+def _place(kind: str) -> int:
+    matching = [k for k, name in enumerate(OUTPUTS) if _short(kind).endswith(name)]
+    return min(matching, default=len(OUTPUTS))
+
+
+def _drive(bag: Bag, topic: str) -> CommandCandidate:
+    kind, first = bag.first(topic, "commands.topic")
+    name = _short(kind)
+    if name in PULSES:
+        found = bag.read(
+            topic, "commands.topic", _padded("channels", len(first.channels)), "pulses"
+        )
+        return _outputs(found) if name == "RCOut" else _pilot(found)
+    if "Wrench" in name:
+        return CommandCandidate(
+            "rosbag2",
+            tuple(AXES),
+            *_numbers(bag, topic, _forces),
+            "wrench",
+            f"messages of the type {name}",
+            topic,
+        )
+    if name == "ManualControl":
+        time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL])
+        return CommandCandidate(
+            "rosbag2",
+            tuple(MANUAL),
+            time,
+            value,
+            "demand",
+            "the pilot's sticks (ManualControl)",
+            topic,
+        )
+    time, value = _numbers(bag, topic, _padded("data", len(first.data)))
+    columns = tuple(f"t{k + 1}" for k in range(value.shape[1]))
+    how, said = _kind(value)
+    return CommandCandidate("rosbag2", columns, time, value, how, f"{name}: {said}", topic)
+
+
+def _padded(field: str, count: int) -> Callable[[Any], list[float]]:
+    """The first `count` numbers of an array; NaN where a message holds fewer."""
+    return lambda m: [
+        *map(float, getattr(m, field)[:count]),
+        *[np.nan] * (count - len(getattr(m, field))),
+    ]
+
+
+def _forces(message: Any) -> list[float]:
+    inner = getattr(message, "wrench", message)
+    return [getattr(part, axis) for part in (inner.force, inner.torque) for axis in "xyz"]
+
+
+def _numbers(bag: Bag, topic: str, numbers: Callable) -> tuple[Array, Array]:
+    found = bag.read(topic, "commands.topic", numbers, "numbers")
+    return found.time, found.value
+
+
+def _kind(value: Array) -> tuple[LoggedKind | None, str]:
+    for kind, said in (("pwm", "pulses in us"), ("normalized", "within -1 and 1")):
+        if within(value.ravel(), kind):  # type: ignore[arg-type]
+            return kind, said  # type: ignore[return-value]
+    return None, f"numbers from {np.nanmin(value):.4g} to {np.nanmax(value):.4g}"
+
+
+def _given(found: Samples) -> Array:
+    """Which channels (c,) ever carried a pulse."""
+    return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
+
+
+def _outputs(found: Samples) -> CommandCandidate:
+    numbers = np.flatnonzero(_given(found)) + 1
+    columns = tuple(f"SERVO{k}" for k in numbers)
+    return CommandCandidate(
+        "rosbag2",
+        columns,
+        found.time,
+        found.value[:, numbers - 1],
+        "pwm",
+        "outputs to thrusters (RCOut), in their order",
+        found.topic,
+    )
+
+
+def _pilot(found: Samples) -> CommandCandidate:
+    given = _given(found)
+    columns = [c for c in PILOT if (k := _channel_number(c)) <= len(given) and given[k - 1]]
+    value = found.value[:, [_channel_number(c) - 1 for c in columns]]
+    return CommandCandidate(
+        "rosbag2",
+        tuple(columns),
+        found.time,
+        value,
+        "demand",
+        "the pilot's radio by ArduSub's order of channels",
+        found.topic,
+        tuple(PILOT[c] for c in columns),
+    )
+
+
+def _channel_number(column: str) -> int:
+    return int(column.lstrip("-RC"))

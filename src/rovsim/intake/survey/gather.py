@@ -1,0 +1,101 @@
+"""The files that were named, and those in the folders that were."""
+
+from pathlib import Path
+from typing import Sequence
+
+from rovsim.core.errors import BadInput
+from rovsim.intake.survey.sniff import sniff
+
+STORAGE = (".db3", ".mcap")
+# Bytes that a reader takes into memory at once, several times over; bags are read bit by bit.
+LARGEST = 1 << 30
+MANY = 500  # files in a folder: more is no folder of recordings
+# Names of what rovsim itself writes into such folders, or keeps beside recordings.
+OTHERS = ("campaign.yaml", "truth.yaml", "metadata.yaml")
+
+
+def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Files and bag folders that were named, and those that lie in named folders.
+
+    A folder without recordings of its own stands for the folders in it, one a run.
+
+    Raises:
+        BadInput: one of them is not there, is too large, or is no folder of recordings.
+    """
+    named: list[Path] = []
+    inside: list[Path] = []
+    for path in paths:
+        if path.is_dir() and not is_bag(path):
+            inside += _within(path)
+        else:
+            named.append(_checked(path))
+    named = _once(named)
+    return named, [path for path in _once(inside) if path.resolve() not in _resolved(named)]
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a folder is a ROS 2 bag: its files belong together."""
+    storage = any(file.suffix in STORAGE for file in path.iterdir()) if path.is_dir() else False
+    return storage and (path / "metadata.yaml").is_file()
+
+
+def _within(folder: Path) -> list[Path]:
+    own = _directly_within(folder)
+    if any(map(_is_recording, own)):
+        return own
+    inner = [p for p in sorted(folder.iterdir()) if p.is_dir() and not p.name.startswith(".")]
+    deeper = [path for one in inner for path in _directly_within(one)]
+    if not own and not deeper:
+        raise BadInput(
+            "the folder holds no recordings",
+            where=folder,
+            expected="exported motions and command logs",
+            remedy="Name the folder or the files of your recordings.",
+        )
+    return own + deeper
+
+
+def _is_recording(path: Path) -> bool:
+    try:
+        return bool(sniff(path))
+    except (BadInput, OSError):
+        return False
+
+
+def _directly_within(folder: Path) -> list[Path]:
+    found = sorted(p for p in folder.iterdir() if not p.name.startswith("."))
+    if len(found) > MANY:
+        raise BadInput(
+            f"{len(found)} files",
+            where=folder,
+            expected=f"a folder of recordings, at most {MANY} files",
+            remedy="Name the recordings themselves, or put them into a folder of their own.",
+        )
+    bags = [p for p in found if p.is_dir() and is_bag(p)]
+    files = [p for p in found if p.is_file() and p.name not in OTHERS and p.stat().st_size]
+    return bags + [p for p in files if p.suffix in STORAGE or p.stat().st_size <= LARGEST]
+
+
+def _checked(path: Path) -> Path:
+    if path.is_dir() or (path.is_file() and 0 < path.stat().st_size <= LARGEST):
+        return path
+    if path.is_file() and path.suffix in STORAGE and path.stat().st_size:
+        return path
+    if not path.exists():
+        found, remedy = "no such file or folder", "Check the path."
+    elif not path.is_file():
+        found, remedy = "neither a file nor a folder", "Name a recording."
+    elif not path.stat().st_size:
+        found, remedy = "the file is empty", "Export the run again."
+    else:
+        found = f"{path.stat().st_size / 2**30:.1f} GiB"
+        remedy = "Cut it into runs of minutes, and export only what is needed."
+    raise BadInput(found, where=path, expected="a recording of at most 1 GiB", remedy=remedy)
+
+
+def _once(paths: Sequence[Path]) -> list[Path]:
+    return list({path.resolve(): path for path in reversed(paths)}.values())[::-1]
+
+
+def _resolved(paths: Sequence[Path]) -> set[Path]:
+    return {path.resolve() for path in paths}

@@ -1,0 +1,202 @@
+"""Csv files whose columns have other names or units: a copy that says the same as `time_s, x_m, …`.
+
+The format csv takes columns by name and unit, so other names need a copy; what was done is told.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim import AXES
+from rovsim.core.errors import BadInput
+from rovsim.core.files import write_text
+from rovsim.intake.survey.column_names import find_columns
+from rovsim.intake.survey.command_names import STICKS, are_sticks, find_wrench
+from rovsim.intake.survey.quaternions import check_quaternion
+from rovsim.intake.survey.sizes import Unit, Units, find_by_size
+from rovsim.intake.survey.time_units import find_time_unit
+from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
+from rovsim.measurement.recording.csv_checks import is_height
+from rovsim.measurement.recording.table import (
+    Lines,
+    csv_lines,
+    find_filler,
+    find_halves,
+    no_time,
+    numbers,
+    without_cut_line,
+)
+from rovsim.measurement.recording.times import dates, times
+from rovsim.measurement.recording.units import DEGREE, FACTORS, split_unit
+
+HALF_TURN = 180.0  # degrees
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of ours: its place in the file, the factor to our unit, and how it is known."""
+
+    ours: str
+    place: int
+    factor: float
+    said: str
+
+
+def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str, ...]]:
+    """The file to read: itself, or a copy in `scratch` with our names and units, and what changed.
+
+    `units`: those that other files tell; it keeps those that are found by size.
+
+    Raises:
+        BadInput: not a csv file, or its units cannot be told.
+    """
+    lines = csv_lines(path)
+    check_quaternion(lines)
+    found = _columns(lines, units)
+    changed = [c for c in found if c.factor != 1.0 or lines.names[c.place] != c.ours]
+    if not changed or not any(c.ours == "time_s" for c in found):
+        return path, ()
+    copy = scratch / f"{path.stem}.csv"
+    write_text(copy, _text(lines, {c.place: c for c in found}))
+    told = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.said}" for c in changed]
+    return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(told)}",)
+
+
+def _without_unit(ours: str) -> str:
+    """The name of a column without our unit, where the file's own is told."""
+    return re.sub(r"_(s|m|rad)(_s2?)?$", "", ours)
+
+
+def _text(lines: Lines, columns: dict[int, Column]) -> str:
+    names = [columns[k].ours if k in columns else name for k, name in enumerate(lines.names)]
+    rows = [",".join(names)]
+    fillers = {k: find_filler(_raw(lines, k)) for k in columns}
+    for cells in lines.all_cells():
+        told = (_cell(c, columns.get(k), fillers.get(k)) for k, c in enumerate(cells))
+        rows.append(",".join(told))
+    return "\n".join(rows) + "\n"
+
+
+def _cell(text: str, column: Column | None, filler: float | None) -> str:
+    text = text.strip()
+    if column is None or not text:
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    if value == filler:
+        return ""
+    if column.ours in EULER[:2] and column.factor == DEGREE and abs(value) > HALF_TURN:
+        value = (value + HALF_TURN) % (2.0 * HALF_TURN) - HALF_TURN  # 359 degrees for -1
+    return text if column.factor == 1.0 else repr(value * column.factor)
+
+
+def _columns(lines: Lines, units: Units) -> list[Column]:
+    """Columns that are ours under another name or unit."""
+    unit_at = [split_unit(name)[1] for name in lines.names]
+    places = find_columns(lines)
+    _drop_ambiguous(places, lines)
+    if lines.names[places.get("time_s", 0)] in (find_halves(lines.names) or ()):
+        raise no_time(lines.path, lines.names)
+    if "time_s" not in places:
+        return []
+    place = places["time_s"]
+    dated = dates(lines, place)
+    if dated is not None:
+        times(without_cut_line(lines, [place])[0], place)  # refuses what is no date among them
+    seconds, factor, said = dated, 1.0, " from dates"
+    if seconds is None:
+        value = _values(lines, place)
+        factor, said = find_time_unit(lines, place, value, unit_at[place], units)
+        seconds = value * factor
+    columns = [Column("time_s", place, factor, said)]
+    for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
+        here = {ours: places[ours] for ours in group if ours in places}
+        columns += _group(lines, here, {k: unit_at[k] for k in here.values()}, seconds, units)
+    return columns
+
+
+def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
+    """Bare letters are channels only in company: 'roll' may be a demand, 'p' and 'u' anything."""
+    renamed = {ours for ours, place in places.items() if lines.names[place] != ours}
+    whole = all(name in places for name in QUATERNION)
+    demanded = bool({"surge", "sway", "heave"} & set(lines.names)) or "x_m" not in places
+    dropped = set() if whole else set(QUATERNION)
+    bare = {n for n in EULER if n in renamed and lines.names[places[n]].lower() in AXES}
+    dropped |= renamed & set(EULER) if whole else bare if demanded else set()
+    for group in (LINEAR, ANGULAR):
+        dropped |= set() if all(name in places for name in group) else renamed & set(group)
+    pushing = {lines.names[places[n]] for n in renamed & set(POSITION)}
+    if pushing & set(find_wrench(lines.names).values()) or (
+        set(POSITION) <= renamed and _of_a_stick(lines, places)
+    ):
+        dropped |= set(POSITION)
+    for name in dropped & set(places):
+        del places[name]
+
+
+def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
+    """Whether x, y, z are those of a stick, beside an r and no angle."""
+    turned = any(name in places for name in (*EULER, *QUATERNION))
+    named = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
+    if turned or len(named) < len(STICKS):
+        return False
+    return are_sticks({name: _values(lines, place) for name, place in named.items()})
+
+
+def _values(lines: Lines, place: int) -> Array:
+    value = _raw(lines, place)
+    filler = find_filler(value)
+    return value if filler is None else np.where(value == filler, np.nan, value)
+
+
+def _raw(lines: Lines, place: int) -> Array:
+    whole, cut = without_cut_line(lines, [place])
+    try:
+        return np.concatenate([numbers(whole, [place])[:, 0], np.full(cut, np.nan)])
+    except BadInput:
+        return np.full(len(lines), np.nan)
+
+
+def _group(
+    lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
+) -> list[Column]:
+    """Columns of one kind; those without a unit in their name get one by their size."""
+    if not here:
+        return []
+    names, columns = list(here), list(here.values())
+    numbers(without_cut_line(lines, columns)[0], columns)  # refuses words, in the owner's own file
+    value = np.stack([_values(lines, place) for place in here.values()], axis=1)
+    if names[0] in QUATERNION:
+        return [Column(n, p, 1.0, "") for n, p in here.items()]
+    if names[0] == "depth_m":
+        return [_depth(lines, here, units, value[:, 0], told)]
+    factor, said = find_by_size(lines, here, value, time, told)
+    return [
+        Column(n, p, FACTORS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
+        for n, p in here.items()
+    ]
+
+
+def _depth(
+    lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, told: Units
+) -> Column:
+    """A depth; where it is a height in this file, or in another, its sign is turned."""
+    ((ours, place),) = here.items()
+
+    def decide() -> Unit:
+        if is_height(value):
+            return Unit(-1.0, " with its sign turned, for it is negative", True)
+        return Unit(1.0, "", is_height(-value))
+
+    sign = told.settle((lines.names[place],), decide)
+    factor = sign.factor * FACTORS.get(units[place], 1.0)
+    return Column(ours, place, factor, f"{_of(units[place])}{sign.said}")
+
+
+def _of(unit: str) -> str:
+    return f" in {unit}" if unit else ""

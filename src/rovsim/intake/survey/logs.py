@@ -1,0 +1,58 @@
+"""Motions and commands in ArduPilot logs."""
+
+from pathlib import Path
+from typing import Iterator
+
+import numpy as np
+
+from rovsim.core.pwm import PILOT, absent
+from rovsim.intake.survey.contents import CommandCandidate, Contents, Track
+from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.ardupilot.commands import SOURCES
+from rovsim.measurement.recording.ardupilot.logs import open_log
+from rovsim.measurement.recording.ardupilot.motion import read_log
+from rovsim.measurement.recording.ardupilot.series import ArduPilotLog
+from rovsim.measurement.recording.tidying import tidy_export
+
+MOST = 16  # outputs and channels of a log
+
+
+def look_into_log(path: Path) -> Contents:
+    """Read the channels of a log, its outputs and the pilot's radio.
+
+    Raises:
+        BadInput: no such log, or nothing measured in it.
+    """
+    mocap = Mocap(format="ardupilot", world_axes="ned", body_axes="frd")
+    track = Track("", tidy_export(read_log(path, mocap), path)[0])
+    drives = tuple(_drives(open_log(path)))
+    return Contents(path, "ardupilot", (track,), drives)
+
+
+def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
+    for kind, (name, field) in SOURCES[log.kind].items():
+        if name not in log.series:
+            continue
+        series = log.series[name]
+        value = series.of([field.format(k) for k in range(1, MOST + 1)])
+        given = np.flatnonzero((~absent(value) & np.isfinite(value)).any(axis=0)) + 1
+        if kind == "SERVO" and len(given):
+            columns = tuple(f"SERVO{k}" for k in given)
+            said = f"outputs ({name}), in their order"
+            yield CommandCandidate(
+                "ardupilot", columns, series.time, value[:, given - 1], "pwm", said
+            )
+        elif len(given):
+            pilot = {c: k for c in PILOT if (k := int(c.lstrip("-RC"))) in given}
+            if pilot:
+                chosen = value[:, [k - 1 for k in pilot.values()]]
+                said = f"the pilot's radio ({name}) by ArduSub's order of channels"
+                yield CommandCandidate(
+                    "ardupilot",
+                    tuple(pilot),
+                    series.time,
+                    chosen,
+                    "demand",
+                    said,
+                    axes=tuple(PILOT[c] for c in pilot),
+                )

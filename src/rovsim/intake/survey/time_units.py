@@ -1,0 +1,69 @@
+"""The unit of times that no name tells: by their size, their steps, and how long they last."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.intake.survey.sizes import Unit, Units, UnknownUnit
+from rovsim.measurement.recording.csv_checks import LONGEST_STEP
+from rovsim.measurement.recording.table import TIME, Lines
+from rovsim.measurement.recording.times import LATEST, times
+from rovsim.measurement.recording.units import FACTORS
+
+SHORTEST_STEP = 2e-4  # s between two lines of any recording
+SHORTEST = 3.0  # s that a recording lasts, where its lines would come faster than any camera
+FASTEST_CAMERA = 1000.0  # Hz
+EXPECTED = "time_s, or time_ms, time_us, time_ns, time_min; days times 86400 are time_s"
+
+
+def find_time_unit(
+    lines: Lines, place: int, value: Array, unit: str, units: Units
+) -> tuple[float, str]:
+    """Factor to seconds of times (n,), and how it is known.
+
+    `unit`: behind the column's name, empty where there is none.
+
+    Raises:
+        UnknownUnit: no unit is named, and their steps allow two, or none.
+        BadInput: these are no times.
+    """
+    if not np.isfinite(value).any():
+        times(lines, place)  # says what they are
+    late = float(np.nanmax(np.abs(value), initial=0.0))
+    step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
+    named = lines.names[place] == TIME
+    if named and step < LONGEST_STEP and not late > LATEST:
+        return 1.0, ""
+    if unit and not named:
+        return FACTORS[unit], f" in {unit}"
+    for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
+        if late > size:
+            return FACTORS[name], f" in {name} since 1970, by its size"
+    if not step > 0.0:
+        return 1.0, " in s, by its steps"
+    key, lasts = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
+    told = units.settle(key, lambda: _by_steps(lines, key, step, lasts))
+    return told.factor, told.said
+
+
+def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
+    names = [n for n in ("s", "ms", "us", "ns") if _is_step(step * FACTORS[n])]
+    long = [n for n in names if _is_recording(step * FACTORS[n], lasts * FACTORS[n])]
+    if len(long) == 1:
+        sure = len(names) == 1
+        return Unit(FACTORS[long[0]], f" in {long[0]}, by its steps", sure, shared=False)
+    perhaps = " or ".join(long) if long else "days (of a spreadsheet, or datenum) or minutes"
+    raise UnknownUnit(
+        f"times ('{key[0]}') in steps of {step:.3g} over {lasts:.3g} ({perhaps}?)",
+        lines,
+        key,
+        EXPECTED,
+        large=True,
+    )
+
+
+def _is_step(seconds: float) -> bool:
+    return SHORTEST_STEP <= seconds < LONGEST_STEP
+
+
+def _is_recording(step: float, lasts: float) -> bool:
+    return lasts >= SHORTEST or step >= 1.0 / FASTEST_CAMERA

@@ -1,0 +1,135 @@
+"""Files of one run that hold different sensors: put together by their names, or by their clocks."""
+
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+from typing import Iterator, Sequence
+
+from rovsim.core.errors import BadInput
+from rovsim.intake.names import sensor_key, without_sensor
+from rovsim.intake.survey import Contents, Track
+from rovsim.measurement.recording.joined import POSES, TOLD, join, list_held, span_of
+from rovsim.measurement.recording.tidying import tidy_export
+
+FORMAT = "csv"  # other formats hold all sensors of a run in one file
+BESIDE = 0.5  # share of the shorter file that lies beside another of its run
+
+
+def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tuple[str, ...]]:
+    """The files of each run as one, and sentences about those that may belong together."""
+    if len(motions) < 2 or any(one.format != FORMAT for one in motions):
+        return tuple(motions), ()
+    runs, apart = _by_name(motions)
+    if len(runs) == len(motions) and not apart:
+        runs, apart = _by_clock(runs)
+    order = {one.named: k for k, one in enumerate(motions)}
+    first = {run.named: min(order[file.named] for file in run.files) for run in runs}
+    return tuple(sorted(runs, key=lambda run: first[run.named])), tuple(apart)
+
+
+def list_stems(motions: Sequence[Contents]) -> list[str]:
+    """What each run may be called: its file, or what the names of its files share.
+
+    A folder lends its name to files that are called like those in others.
+    """
+    stems = [_stem(one) for one in motions]
+    return [
+        f"{one.named.absolute().parent.name} {stem}".strip() if stems.count(stem) > 1 else stem
+        for one, stem in zip(motions, stems, strict=True)
+    ]
+
+
+def _stem(one: Contents) -> str:
+    path = one.named
+    if not one.beside:
+        return path.stem if path.is_file() else path.name
+    return without_sensor(path.stem) or path.absolute().parent.name
+
+
+def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
+    """Runs of files in one folder whose names differ in the sensor alone."""
+    groups: dict[tuple[Path, str], list[Contents]] = defaultdict(list)
+    for one in motions:
+        groups[one.named.absolute().parent, sensor_key(one.named.stem)].append(one)
+    runs, apart = [], []
+    for group in groups.values():
+        if len(group) == 1:
+            runs += group
+            continue
+        try:
+            runs.append(_joined(group, "their names differ in the sensor alone"))
+        except BadInput as error:
+            runs += group
+            if _all_different(group):
+                apart.append(f"{_names(group)} look like one run by their names, but {error.found}")
+    return runs, apart
+
+
+def _by_clock(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
+    """Runs of files of different sensors that ran at the same time, if that tells which."""
+    kinds: dict[frozenset[str], list[Contents]] = defaultdict(list)
+    for one in motions:
+        kinds[_held(one)].append(one)
+    groups = list(kinds.values())
+    if len(groups) < 2 or not _all_different([group[0] for group in groups]):
+        return list(motions), []
+    runs = [list(_at_that_time(one, groups)) for one in max(groups, key=len)]
+    used = [file for run in runs for file in run]
+    if len({id(file) for file in used}) < len(used) or not all(_one_each(r, groups) for r in runs):
+        return list(motions), [
+            f"{' and '.join(map(_listed, groups))}: neither names nor clocks tell which files are "
+            "of one run. List those of one run in its mocap: [a.csv, b.csv]"
+        ]
+    rest = [one for one in motions if not any(one is file for file in used)]
+    said = "they hold different sensors and ran at the same time"
+    return [*(_joined(r, said) if len(r) > 1 else r[0] for r in runs), *rest], []
+
+
+def _at_that_time(one: Contents, groups: Sequence[Sequence[Contents]]) -> Iterator[Contents]:
+    """The file, and those of other sensors that lie beside it."""
+    yield one
+    for group in groups:
+        if not any(file is one for file in group):
+            yield from (file for file in group if _beside(one, file))
+
+
+def _beside(one: Contents, other: Contents) -> bool:
+    (a, b), (c, d) = (span_of(x.tracks[0].export) for x in (one, other))
+    return min(b, d) - max(a, c) > BESIDE * min(b - a, d - c)
+
+
+def _one_each(run: Sequence[Contents], groups: Sequence[Sequence[Contents]]) -> bool:
+    return all(sum(any(f is g for g in group) for f in run) <= 1 for group in groups)
+
+
+def _held(one: Contents) -> frozenset[str]:
+    held = list_held(one.tracks[0].export)
+    return frozenset([*held, *(TOLD if POSES in held else ())])
+
+
+def _all_different(files: Sequence[Contents]) -> bool:
+    """Whether no two hold the same."""
+    held = [kind for one in files for kind in _held(one)]
+    return len(held) == len(set(held))
+
+
+def _joined(files: Sequence[Contents], said: str) -> Contents:
+    """One run of several files, that with commands first.
+
+    Raises:
+        BadInput: two of them hold the same, or have no time in common.
+    """
+    first, *others = sorted(files, key=lambda one: not one.drives)
+    export = join({one.named: one.tracks[0].export for one in (first, *others)})
+    track = Track("", tidy_export(export, first.named)[0])
+    notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {said}",)
+    notes += tuple(note for one in files for note in one.notes)
+    return replace(first, tracks=(track,), notes=notes, beside=tuple(others))
+
+
+def _listed(files: Sequence[Contents]) -> str:
+    return f"{_names(files)} ({', '.join(list_held(files[0].tracks[0].export))})"
+
+
+def _names(files: Sequence[Contents]) -> str:
+    return ", ".join(one.named.name for one in files)

@@ -1,0 +1,58 @@
+"""Columns of the files that were taken and that nothing uses: named, never dropped in silence."""
+
+from collections import defaultdict
+from pathlib import Path
+from typing import Sequence
+
+from rovsim.intake.draft import Draft
+from rovsim.intake.facts import Facts
+from rovsim.intake.pairing import Pair
+from rovsim.intake.survey.contents import Contents
+
+MOST = 20  # names of columns or files in a sentence
+
+
+def list_unread(facts: Facts, draft: Draft) -> list[str]:
+    """A sentence for all files whose unused columns are the same."""
+    files: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for one in _every(facts):
+        if left := _left(one, facts, draft):
+            files[left].append(one.named.name)
+    return [f"not used: {_named(left)} (in {_named(names)})" for left, names in files.items()]
+
+
+def tell_unread(facts: Facts, draft: Draft) -> None:
+    """The same as comments above the runs of these files."""
+    known = {one.named: one for one in _every(facts)}
+    for k, (motion, pair) in enumerate(zip(facts.motions, facts.pairs, strict=True)):
+        paths = dict.fromkeys([*(file.named for file in motion.files), *_log(pair)])
+        for one in (known[path] for path in paths):
+            if left := _left(one, facts, draft):
+                draft.say(f"runs.{k}", f"{one.named.name}: not used: {_named(left)}")
+
+
+def _every(facts: Facts) -> list[Contents]:
+    """All files, with those that are one run apart."""
+    found = (*facts.motions, *facts.collected.logs)
+    return [file for one in found for file in one.files]
+
+
+def _log(pair: Pair) -> list[Path]:
+    return [] if pair.log is None else [pair.log.path]
+
+
+def _left(one: Contents, facts: Facts, draft: Draft) -> tuple[str, ...]:
+    """Columns that are neither measured nor commands of a run."""
+    section = draft.content.get("commands", {})
+    taken: set[str] = set()
+    if any(log.path == one.named for log in facts.logs):
+        columns = section.get("columns", [])
+        # an open question names all columns that may be meant
+        listed = columns if isinstance(columns, list) else one.unread
+        taken = {name.removeprefix("-") for name in (*listed, *section.get("auxiliary", []))}
+    return tuple(name for name in one.unread if name not in taken)
+
+
+def _named(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
+    return ", ".join(names[:MOST]) + more

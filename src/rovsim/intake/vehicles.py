@@ -1,0 +1,106 @@
+"""Which vehicle files fit a log of commands, and how its columns stand in their order."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.run import Commands
+from rovsim.core.shipped import conf_names
+from rovsim.dynamics.vehicle import Vehicle, load_vehicle
+from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
+from rovsim.intake.survey.csv_files import within
+from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.recording.commands import as_commands
+from rovsim.measurement.recording.tidying import tidy_commands
+
+OUTPUTS = "SERVO"  # columns of a log that may hold more outputs than thrusters
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A vehicle that a log of commands may belong to, and its columns in the vehicle's order.
+
+    `by_name`: the log calls its columns as the vehicle file does.
+    """
+
+    name: str
+    vehicle: Vehicle
+    columns: tuple[str, ...]
+    kind: LoggedKind
+    by_name: bool
+
+
+def fitting(drive: CommandCandidate) -> list[Fit]:
+    """Vehicles of conf/vehicle/ that the columns allow; only those with the same names, if any."""
+    fits = [fit for name in conf_names("vehicle") if (fit := _fit(name, drive)) is not None]
+    return [fit for fit in fits if fit.by_name] or fits
+
+
+def _fit(name: str, drive: CommandCandidate) -> Fit | None:
+    vehicle = load_vehicle(name)
+    expected = vehicle.command_columns
+    if drive.kind in ("demand", "wrench"):
+        return (
+            Fit(name, vehicle, drive.columns, drive.kind, False)
+            if _drives(vehicle, drive)
+            else None
+        )
+    # port and starboard, fins by name: t1, t2 … are names that anybody gives
+    own = not all(column[-1].isdigit() for column in expected)
+    held = {*drive.columns, *(drive.rest if own else ())}
+    if expected and (set(expected) == set(drive.columns) or (own and set(expected) <= held)):
+        kind = drive.kind or _kind(drive, vehicle)
+        return Fit(name, vehicle, expected, kind, own) if kind else None
+    count = len(expected)
+    outputs = all(column.startswith(OUTPUTS) for column in drive.columns)
+    if drive.kind is None or not count or len(drive.columns) < count or any(vehicle.angles):
+        return None
+    if len(drive.columns) == count or outputs:
+        return Fit(name, vehicle, drive.columns[:count], drive.kind, False)
+    return None
+
+
+def _kind(drive: CommandCandidate, vehicle: Vehicle) -> LoggedKind | None:
+    """Kind by the columns of thrusters; those of angles are rad in any log."""
+    own = [n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle]
+    value = drive.of(own).ravel()
+    kinds: tuple[LoggedKind, ...] = ("pwm", "normalized")
+    return next((kind for kind in kinds if within(value, kind)), None)
+
+
+def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
+    """Whether the vehicle can do what the log asks of it."""
+    log = drive.log()
+    moving = {axis for k, axis in enumerate(log.axis_numbers) if np.nanstd(drive.value[:, k]) > 0}
+    if not vehicle.free[list(moving)].all():
+        return False
+    if drive.kind == "wrench":
+        return True
+    mixer = vehicle.thrusters.mixer
+    return mixer is not None and all(vehicle.thrusters.mixing()[:, axis].any() for axis in moving)
+
+
+def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
+    """The commands of a log as the vehicle takes them; None where they are not of that kind."""
+    log = drive.log(fit.columns, fit.kind)
+    angles = [
+        n for n, angle in zip(fit.vehicle.command_columns, fit.vehicle.angles, strict=True) if angle
+    ]
+    if not log.per_axis:
+        log = log.model_copy(update={"angles": [n for n in log.names if n in angles]})
+    chosen = drive.of(log.names)
+    try:
+        export = as_commands(
+            drive.time, chosen, log, lambda line, column: str(path), pulses=_pulses(chosen, log)
+        )
+        return tidy_commands(export, path)[0]
+    except BadInput:
+        return None
+
+
+def _pulses(value: Array, log: CommandLog) -> bool:
+    """Whether demands are logged as pulses of a radio."""
+    return log.kind == "demand" and within(value.ravel(), "pwm")

@@ -1,0 +1,99 @@
+"""A proposal as a commented campaign.yaml."""
+
+import io
+import textwrap
+from typing import Any, Mapping
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from rovsim.intake.proposal import CampaignProposal, Question
+
+WIDTH = 110
+HEAD = (
+    "Written by `rovsim init` from what stands in the recordings. Values without a comment were "
+    "found there; 'guess' marks what may be otherwise, and says why it was taken. docs/formats.md "
+    "explains the keys."
+)
+
+
+def as_yaml(proposal: CampaignProposal) -> str:
+    """The text of campaign.yaml; every question is a comment above the line it asks for."""
+    document = CommentedMap()
+    for key, value in proposal.content.items():
+        document[key] = _node(value, flow=False)
+    comments = {place: [*lines] for place, lines in proposal.comments.items()}
+    for question in proposal.questions:
+        comments.setdefault(question.place, []).extend(_asked(question))
+    for place, lines in comments.items():
+        _write(document, place.split("."), lines)
+    document.yaml_set_start_comment(_wrapped([HEAD, *_open(proposal)], WIDTH))
+    yaml, text = YAML(), io.StringIO()
+    yaml.width, yaml.allow_unicode = 1 << 16, True
+    yaml.indent(mapping=2, sequence=4, offset=2)
+    yaml.dump(document, text)
+    return text.getvalue()
+
+
+def _open(proposal: CampaignProposal) -> list[str]:
+    count = len(proposal.questions)
+    asked = f"{count} line{'s' * (count > 1)} to be answered: look for ANSWER." if count else ""
+    return [*([asked] if asked else []), *(f"CHECK: {check}" for check in proposal.checks)]
+
+
+def _asked(question: Question) -> list[str]:
+    choices = "; ".join(f"{v} ({meaning})" if meaning else v for v, meaning in question.answers)
+    more = " or another" if question.free else ""
+    return [f"ANSWER: {question.asks} {choices}{more}".rstrip()]
+
+
+def _node(value: Any, flow: bool) -> Any:
+    """Nodes that take comments; lists of scalars and what lies in a list stand on one line."""
+    found: CommentedMap | CommentedSeq
+    if isinstance(value, Mapping):
+        found = CommentedMap((key, _node(inner, flow)) for key, inner in value.items())
+    elif isinstance(value, list):
+        inner_flow = any(isinstance(inner, Mapping) for inner in value)
+        found = CommentedSeq(_node(inner, inner_flow or flow) for inner in value)
+        flow = flow or not inner_flow
+    else:
+        return value
+    if flow:
+        found.fa.set_flow_style()
+    return found
+
+
+def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
+    """Put a comment above the line of a place; inside a flow mapping: above the whole of it."""
+    node: Any = document
+    depth = 0
+    for part in place[:-1]:
+        inner = node[int(part)] if isinstance(node, CommentedSeq) else node[part]
+        if isinstance(node, CommentedSeq):
+            return _above(node, int(part), lines, depth)
+        node, depth = inner, depth + 2
+    last: Any = place[-1]
+    return _above(node, int(last) if isinstance(node, CommentedSeq) else last, lines, depth)
+
+
+def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
+    old = node.ca.items.get(key)
+    before = [*_texts(old), _wrapped(lines, WIDTH - depth)]
+    node.yaml_set_comment_before_after_key(key, before="\n".join(before), indent=depth)
+
+
+def _texts(old: Any) -> list[str]:
+    """Comments that already stand above a key; setting them again would lose them."""
+    tokens = (old[1] or []) if old and len(old) > 1 else []
+    found = [token.value.strip().removeprefix("# ").removeprefix("#") for token in tokens]
+    if old and len(old) > 1:
+        old[1] = None
+    return found
+
+
+def _wrapped(lines: list[str], width: int) -> str:
+    filled = [
+        textwrap.wrap(line, width - 2, break_long_words=False, break_on_hyphens=False) or [""]
+        for line in lines
+    ]
+    return "\n".join(part for parts in filled for part in parts)
