@@ -27,7 +27,8 @@ from rovsim.intake.survey.starts import find_start
 from rovsim.intake.write import write_proposal
 from rovsim.intake.yaml_file import as_yaml
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.recording.readers import Export, mocap_readers
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.readers import mocap_readers
 from said import unfolded
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), min_size=1)

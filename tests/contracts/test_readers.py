@@ -41,7 +41,8 @@ ONE_FILE = '''
 
 import numpy as np
 
-from rovsim.measurement.recording.readers import Export, FileAxes, MocapReader
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.readers import FileAxes, MocapReader
 from rovsim.measurement.recording.signature import Signature, starts_with
 
 

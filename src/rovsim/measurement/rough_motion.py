@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import continuous, normalized, turns, unrotate
 from rovsim.measurement.recording.channels import Channel, Channels
-from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.clock import time_step
 

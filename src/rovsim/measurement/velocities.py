@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import conjugate, log, multiply, unrotate
 from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.recording.csv_checks import LIMITS
-from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.recording import Recording
 
 WINDOW = 0.5  # s, over which poses and velocities are compared: slower than noise

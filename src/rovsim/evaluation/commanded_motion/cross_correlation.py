@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from numpy.lib.stride_tricks import sliding_window_view
 
 from rovsim.measurement.quality import EXCITED
-from rovsim.measurement.recording.readers import finite_rows
+from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step
 

@@ -5,7 +5,8 @@ from collections import defaultdict
 from typing import Iterator, Sequence
 
 from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
-from rovsim.measurement.recording.table import TIME, Lines
+from rovsim.measurement.recording.delimited import Lines
+from rovsim.measurement.recording.named_columns import TIME
 from rovsim.measurement.recording.units import TIMES, split_unit
 
 # Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.intake.survey.sizes import Key, Unit
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.exports import Export
 
 LoggedKind = Literal["pwm", "normalized", "demand", "wrench"]
 

@@ -12,13 +12,9 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.csv import KNOWN
-from rovsim.measurement.recording.table import (
-    TIME,
-    Lines,
-    column_places,
-    numbers,
-    without_cut_line,
-)
+from rovsim.measurement.recording.delimited import Lines, without_cut_line
+from rovsim.measurement.recording.named_columns import TIME, column_places
+from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.times import times
 
 # Columns that count or watch something, whatever their size.

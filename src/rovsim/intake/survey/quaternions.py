@@ -7,7 +7,8 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.csv import QUATERNION
-from rovsim.measurement.recording.table import Lines, numbers
+from rovsim.measurement.recording.delimited import Lines
+from rovsim.measurement.recording.numbers import numbers
 
 NUMBERED = re.compile(
     r"(q|quat|quaternion|orientation|rot|rotation)[\W_]*(\d)[\W_]*", re.IGNORECASE

@@ -11,7 +11,7 @@ from rovsim.core.robust import usual_range
 from rovsim.core.rotations import unwrapped
 from rovsim.measurement.recording.csv import EULER, POSITION
 from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
-from rovsim.measurement.recording.table import Lines
+from rovsim.measurement.recording.delimited import Lines
 from rovsim.measurement.recording.units import DEGREE, split_unit
 
 # Sizes that no vehicle reaches in a tank or a bay.

@@ -5,7 +5,8 @@ from numpy import ndarray as Array
 
 from rovsim.intake.survey.sizes import Unit, Units, UnknownUnit
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP
-from rovsim.measurement.recording.table import TIME, Lines
+from rovsim.measurement.recording.delimited import Lines
+from rovsim.measurement.recording.named_columns import TIME
 from rovsim.measurement.recording.times import LATEST, times
 from rovsim.measurement.recording.units import FACTORS
 

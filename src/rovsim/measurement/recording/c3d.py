@@ -15,14 +15,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.attitudes import finite_rows, orthonormal
+from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.foreign import read_by
-from rovsim.measurement.recording.readers import (
-    Export,
-    MocapReader,
-    choose_body,
-    finite_rows,
-    orthonormal,
-)
+from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.signature import Signature
 
 BLOCK, KEY = 512, 0x50

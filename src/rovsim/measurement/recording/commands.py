@@ -10,7 +10,9 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.readers import KIND, CommandExport, finite_rows
+from rovsim.measurement.recording.attitudes import finite_rows
+from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.readers import KIND
 
 # Beyond 1100 .. 1900 us a speed controller gives no more; beyond 800 .. 2200 us no servo signal is
 # valid.

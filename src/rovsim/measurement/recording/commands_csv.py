@@ -11,8 +11,11 @@ from rovsim.core import pwm
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import are_pulses, as_commands, as_logged
-from rovsim.measurement.recording.readers import CommandExport, CommandReader
-from rovsim.measurement.recording.table import column_places, csv_lines, numbers, without_cut_line
+from rovsim.measurement.recording.delimited import csv_lines, without_cut_line
+from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.named_columns import column_places
+from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.readers import CommandReader
 from rovsim.measurement.recording.times import times
 
 HEAVE = AXES.index("heave")

@@ -13,6 +13,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
+from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.csv_checks import (
     ANGULAR,
@@ -22,22 +23,12 @@ from rovsim.measurement.recording.csv_checks import (
     doubt_order,
     without_fillers,
 )
-from rovsim.measurement.recording.readers import (
-    Export,
-    MocapReader,
-    check_units,
-    finite_rows,
-    unit_quaternions,
-)
+from rovsim.measurement.recording.delimited import Lines, csv_lines, is_table, without_cut_line
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.named_columns import column_places
+from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.readers import MocapReader
 from rovsim.measurement.recording.signature import Signature, head_lines
-from rovsim.measurement.recording.table import (
-    Lines,
-    column_places,
-    csv_lines,
-    is_table,
-    numbers,
-    without_cut_line,
-)
 from rovsim.measurement.recording.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
@@ -87,7 +78,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     check_plausible(path, columns.time, columns.values)
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
     if "qw" in names:
-        notes += check_units(columns.of(QUATERNION), partial(_quaternion_at, table))
+        notes += check_unit_length(columns.of(QUATERNION), partial(_quaternion_at, table))
     return _export(columns, mocap, {"cut_lines": cut}, notes)
 
 

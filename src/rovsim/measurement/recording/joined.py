@@ -8,7 +8,7 @@ from typing import Mapping
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.exports import Export
 
 POSES = "full poses"
 TOLD = ("position", "attitude", "euler")  # kinds that full poses tell as well

@@ -13,17 +13,12 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import (
-    Export,
-    FileAxes,
-    MocapReader,
-    check_units,
-    choose_body,
-    finite_rows,
-    unit_quaternions,
-)
+from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
+from rovsim.measurement.recording.delimited import split_lines, without_cut_line
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.readers import FileAxes, MocapReader, choose_body
 from rovsim.measurement.recording.signature import Signature, head_lines
-from rovsim.measurement.recording.table import numbers, split_lines, without_cut_line
 from rovsim.measurement.recording.times import times
 
 RE_EXPORT = (
@@ -69,7 +64,7 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     attitude, found = _attitude(path, layout, angles)
     doubts: tuple[str, ...] = ()
     if angles.shape[1] == 4:
-        doubts = check_units(angles, lambda row: f"{path}, line {table.numbers[row]}")
+        doubts = check_unit_length(angles, lambda row: f"{path}, line {table.numbers[row]}")
     found &= finite_rows(position)
     position, attitude = _upright(position, attitude, mocap)
     notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP)

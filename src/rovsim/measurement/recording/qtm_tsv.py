@@ -11,15 +11,12 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import (
-    Export,
-    MocapReader,
-    choose_body,
-    finite_rows,
-    orthonormal,
-)
+from rovsim.measurement.recording.attitudes import finite_rows, orthonormal
+from rovsim.measurement.recording.delimited import Lines, split_lines, without_cut_line
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.signature import Signature, head_lines
-from rovsim.measurement.recording.table import Lines, numbers, split_lines, without_cut_line
 from rovsim.measurement.recording.times import times
 
 POSITION = ["X", "Y", "Z"]

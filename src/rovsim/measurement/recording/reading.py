@@ -15,14 +15,9 @@ from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.channels import Channels
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP
+from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.joined import join
-from rovsim.measurement.recording.readers import (
-    KIND,
-    Export,
-    command_readers,
-    mocap_readers,
-    reader_of,
-)
+from rovsim.measurement.recording.readers import KIND, command_readers, mocap_readers, reader_of
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, tidy_export
 

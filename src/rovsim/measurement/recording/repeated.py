@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import turns
-from rovsim.measurement.recording.readers import Export
+from rovsim.measurement.recording.exports import Export
 
 # A camera slower than its log: nearly all poses stand in several lines, most of them in as many.
 FEWEST, NEARLY_ALL, MOST = 20, 0.9, 0.8  # poses; shares

@@ -10,8 +10,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.robust import LONG_STEP
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy
+from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.one_run import check_one_run
-from rovsim.measurement.recording.readers import CommandExport, Export
 from rovsim.measurement.recording.repeated import without_repeated
 
 RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below

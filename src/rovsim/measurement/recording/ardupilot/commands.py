@@ -11,7 +11,8 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.ardupilot.logs import needs, open_log
 from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.commands import as_commands
-from rovsim.measurement.recording.readers import CommandExport, CommandReader
+from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.readers import CommandReader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.
 SOURCES = {

@@ -12,7 +12,8 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.ardupilot.logs import SIGNATURES, needs, open_log
 from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.channels import Channel, measured
-from rovsim.measurement.recording.readers import Export, FileAxes, MocapReader
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.readers import FileAxes, MocapReader
 
 DEGREE = np.pi / 180.0
 MILLI_G = 9.80665e-3  # m/s2: RAW_IMU of ArduPilot is in milli-g

@@ -12,7 +12,8 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
-from rovsim.measurement.recording.readers import CommandExport, CommandReader
+from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.readers import CommandReader
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")

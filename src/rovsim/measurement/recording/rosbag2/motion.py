@@ -6,15 +6,10 @@ import numpy as np
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import Mocap, Topics
+from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
 from rovsim.measurement.recording.channels import Channel, measured
-from rovsim.measurement.recording.readers import (
-    Export,
-    FileAxes,
-    MocapReader,
-    check_units,
-    finite_rows,
-    unit_quaternions,
-)
+from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.readers import FileAxes, MocapReader
 from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
 from rovsim.measurement.recording.rosbag2.messages import Reading, pose, readings
 from rovsim.measurement.recording.signature import Signature, starts_with
@@ -71,7 +66,7 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
     attitude, seen = unit_quaternions(found.value[:, 3:])
     seen &= finite_rows(position)
     place = f"{bag.path}, topic {topic}"
-    doubts = check_units(found.value[:, 3:], lambda row: f"{place}, message {row + 1}")
+    doubts = check_unit_length(found.value[:, 3:], lambda row: f"{place}, message {row + 1}")
     notes = (*found.notes, *notes, *doubts)
     return Export(found.time, position, attitude, seen, channels=channels, notes=notes)
 

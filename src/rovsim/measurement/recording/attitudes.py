@@ -1,0 +1,65 @@
+"""Which quaternions and matrices of a file are rotations."""
+
+from typing import Callable
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.core.rotations import normalized
+
+# A rotation matrix printed to six digits is orthonormal to about 1e-6; a cut or damaged line is
+# not. The same bound holds for the length of quaternions.
+ORTHONORMAL_WITHIN = UNIT_WITHIN = 0.1
+
+
+def finite_rows(*arrays: Array) -> Array:
+    """Rows (n,) in which every one of `arrays` (n, k) is finite."""
+    return np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in arrays])
+
+
+def unit_quaternions(values: Array) -> tuple[Array, Array]:
+    """Quaternions (n, 4) of unit length, and which of `values` (n, 4) are rotations at all.
+
+    Far from unit length it is none: trackers write zeros where the body was not found.
+    """
+    found = finite_rows(values) & (np.abs(_length(values) - 1.0) < UNIT_WITHIN)
+    return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
+
+
+def check_unit_length(values: Array, place: Callable[[int], str]) -> tuple[str, ...]:
+    """Sentences about quaternions (n, 4) that are none, as they have not length 1; zeros may be.
+
+    `place` says where a row stands, for people.
+
+    Raises:
+        BadInput: most of those that are not zeros are none.
+    """
+    given = finite_rows(values) & values.any(axis=1)
+    length = _length(values)
+    off = np.flatnonzero(given & ~(np.abs(length - 1.0) < UNIT_WITHIN))
+    if 2 * len(off) > given.sum():
+        raise BadInput(
+            f"a quaternion of length {length[off[0]]:.3g} ({len(off)} of {given.sum()} have not "
+            "length 1)",
+            where=place(int(off[0])),
+            expected="quaternions of length 1, or zeros where the body was not found",
+            remedy="Check which columns hold it, and that all four have the same scale; if they "
+            "are a multiple of it, divide them by their length.",
+        )
+    if not len(off):
+        return ()
+    return (f"{len(off)} lines whose quaternion has not length 1 count as not found.",)
+
+
+def _length(values: Array) -> Array:
+    """Length (n,) of rows (n, k)."""
+    with np.errstate(over="ignore"):
+        return np.linalg.norm(values, axis=1)
+
+
+def orthonormal(R: Array) -> Array:
+    """Where the matrices (n, 3, 3) are rotations: orthonormal and right-handed."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        deviation = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+        return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)

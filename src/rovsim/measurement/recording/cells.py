@@ -1,0 +1,28 @@
+"""Cells of delimited text: numbers, and what stands for "not measured"."""
+
+import numpy as np
+from numpy import ndarray as Array
+
+MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-"}  # words for "not measured", in any case
+# What loggers write where a sensor gave nothing; believed where no other value comes near.
+FILLERS = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
+NEAR = 0.5  # of a filler: a column that reaches so far may mean it
+
+
+def find_filler(values: Array) -> float | None:
+    """The value of a column (n,) that stands for "not measured"; None without one."""
+    for filler in FILLERS:
+        here = values == filler
+        others = np.abs(values[~here & np.isfinite(values)])
+        if here.sum() > 1 and len(others) and others.max() < NEAR * abs(filler):
+            return filler
+    return None
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell holds a number, or says that nothing was measured."""
+    try:
+        float(cell)
+    except ValueError:
+        return cell.strip().lower() in MISSING
+    return True

@@ -1,0 +1,143 @@
+"""Delimited text: where the names stand, what separates cells, and the lines below."""
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Iterator, Sequence
+
+from rovsim.core.errors import BadInput
+from rovsim.core.files import read_text
+from rovsim.measurement.recording.cells import is_number
+from rovsim.measurement.recording.dates import is_date
+from rovsim.measurement.recording.signature import decoded
+from rovsim.measurement.recording.units import with_units
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines below a line of column names, their cells `separator` apart.
+
+    `numbers` are the line numbers in the file, from 1; `ended` is False when the file stops in
+    the middle of a line (no line end after it). Lines are split when they are asked for: cells
+    take ten times the room of their text.
+    """
+
+    path: Path
+    names: list[str]
+    separator: str
+    rows: Sequence[str]
+    numbers: Sequence[int]
+    ended: bool = True
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def cells(self, row: int) -> list[str]:
+        """Cells of one line, counted from the first below the names, or from the last."""
+        return self.rows[row].split(self.separator)
+
+    def all_cells(self) -> Iterator[list[str]]:
+        """Cells of each line."""
+        return (row.split(self.separator) for row in self.rows)
+
+    def between(self, first: int, last: int) -> "Lines":
+        """Lines from the first up to the one before the last."""
+        rows, numbers = self.rows[first:last], self.numbers[first:last]
+        return replace(self, rows=rows, numbers=numbers, ended=True)
+
+
+def csv_lines(path: Path) -> Lines:
+    """Lines of a csv file below its line of column names.
+
+    Commas separate, or semicolons or tabs, and then a comma in a number is a decimal point; else
+    blanks. Remarks (#), quotes, a line of units and further lines of the same names are no data.
+
+    Raises:
+        BadInput: the file is empty.
+    """
+    text = read_text(path)
+    lines = text.split("\n")
+    header = find_header(lines)
+    if header is None:
+        raise BadInput(
+            "the file is empty",
+            where=path,
+            expected="a line of column names and lines of numbers",
+            remedy="Export the run again.",
+        )
+    lines = [line.replace('"', "") for line in lines] if _is_quoted(lines[header]) else lines
+    head = lines[header].lstrip("# ")
+    separator = find_separator(head, next((x for x in lines[header + 1 :] if x.strip()), ""))
+    if separator == " ":
+        lines, separator = [",".join(line.lstrip("# ").split()) for line in lines], ","
+        head = lines[header]
+    names = [cell.strip().strip('"') for cell in head.rstrip(f" {separator}").split(separator)]
+    rows = [line if line != lines[header] else "" for line in lines]  # of files put end to end
+    if separator != ",":
+        rows = [line.replace(",", ".") for line in rows]
+    names, below = with_units(names, rows, header, separator)
+    return split_lines(path, rows, below, names, separator, ended=text.endswith("\n"))
+
+
+def find_separator(head: str, below: str) -> str:
+    """What separates the cells of a line of names and of the line below it."""
+    fitting = [s for s in ",;\t" if head.count(s)]
+    # last the comma: names may have as many ("x, m") as the numbers below have decimal ones
+    alike = [s for s in reversed(fitting) if head.count(s) == below.count(s)]
+    if fitting:
+        return (alike or fitting)[0]
+    return " " if len(head.split()) == len(below.split()) > 1 else ","
+
+
+def is_table(head: bytes) -> bool:
+    """Whether text begins with a line of names, and numbers below it, with blanks between them."""
+    lines = (decoded(head) or "").split("\n")
+    header = find_header(lines)
+    if header is None:
+        return False
+    names, *rows = [line.lstrip("# ").split() for line in lines[header:] if line.strip()]
+    numeric = [all(map(is_number, row)) for row in rows[:1]]
+    return numeric == [True] and len(names) == len(rows[0]) > 1 and not any(map(is_number, names))
+
+
+def _is_quoted(head: str) -> bool:
+    """Whether every name stands in quotes, and so every cell may."""
+    return bool(re.fullmatch(r'[#\s]*"[^"]*"(\s*[,;\t]\s*"[^"]*")+\s*', head))
+
+
+def find_header(lines: Sequence[str]) -> int | None:
+    """Which line holds the names of columns: the first that is no remark.
+
+    Remarks start with #; where numbers follow at once, the last of them holds the names.
+    """
+    filled = [n for n, line in enumerate(lines) if line.strip()]
+    first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
+    before = [n for n in filled if first is None or n < first]
+    begins = "" if first is None else re.split(r"[,;\t]", lines[first])[0]
+    if first is None or (before and (is_number(begins.split(" ")[0]) or is_date(begins))):
+        return before[-1] if before else first
+    return first
+
+
+def split_lines(
+    path: Path, lines: list[str], header: int, names: list[str], separator: str, *, ended: bool
+) -> Lines:
+    """Split the lines below line `header` (index from 0); blank ones are skipped."""
+    filled = [n for n in range(header + 1, len(lines)) if lines[n].strip()]
+    rows = [lines[n] for n in filled]
+    return Lines(path, names, separator, rows, [n + 1 for n in filled], ended)
+
+
+def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
+    """Drop a last line that was cut; return how many were dropped (0, 1).
+
+    It is cut when it stops before one of the `columns` in use, or in the middle of such a cell.
+    """
+    if not len(table):
+        return table, 0
+    last = table.cells(-1)
+    short = len(last) <= max(columns)
+    ragged = not table.ended and len(last) - 1 in columns and not is_number(last[-1])
+    if not (short or ragged):
+        return table, 0
+    return table.between(0, len(table) - 1), 1

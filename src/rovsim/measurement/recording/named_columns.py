@@ -1,0 +1,86 @@
+"""Columns by their names, and what is said where one is missing, most often that of the times."""
+
+import re
+from pathlib import Path
+from typing import Sequence
+
+from rovsim.core.errors import BadInput, nearest
+from rovsim.measurement.recording.cells import is_number
+
+TIME = "time_s"
+# What people, loggers and pandas call a column of times; one without a name may be such.
+LIKE_TIME = re.compile(
+    r"|unnamed.*|index|t|t[\W_]+.*|.*time.*|.*stamp.*|secs?|seconds|utc.*|clock.*|elapsed.*|date.*",
+    re.IGNORECASE,
+)
+FRAMES = {"frame", "frames", "frame_no", "frame_number", "frame number"}
+
+
+def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
+    """Places of the wanted columns among `names`.
+
+    Raises:
+        BadInput: one is missing, or named twice.
+    """
+    for name in wanted:
+        if names.count(name) > 1:
+            raise BadInput(
+                f"two columns are named '{name}'",
+                where=path,
+                expected="every column named once",
+                remedy="Rename or remove one of them.",
+            )
+        if name not in names and name == TIME:
+            raise no_time(path, names)
+        if name not in names:
+            others = [other for other in names if other not in wanted]
+            raise BadInput(
+                f"no column '{name}', but {', '.join(names)}",
+                where=path,
+                expected=f"the columns {', '.join(wanted)}",
+                remedy=nearest(name, others) if others else "Export again with that column.",
+            )
+    return [names.index(name) for name in wanted]
+
+
+def no_time(path: Path, names: list[str]) -> BadInput:
+    """The error of a file without a column of times: which one may be it, by its name."""
+    if all(is_number(name) for name in names):
+        return BadInput(
+            f"no line of column names above the numbers {', '.join(names[:4])}, …",
+            where=path,
+            expected=f"names in the first line, among them {TIME}",
+            remedy="Put one above them: time_s,x_m,y_m,z_m,qw,qx,qy,qz or time_s,t1,t2,… for what "
+            "the columns hold (docs/formats.md).",
+        )
+    told = [
+        f"'{name}'" if name else f"one without a name (the {k + 1}.)"
+        for k, name in enumerate(names)
+    ]
+    likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]
+    return BadInput(
+        f"no column '{TIME}', but {', '.join(told)}",
+        where=f"{path}, column names",
+        expected=f"a column {TIME}: seconds, dates or times of day (ISO 8601)",
+        remedy=_how_to_name_times(names, likely),
+    )
+
+
+def _how_to_name_times(names: Sequence[str], likely: Sequence[str]) -> str:
+    if halves := find_halves(names):
+        return f"Write one column {TIME} = {halves[0]} + 1e-9 * {halves[1]}."
+    if likely:
+        return f"Did you mean {' or '.join(likely)}? If it holds the times, name it {TIME}."
+    if any(name.lower() in FRAMES for name in names):
+        return f"Write a column {TIME}: the frame divided by the rate of the cameras in Hz."
+    return f"Give the column of the times the name {TIME}."
+
+
+def find_halves(names: Sequence[str]) -> tuple[str, str] | None:
+    """Columns of whole seconds and of the nanoseconds beyond them, as stamps of ROS come apart."""
+    for name in names:
+        if found := re.fullmatch(r"(.*?)n(ano)?sec(ond)?s?", name, re.IGNORECASE):
+            whole = re.compile(re.escape(found[1]) + r"sec(ond)?s?", re.IGNORECASE)
+            if other := next((n for n in names if whole.fullmatch(n)), None):
+                return other, name
+    return None

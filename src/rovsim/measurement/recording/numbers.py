@@ -1,0 +1,78 @@
+"""Numbers of the cells, with the line and column of whatever is wrong."""
+
+import re
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.core.errors import BadInput
+from rovsim.measurement.recording.cells import MISSING
+from rovsim.measurement.recording.delimited import Lines
+
+AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
+
+
+def numbers(table: Lines, columns: list[int]) -> Array:
+    """Numbers (lines, columns) of those columns; an empty cell is NaN.
+
+    Raises:
+        BadInput: a cell is missing or holds no number.
+    """
+    found = np.empty((len(table), len(columns)))
+    for first in range(0, len(table), AT_ONCE):
+        some = table.between(first, first + AT_ONCE)
+        found[first : first + AT_ONCE] = _plain_numbers(some, columns)
+    return found
+
+
+def _plain_numbers(table: Lines, columns: list[int]) -> Array:
+    try:
+        return np.loadtxt(
+            table.rows, comments=None, delimiter=table.separator, usecols=columns, ndmin=2
+        )
+    except ValueError:  # empty cells, or what a message will be about
+        rows = zip(table.all_cells(), table.numbers, strict=True)
+        return np.array([[_number(table, row, n, c) for c in columns] for row, n in rows])
+
+
+def _number(table: Lines, row: list[str], line: int, column: int) -> float:
+    if column >= len(row):
+        raise BadInput(
+            f"the line has {len(row)} cells and stops before '{table.names[column]}'",
+            where=f"{table.path}, line {line}",
+            expected=f"{len(table.names)} cells",
+            remedy="Export the run again, or remove that line.",
+        )
+    cell = row[column].strip()
+    if cell.lower() in MISSING:
+        return float("nan")
+    try:
+        return float(cell)
+    except ValueError:
+        raise bad_cell(table, line, column, cell, "a number") from None
+
+
+def bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
+    """The error of a cell that holds something else than expected."""
+    place = f"{table.path}, line {line}, column '{table.names[column]}'"
+    if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:|\d\d?-[A-Za-z]{3}-\d{2,4}", cell):
+        return BadInput(
+            f"{cell!r} is a date or a time of day",
+            where=place,
+            expected=expected,
+            remedy="Only times may be such, all of a file alike, as 2026-05-12T10:00:12.5 or "
+            "10:00:12.5; else write seconds.",
+        )
+    if re.fullmatch(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?", cell):
+        return BadInput(
+            f"{cell!r} is written with a decimal comma",
+            where=place,
+            expected="a decimal point",
+            remedy="Export again with decimal points.",
+        )
+    return BadInput(
+        f"the cell holds {cell!r}" if cell else "the cell is empty",
+        where=place,
+        expected=expected,
+        remedy="Correct or remove that line.",
+    )
