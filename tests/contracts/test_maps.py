@@ -44,3 +44,11 @@ MAPS = {
 @pytest.mark.parametrize("package", MAPS.values(), ids=MAPS)
 def test_a_map_shows_every_module(package):
     assert sorted(mapped(package)) == sorted(modules(package))
+
+
+def test_the_steps_of_a_diagnosis_are_where_its_docstring_says():
+    source = (SOURCE / "diagnosis" / "procedure.py").read_text(encoding="utf-8")
+    told = ast.get_docstring(ast.parse(source)) or ""
+    places = re.findall(r"^[a-z ]+? {2,}([a-z_/]+) {2,}\S", told, re.MULTILINE)[1:]
+    assert len(places) > 10
+    assert not [place for place in places if not (SOURCE / "diagnosis" / f"{place}.py").is_file()]

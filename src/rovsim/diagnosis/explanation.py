@@ -35,8 +35,8 @@ Stages = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
-    """What is asked, and what is taken for given while it is answered.
+class DiagnosisProblem:
+    """What is to be explained, and what is taken for given meanwhile.
 
     `smooths`: whether the cameras may smooth; `usable` says whether the water may wander.
     """
@@ -53,40 +53,40 @@ class Question:
 class Explanation:
     """An answer, where its search began, and what it was validated by.
 
-    `question`: as it was answered; `smoothing` of the cameras, None for none.
+    `problem`: as it was solved; `smoothing` of the cameras, None for none.
     """
 
-    question: Question
+    problem: DiagnosisProblem
     answer: SettledAnswer
     start: SearchStart
     smoothing: Smoothing | None
     holdout: HoldoutValidation
 
 
-def explain(question: Question, stage: Stages) -> Explanation:
+def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
     """What explains the runs; asked anew without a premise that does not hold.
 
     Raises:
         ModelLost: no filter holds the model to some of the runs.
     """
-    base, usable = question.base, question.usable
+    base, usable = problem.base, problem.usable
     stage("observing")
-    smoothing = find_smoothing(base, usable.runs) if question.smooths else None
+    smoothing = find_smoothing(base, usable.runs) if problem.smooths else None
     chosen, apart = keep_apart(usable.runs)
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
         stage("searching")
-        selection = search(start.workspace, start.nothing, question.seed)
+        selection = search(start.workspace, start.nothing, problem.seed)
         return (
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
         )
 
-    starts = _begin(question, smoothing, chosen)
+    starts = _begin(problem, smoothing, chosen)
     start, selection, smoothing = search_consistent(starts, search_from)
     holdout = HoldoutValidation(apart, usable.runs, selection.best.noise.drift is not None)
-    answer = _unmask(settle_noticed(selection, usable, holdout, question.seed))
+    answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
-        return explain(replace(question, smooths=False), stage)
+        return explain(replace(problem, smooths=False), stage)
     stage("checking")
     if answer.lasting:
         seen = seen_through(base, smoothing)
@@ -94,8 +94,8 @@ def explain(question: Question, stage: Stages) -> Explanation:
         answer = choose(answer, _unmask(joint), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.seen.e, noise):
-        return explain(replace(question, usable=usable.where_no_water_wanders()), stage)
-    return Explanation(question, answer, start, smoothing, holdout)
+        return explain(replace(problem, usable=usable.where_no_water_wanders()), stage)
+    return Explanation(problem, answer, start, smoothing, holdout)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:
@@ -107,7 +107,7 @@ def _unmask(answer: SettledAnswer) -> SettledAnswer:
 
 
 def _begin(
-    question: Question, smoothing: Smoothing | None, runs: Sequence[ObservedRun]
+    problem: DiagnosisProblem, smoothing: Smoothing | None, runs: Sequence[ObservedRun]
 ) -> Iterator[SearchStart]:
     """From where to search, the last one where none before ends where it began; made when asked.
 
@@ -117,8 +117,8 @@ def _begin(
     """
 
     def look(smoothing: Smoothing | None) -> SearchStart:
-        seen = seen_through(question.base, smoothing)
-        workspace = _observe(seen, runs, question)
+        seen = seen_through(problem.base, smoothing)
+        workspace = _observe(seen, runs, problem)
         return SearchStart(workspace.fit(Hypothesis(seen)), workspace, smoothing)
 
     told = look(smoothing)
@@ -126,14 +126,16 @@ def _begin(
         yield told
         return
     nothing = SearchResult(told.workspace, told.nothing, ())
-    _, finer = absorb_delay(nothing, question.base, smoothing)
+    _, finer = absorb_delay(nothing, problem.base, smoothing)
     if finer is smoothing or not finer.is_near(smoothing):
         yield told
     if finer is not smoothing:
         yield look(finer)
 
 
-def _observe(base: Model, runs: Sequence[ObservedRun], question: Question) -> SearchWorkspace:
+def _observe(
+    base: Model, runs: Sequence[ObservedRun], problem: DiagnosisProblem
+) -> SearchWorkspace:
     """Columns of the candidates, and the noise that is left when all of them may act at once.
 
     The columns are made with filters that take all the base misses for noise: these hold it close
@@ -142,7 +144,7 @@ def _observe(base: Model, runs: Sequence[ObservedRun], question: Question) -> Se
     first = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)
     close = first.redesign(base, noise)
-    listed = list_candidates(runs, question.catalogue, base.vehicle)
+    listed = list_candidates(runs, problem.catalogue, base.vehicle)
     candidates = [one for one in listed if (base + one.start).possible]
     while True:
         sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
@@ -151,5 +153,5 @@ def _observe(base: Model, runs: Sequence[ObservedRun], question: Question) -> Se
         if not noise.drift or close.paths:
             break
         close = close.redesign(base, noise)  # forces differ where the water moves
-    workspace = SearchWorkspace(WhiteColumns(close, sensitivities, noise), question.settings)
+    workspace = SearchWorkspace(WhiteColumns(close, sensitivities, noise), problem.settings)
     return workspace.with_noise(Hypothesis(base), noise)

@@ -1,21 +1,24 @@
 """Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-filter bank     the base model runs along the train runs, corrected by a filter
-camera          does the software of the motion capture smooth what it reports?
-sensitivities   how each candidate would change what the filter could not foresee
-search          add, refit, swap, prune; against what chance gives to the best of all candidates
-held out        an addition must help on blocks it was not fitted to, and matter in 2 s windows;
-                where a velocity is not measured, few blocks must not make it sure
-validation      it must replay stretches well that took no part in choosing
-structure       what is left, and no candidate explains; then those too that nobody would notice
-masked laws     where nothing is: do names stand in for a law that they resemble?
-joint fit       where there is some: all that could be wrong together, pruned; it competes
-wandering       where what seems a current that wanders depends on the place: again, without one
-replay fit      where there is some: values that replay best, rather than foresee the next reading
-whole file      where there is none, and the vehicle file is off: all of it, fitted with the rest
-common scale    does a factor of all forces stay open?
-equation        where there is some: a law for it, if one holds; if not, the force in time
-test runs       opened once, for the errors that are reported
+step              where                          what
+filter bank       observer/filter_bank           the base runs along the train runs, corrected
+camera            observer/camera                does software smooth what the cameras report?
+sensitivities     selection/sensitivities        how candidates would change the innovations
+search            selection/forward_selection    add, refit, swap, prune; against chance
+held out          selection/cross_validation     on blocks that an addition was not fitted to
+few blocks        selection/cluster_robust       must not make it sure, without velocities
+validation        selection/holdout_validation   replays of stretches that were kept apart
+structure         checks/residual_structure      what is left, and no candidate explains
+unnoticed         selection/forward_selection    then also those that nobody would notice
+masked laws       equations/masked               do names stand in for a law that they resemble?
+joint fit         selection/joint_fit            all that could be wrong together; it competes
+wandering         observer/drifting_current      is the water that wanders a matter of place? again
+replay fit        selection/replay_fit           values that replay best, where structure is left
+whole file        checks/whole_file              all of a file that is off, where none is left
+common scale      checks/common_scale            does a factor of all forces stay open?
+equation          equations/proposal             a law for what is left
+disturbance       equations/disturbance          the force in time, where there is no law
+test runs         of_campaign                    opened once, for the errors that are reported
 """
 
 from dataclasses import replace
@@ -28,7 +31,7 @@ from rovsim.diagnosis.answer import SettledAnswer, finish, polish_selection
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
-from rovsim.diagnosis.explanation import Explanation, Question, Stages, explain
+from rovsim.diagnosis.explanation import DiagnosisProblem, Explanation, Stages, explain
 from rovsim.diagnosis.observer.divergence import ModelLost
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.observed_run import ObservedRun
@@ -70,7 +73,9 @@ def diagnose_train_runs(
         usable = select_usable(train)
         while usable.enough:
             try:
-                return _name(explain(Question(base, usable, settings, catalogue, seed), stage))
+                return _name(
+                    explain(DiagnosisProblem(base, usable, settings, catalogue, seed), stage)
+                )
             except ModelLost as away:
                 runs, lost = away.leave_out(usable.runs)
                 usable = select_usable(runs, {**usable.lost, **lost})
@@ -79,8 +84,8 @@ def diagnose_train_runs(
 
 def _name(explained: Explanation) -> TrainDiagnosis:
     """All that is said of an explanation: names and how sure they are, and what has none."""
-    question, smoothing = explained.question, explained.smoothing
-    base, usable = question.base, question.usable
+    problem, smoothing = explained.problem, explained.smoothing
+    base, usable = problem.base, problem.usable
     answer, wider, scale = finish(explained.answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
     law = _propose(answer, explained, camera) if answer.lasting else None
@@ -109,7 +114,7 @@ def _name(explained: Explanation) -> TrainDiagnosis:
         structures=answer.structures,
         refused=answer.refused or not answer.fit.is_finite,
         scale=scale,
-        not_observable=list_not_observable(answer.selection, question.catalogue, base.vehicle),
+        not_observable=list_not_observable(answer.selection, problem.catalogue, base.vehicle),
         proposed=proposed,
         stand_ins=tuple(sorted(stand_ins)),
         disturbance=None if proposed else _trace(answer),
@@ -127,7 +132,7 @@ def _propose(
     answer: SettledAnswer, explained: Explanation, camera: Sequence[Named]
 ) -> ProposedLaw | None:
     """An equation for what is left, where one holds."""
-    base, runs, holdout = explained.question.base, explained.question.usable.runs, explained.holdout
+    base, runs, holdout = explained.problem.base, explained.problem.usable.runs, explained.holdout
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
         return polish_selection(replace(answer.selection, best=with_law), runs)
