@@ -59,4 +59,13 @@ def test_noise_stays_what_it_was_where_its_filters_do_not_hold_what_was_found(tm
     assert not workspace.columns.beside(h).finite
     for after in (workspace.update_after(found), workspace.relinearise_if_changed(found)):
         assert np.isfinite(after.noise.disturbance_std).all()
-        assert np.isfinite(after.columns.products(found.seen)).all()
+        assert np.isfinite(after.columns.gram(found.seen)).all()
+
+
+def test_a_gram_matrix_is_made_once_and_anew_under_another_noise(tmp_path):
+    columns = workspace_of_torque(tmp_path, {PropellerTorque.id: {"ratio": RATIO}}).columns
+    seen = columns.bank.linearise(Hypothesis(columns.bank.model))
+    G = columns.gram(seen)
+    assert columns.gram(seen) is G
+    louder = replace(FIRST_NOISE, disturbance_std=2.0 * FIRST_NOISE.disturbance_std)
+    assert columns.under(columns.bank, louder).gram(seen)[0, 0] < G[0, 0]

@@ -1,11 +1,11 @@
-"""Least squares on inner products is least squares on the columns themselves."""
+"""Least squares on Gram matrices is least squares on the columns themselves."""
 
 import numpy as np
 import pytest
 
 from rovsim.diagnosis.observer.least_squares import (
     eliminate_columns,
-    inner_products,
+    gram,
     project_out,
     select_columns,
     solve,
@@ -21,7 +21,7 @@ def columns():
 def test_the_few_that_matter_are_chosen_among_many(columns):
     noise = np.random.default_rng(5).normal(size=500)
     target = -(3.0 * columns[2] - 2.0 * columns[6]) + 0.1 * noise
-    found = select_columns(inner_products(columns), columns @ target, penalty=12.0)
+    found = select_columns(gram(columns), columns @ target, penalty=12.0)
     assert set(found.chosen) == {2, 6}
     by_name = dict(zip(found.chosen, found.x, strict=True))
     assert by_name[2] == pytest.approx(3.0, abs=0.05)
@@ -34,7 +34,7 @@ def test_two_that_hide_each_other_are_found_from_above(columns):
     apart = np.random.default_rng(6).normal(size=500)
     alike = np.vstack([columns, columns[0] + 0.05 * apart])
     target = -20.0 * (alike[0] - alike[-1]) + columns[7]  # of `apart`, which no column shows
-    H, b = inner_products(alike), alike @ target
+    H, b = gram(alike), alike @ target
     alone = np.max(b**2 / np.diag(H) * (np.arange(len(b)) != 7))
     found = eliminate_columns(H, b, penalty=2.0 * alone)
     assert set(found.chosen) == {0, 7, 8}
@@ -43,12 +43,12 @@ def test_two_that_hide_each_other_are_found_from_above(columns):
 
 
 def test_nothing_is_kept_of_what_explains_nothing(columns):
-    assert eliminate_columns(inner_products(columns), np.zeros(8), penalty=12.0).chosen == ()
+    assert eliminate_columns(gram(columns), np.zeros(8), penalty=12.0).chosen == ()
 
 
 def test_the_joint_solution_is_the_bounded_one(columns):
     target = -(3.0 * columns[0] - 2.0 * columns[1])
-    b, H = columns[:2] @ target, inner_products(columns[:2])
+    b, H = columns[:2] @ target, gram(columns[:2])
     free = solve_bounded(H, b, 0.0, np.full(2, -9.0), np.full(2, 9.0))
     np.testing.assert_allclose(free.x, [3.0, -2.0], atol=1e-6)
     held = solve_bounded(H, b, 0.0, np.full(2, -1.0), np.full(2, 1.0))
@@ -57,8 +57,7 @@ def test_the_joint_solution_is_the_bounded_one(columns):
 
 
 def test_projected_columns_are_gone(columns):
-    M = inner_products(columns)
-    left = project_out(M, [0, 3])
+    left = project_out(gram(columns), [0, 3])
     np.testing.assert_allclose(left[[0, 3]], 0.0, atol=1e-5)
     basis = np.linalg.qr(columns[[0, 3]].T)[0]
     own = columns[5] - basis @ (basis.T @ columns[5])

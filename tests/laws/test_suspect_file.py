@@ -38,7 +38,7 @@ class Workspace:
         self.readings, self.all = readings, columns
         self.by_name = dict(zip(names, columns, strict=True))
         self.penalty = 2.0 * np.log(len(columns))
-        self.columns = SimpleNamespace(products=self.products)
+        self.columns = SimpleNamespace(gram=self.gram)
         blocks = [CandidateColumns(one, None, own) for one, own in owned]
         self.sensitivities = SimpleNamespace(base_model=BASE, blocks=blocks)
 
@@ -50,15 +50,15 @@ class Workspace:
     def left(self, h):
         return self.readings + h.x @ self.own(h)
 
-    def products(self, h):
+    def gram(self, h):
         rows = np.vstack([self.left(h), self.own(h), self.all])
-        M, own = rows @ rows.T, len(h.x)
-        kept = [0, *range(1 + own, len(M))]
-        return project_out(M, range(1, 1 + own))[np.ix_(kept, kept)]
+        G, own = rows @ rows.T, len(h.x)
+        kept = [0, *range(1 + own, len(G))]
+        return project_out(G, range(1, 1 + own))[np.ix_(kept, kept)]
 
-    def products_without(self, found, term):
+    def gram_without(self, found, term):
         rest = tuple(one for one in found.hypothesis.terms if one is not term)
-        return self.products(Hypothesis(BASE, rest))
+        return self.gram(Hypothesis(BASE, rest))
 
     def fit(self, h):
         x = h.x + np.linalg.lstsq(self.own(h).T, -self.left(h), rcond=None)[0]

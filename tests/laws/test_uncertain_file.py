@@ -52,8 +52,8 @@ def workspace_of(without=0.0):
     """`without`: what is left beside a loose file if a term is taken away."""
     return SimpleNamespace(
         penalty=PENALTY,
-        columns=SimpleNamespace(products=lambda seen: np.array([[seen]])),
-        products_without=lambda found, term: np.array([[without]]),
+        columns=SimpleNamespace(gram=lambda seen: np.array([[seen]])),
+        gram_without=lambda found, term: np.array([[without]]),
         sensitivities=SimpleNamespace(base_model=None, blocks=()),
     )
 
@@ -105,7 +105,7 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
     base = nominal(load_vehicle(default_vehicle()))
     workspace = SimpleNamespace(
         penalty=400.0,
-        columns=SimpleNamespace(products=lambda seen: rows @ rows.T),
+        columns=SimpleNamespace(gram=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
     )
     both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))

@@ -18,7 +18,7 @@ from rovsim.core.run import Commands
 from rovsim.core.yaml_files import read_yaml
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import inner_products
+from rovsim.diagnosis.observer.least_squares import gram
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.diagnosis.selection.fit import fit, polish
@@ -164,7 +164,7 @@ def test_the_information_that_was_promised_is_found_in_the_flight(designed):
     def held(some):
         bank = FilterBank.design(some, found.hypothesis.model, found.noise)
         rows = bank.flatten(bank.linearise(found.hypothesis).J, found.noise)
-        return float(inner_products(rows)[0, 0])
+        return float(gram(rows)[0, 0])
 
     before = held(train)
     promised = read_json(designed / "plan" / "experiment.json")["expects"]["std"][KNOWN]

@@ -25,7 +25,7 @@ from rovsim.design.recording_setup import RecordingSetup
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.innovations import estimate_errors
 from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.least_squares import gram, solve
 from rovsim.diagnosis.observer.noise import design_filters
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised
@@ -139,7 +139,7 @@ def measure_information(
     if not len(own.at.x):
         return np.zeros_like(rival.information)
     flight = [*(0.0 * J for J in own.J[:-1]), own.J[-1]]
-    return np.asarray(inner_products(bank.flatten(flight, prior.noise)))
+    return np.asarray(gram(bank.flatten(flight, prior.noise)))
 
 
 def _expect_log_odds(
@@ -164,7 +164,7 @@ def _expect_log_odds(
     e, J = np.split(bank.flatten(rows, prior.noise), [1])
     e = e[0]
     near = np.eye(len(J)) / REACH**2 + (0.0 if exact else held)
-    x = -solve(inner_products(J) + near, J @ e)
+    x = -solve(gram(J) + near, J @ e)
     left = (e + x @ J).reshape(6, -1)
     before = float(x @ near @ x)
     more = 0 if exact else prior.readings  # readings that it leaves as they were

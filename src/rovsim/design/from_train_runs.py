@@ -10,7 +10,7 @@ from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.settings import Question
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import inner_products
+from rovsim.diagnosis.observer.least_squares import gram
 from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.candidates import Candidate, list_candidates
@@ -154,11 +154,11 @@ def _summarise(
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = penalty * sum(term.choices for term in found.hypothesis.terms)
     two_log_likelihood, taking_up = found.two_log_likelihood - paid, found.hypothesis
-    information = held = inner_products(bank.flatten(found.seen.J, found.noise))
+    information = held = gram(bank.flatten(found.seen.J, found.noise))
     if widest is not None:
         seen = bank.linearise(widest)
         if seen.finite:  # else it cannot move with what nobody needs free
-            taking_up, held = widest, inner_products(bank.flatten(seen.J, found.noise))
+            taking_up, held = widest, gram(bank.flatten(seen.J, found.noise))
     return FittedHypothesis(
         found.hypothesis, information, chosen, two_log_likelihood, taking_up, held
     )

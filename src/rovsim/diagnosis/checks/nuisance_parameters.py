@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
 
@@ -41,6 +41,6 @@ def leave_open(fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> Left
     n = [k for k, name in enumerate(names) if name not in fitted]
     J, e = bank.whiten(seen.J, fit.noise), bank.whiten(seen.e, fit.noise)
     rows = as_rows(J)
-    H, slope = inner_products(rows), rows @ e.ravel()
+    H, slope = gram(rows), rows @ e.ravel()
     along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])
     return LeftOpen(along, H[np.ix_(n, n)] + H[n][:, s] @ along, -slope[n] - along.T @ slope[s])

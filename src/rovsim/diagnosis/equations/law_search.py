@@ -80,7 +80,7 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
     if not terms or not fit.is_finite:
         return None
     columns = fits.project(fit, terms, middle_of(fits.runs), push_thrust)
-    explained = find_alone(columns.products) - fits.penalty
+    explained = find_alone(columns.gram) - fits.penalty
     least = max(fits.chance, 0.0 if grown is None else NEAR * (grown.score - score))
     order = np.argsort(-explained, kind="stable")[:THRUST_LAWS_TRIED]
     laws = {

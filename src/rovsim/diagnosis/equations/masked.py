@@ -36,7 +36,7 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     terms = list_terms(runs)
     fits = LawFits(selection, len(terms))
     columns = fits.project(fit, terms, middle_of(runs))
-    order = np.argsort(-find_alone(columns.products), kind="stable")
+    order = np.argsort(-find_alone(columns.gram), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
     score = workspace.score(fit)
     for judged in fit_products(fits, fit, (), kinds, columns).values():

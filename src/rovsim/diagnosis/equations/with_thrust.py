@@ -120,8 +120,8 @@ def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
 
 def begin(columns: Columns, k: int, h: Hypothesis) -> Hypothesis:
     """A hypothesis with the law of the k-th term, at what the regression gives it."""
-    term, power = columns.terms[k], columns.products[1 + k, 1 + k]
-    law = build_law(term, h.model, float(columns.size[k]), columns.products[0, 1 + k] / power)
+    term, power = columns.terms[k], columns.gram[1 + k, 1 + k]
+    law = build_law(term, h.model, float(columns.size[k]), columns.gram[0, 1 + k] / power)
     return replace(h, terms=(*h.terms, law))
 
 

@@ -19,7 +19,7 @@ innovations       many models on one run, in one compiled call
 filter_bank       all runs, each with its filters: innovations, whitened
 hypothesis        a base model and terms, whose parameters may be free
 residual_source   errors of a hypothesis, and how they change with its parameters
-least_squares     any of many columns, from their inner products
+least_squares     any of many columns, from their Gram matrix
 sandwich          how sure values are where the errors of some time go together
 windows           errors in windows of 2 s: what users see of a model
 

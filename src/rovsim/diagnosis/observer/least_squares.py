@@ -1,4 +1,4 @@
-"""Least squares on inner products alone: any subset of columns, at the cost of a small solve."""
+"""Least squares on Gram matrices alone: any subset of columns, at the cost of a small solve."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -16,8 +16,8 @@ def as_rows(x: Array) -> Array:
     return x.reshape(len(x), int(np.prod(x.shape[1:])))
 
 
-def inner_products(rows: Array) -> Array:
-    """Inner products (q, q) of rows (q, n)."""
+def gram(rows: Array) -> Array:
+    """Gram matrix (q, q) of rows (q, n): their inner products with each other."""
     return rows @ rows.T
 
 
@@ -32,10 +32,18 @@ def solve(H: Array, b: Array) -> Array:
     return (x.T / scale).T
 
 
-def project_out(M: Array, columns: Sequence[int]) -> Array:
-    """Inner products after projecting some columns out of all others."""
+def newton_step(G: Array) -> Array:
+    """Where the sum of squares is least: the step (k,) of the parameters.
+
+    `G` (1 + k, 1 + k): Gram matrix of the errors and their derivatives.
+    """
+    return -solve(G[1:, 1:], G[1:, 0])
+
+
+def project_out(G: Array, columns: Sequence[int]) -> Array:
+    """The Gram matrix after projecting some columns out of all others."""
     C = list(columns)
-    return M - M[:, C] @ solve(M[np.ix_(C, C)], M[C])
+    return G - G[:, C] @ solve(G[np.ix_(C, C)], G[C])
 
 
 @dataclass(frozen=True)

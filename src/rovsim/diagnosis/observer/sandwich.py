@@ -8,7 +8,7 @@ in what they are asked for, and in what they do where there are few clusters.
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
 
 
 def estimate_covariance(rows: Array, cluster: Array) -> Array:
@@ -21,7 +21,7 @@ def estimate_covariance(rows: Array, cluster: Array) -> Array:
     each = rows[1:] * rows[:1]
     scores = np.array([each[..., cluster == b].sum(axis=(1, 2)) for b in np.unique(cluster)])
     scores = scores - scores.mean(axis=0)
-    inverse = solve(inner_products(as_rows(rows[1:])), np.eye(len(rows) - 1))
+    inverse = solve(gram(as_rows(rows[1:])), np.eye(len(rows) - 1))
     return np.asarray(inverse @ (scores.T @ scores) @ inverse * len(scores) / (len(scores) - 1))
 
 
@@ -36,7 +36,7 @@ def estimate_covariance_of_few(e: Array, J: Array, cluster: Array) -> Array:
         J: their derivatives (k, 6, n).
         cluster: number (n,) of the one that each lies in.
     """
-    bread = solve(inner_products(as_rows(J)), np.eye(len(J)))
+    bread = solve(gram(as_rows(J)), np.eye(len(J)))
     scores = np.einsum("kin,in->kn", J, e)
     each = bread @ np.array([np.bincount(cluster, row) for row in scores])
     alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)

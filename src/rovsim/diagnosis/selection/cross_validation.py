@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, gram, newton_step
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import number_blocks
 from rovsim.diagnosis.selection.fit import Fit
@@ -47,19 +47,11 @@ def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
 def _sum_held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
     """Sum of the squared innovations of all blocks, each with the others' parameters."""
     rows = bank.whiten(one.seen.rows, noise)
-    parts = [_multiply(rows[..., fold == k]) for k in np.unique(fold)]
+    parts = [gram(as_rows(rows[..., fold == k])) for k in np.unique(fold)]
     total = sum(parts)
-    return sum(_cost_at(part, _solve_step(total - part)) for part in parts)
+    return sum(_cost_at(part, newton_step(total - part)) for part in parts)
 
 
-def _multiply(rows: Array) -> Array:
-    return inner_products(as_rows(rows))
-
-
-def _solve_step(M: Array) -> Array:
-    """Best step (k,) of all parameters on these products."""
-    return -solve(M[1:, 1:], M[1:, 0])
-
-
-def _cost_at(M: Array, x: Array) -> float:
-    return float(M[0, 0] + 2.0 * M[1:, 0] @ x + x @ M[1:, 1:] @ x)
+def _cost_at(G: Array, x: Array) -> float:
+    """Sum of squares after a step (k,), from the Gram matrix of errors and derivatives."""
+    return float(G[0, 0] + 2.0 * G[1:, 0] @ x + x @ G[1:, 1:] @ x)

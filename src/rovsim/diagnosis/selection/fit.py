@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.observer.residual_source import Linearised
@@ -125,7 +125,7 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None 
         unknown = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)
     own, two_log_likelihood = bank.fit_noise(seen.e, noise)
-    information = inner_products(as_rows(bank.whiten(seen.J, own)))
+    information = gram(as_rows(bank.whiten(seen.J, own)))
     if prior is not None:
         information = information + np.diag(prior.weights(seen.at.x))
     return Fit(seen, own, two_log_likelihood, solve(information, np.eye(len(information))))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, inner_products, solve
+from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.residual_source import Linearised, ResidualSource
 from rovsim.diagnosis.selection.prior import Prior
@@ -126,7 +126,7 @@ class _LeastSquares:
         """The sum of squares to second order about a hypothesis."""
         rows = as_rows(self.source.whiten(seen.J, self.noise))
         residuals = self.source.whiten(seen.e, self.noise).ravel()
-        H = inner_products(rows) + np.diag(self.prior.weights(seen.at.x))
+        H = gram(rows) + np.diag(self.prior.weights(seen.at.x))
         g = rows @ residuals + self._prior_slope(seen.at.x)
         return QuadraticModel(seen.at, H, g, self.cost(seen.at, residuals), len(residuals), rows)
 

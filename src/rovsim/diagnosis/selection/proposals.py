@@ -25,17 +25,17 @@ class Proposal:
     net_decrease: float
 
 
-def rank_proposals(M: Array, blocks: Sequence[CandidateColumns], penalty: float) -> list[Proposal]:
+def rank_proposals(G: Array, blocks: Sequence[CandidateColumns], penalty: float) -> list[Proposal]:
     """The best start of each effect, the most promising effect first.
 
     Args:
-        M: inner products (1 + c, 1 + c) of the innovations and all columns.
+        G: Gram matrix (1 + c, 1 + c) of the innovations and all columns.
         blocks: which columns are whose.
         penalty: of a parameter.
     """
     best: dict[str, Proposal] = {}
     for block in blocks:
-        reduction = _predict_reduction(M, block, penalty)
+        reduction = _predict_reduction(G, block, penalty)
         term = _step(block.candidate, reduction)
         worth = reduction.ss_decrease - penalty * term.choices
         known = best.get(term.id)
@@ -52,56 +52,56 @@ def _step(candidate: Candidate, reduction: Reduction) -> Term:
     return term.at(term.x + [moved.get(name, 0.0) for name in term.free])
 
 
-def _predict_reduction(M: Array, block: CandidateColumns, penalty: float) -> Reduction:
+def _predict_reduction(G: Array, block: CandidateColumns, penalty: float) -> Reduction:
     own = [1 + j for j in block.derivatives]
     if block.secant is not None and not own:
         s = 1 + block.secant
-        return Reduction(float(-2.0 * M[0, s] - M[s, s]), (), np.empty(0))
-    H, b = M[np.ix_(own, own)], M[own, 0]
+        return Reduction(float(-2.0 * G[0, s] - G[s, s]), (), np.empty(0))
+    H, b = G[np.ix_(own, own)], G[own, 0]
     if block.secant is None:
         return select_columns(H, b, penalty)
     s = 1 + block.secant
     low, high = block.candidate.term(block.candidate.sloped).reach(TRUSTED)
-    return solve_bounded(H, b + M[own, s], 2.0 * M[0, s] + M[s, s], low, high)
+    return solve_bounded(H, b + G[own, s], 2.0 * G[0, s] + G[s, s], low, high)
 
 
 def draw_chance_decreases(
-    M: Array, blocks: Sequence[CandidateColumns], penalty: float, draws: int, seed: int
+    G: Array, blocks: Sequence[CandidateColumns], penalty: float, draws: int, seed: int
 ) -> Array:
     """The largest net decrease (draws,) that noise alone would give to any candidate.
 
     Args:
-        M: inner products (c, c) of all columns.
+        G: Gram matrix (c, c) of all columns.
         blocks: which columns are whose.
         penalty: of a parameter.
         draws: how many.
         seed: of the draws.
     """
-    scale = _sizes(M)
-    values, vectors = np.linalg.eigh(M / np.outer(scale, scale))
+    scale = _sizes(G)
+    values, vectors = np.linalg.eigh(G / np.outer(scale, scale))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    z = np.random.default_rng(seed).normal(size=(draws, len(M))) @ root.T * scale
+    z = np.random.default_rng(seed).normal(size=(draws, len(G))) @ root.T * scale
     best = np.full(draws, -np.inf)
     for block in blocks:
-        best = np.maximum(best, _chance_decreases(M, z, block, penalty))
+        best = np.maximum(best, _chance_decreases(G, z, block, penalty))
     return best
 
 
-def _chance_decreases(M: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
+def _chance_decreases(G: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
     """Net decrease (draws,) by one candidate, of drawn products (draws, c) with its columns."""
     own, s = list(block.derivatives), block.secant
     if s is None:  # the best of its columns alone
         return (
-            np.max((z[:, own] / np.sqrt(np.maximum(np.diag(M), 1e-300))[own]) ** 2, axis=1)
+            np.max((z[:, own] / np.sqrt(np.maximum(np.diag(G), 1e-300))[own]) ** 2, axis=1)
             - penalty
         )
     if not own:
-        return -2.0 * z[:, s] - M[s, s] - penalty
-    b = z[:, own] + M[own, s]
-    x = np.linalg.lstsq(M[np.ix_(own, own)], b.T, rcond=1e-9)[0]
-    return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - M[s, s] - penalty * len(own)
+        return -2.0 * z[:, s] - G[s, s] - penalty
+    b = z[:, own] + G[own, s]
+    x = np.linalg.lstsq(G[np.ix_(own, own)], b.T, rcond=1e-9)[0]
+    return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - G[s, s] - penalty * len(own)
 
 
-def _sizes(M: Array) -> Array:
-    """Lengths (c,) of the columns with these inner products."""
-    return np.sqrt(np.maximum(np.diag(M), 1e-300))
+def _sizes(G: Array) -> Array:
+    """Lengths (c,) of the columns with this Gram matrix."""
+    return np.sqrt(np.maximum(np.diag(G), 1e-300))

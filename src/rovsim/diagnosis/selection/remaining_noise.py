@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products
+from rovsim.diagnosis.observer.least_squares import gram
 from rovsim.diagnosis.observer.noise import FIRST_NOISE, Noise
 from rovsim.diagnosis.observer.noise_fit import NoiseFit
 from rovsim.diagnosis.selection.sensitivities import Sensitivities
@@ -90,7 +90,7 @@ def draw_remainder(
     """
     target = bank.flatten([one[None] for one in e], noise)[0]
     white = bank.flatten(columns, noise)
-    H = inner_products(white).astype(float)
+    H = gram(white).astype(float)
     size = np.sqrt(np.diag(H))
     size[size == 0.0] = 1.0
     sure, turn = np.linalg.eigh(H / np.outer(size, size))

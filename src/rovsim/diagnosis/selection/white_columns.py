@@ -5,15 +5,16 @@ demands from the mixer, so that thrusters push something else beside them: there
 made anew, once for these loops.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import inner_products, project_out
+from rovsim.diagnosis.observer.least_squares import gram, project_out
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_beside
@@ -27,10 +28,10 @@ EXPLAINED = 1e-6
 
 
 class _White(NamedTuple):
-    """Columns (c, m) of the candidates, white, and their inner products (c, c)."""
+    """Columns (c, m) of the candidates, white, and their Gram matrix (c, c)."""
 
     columns: Array
-    products: Array
+    gram: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,7 @@ class WhiteColumns:
     noise: Noise
     _beside: dict[tuple, Sensitivities] = field(default_factory=dict)
     _white: dict[tuple, _White] = field(default_factory=dict)
+    _grams: WeakKeyDictionary[Linearised, Array] = field(default_factory=WeakKeyDictionary)
 
     def under(self, bank: FilterBank, noise: Noise) -> "WhiteColumns":
         """The same columns under another noise, with filters that suit it."""
@@ -61,7 +63,8 @@ class WhiteColumns:
         loops, fresh = _list_loops(at.model), self._made_beside(at)
         if loops == _list_loops(self.sensitivities.base_model):
             return WhiteColumns(self.bank, fresh, self.noise, self._beside)
-        return replace(self, _beside=self._beside | {loops: fresh}, _white={})
+        beside = self._beside | {loops: fresh}
+        return WhiteColumns(self.bank, self.sensitivities, self.noise, beside)
 
     def _made_beside(self, at: Hypothesis) -> Sensitivities:
         bank = self.bank.redesign(at.model, self.noise)
@@ -91,27 +94,34 @@ class WhiteColumns:
         if loops not in self._white:
             known = self.beside(at)
             columns = known.bank.flatten(known.columns, self.noise)
-            self._white[loops] = _White(columns, inner_products(columns).astype(float))
+            self._white[loops] = _White(columns, gram(columns).astype(float))
         return self._white[loops]
 
     def sizes(self, at: Hypothesis) -> Array:
         """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""
-        return np.sqrt(np.diag(self._whiten(at).products))
+        return np.sqrt(np.diag(self._whiten(at).gram))
 
-    def products(self, seen: Linearised) -> Array:
-        """Inner products (1 + c, 1 + c) of the innovations and the candidates' columns.
+    def gram(self, seen: Linearised) -> Array:
+        """Gram matrix (1 + c, 1 + c) of the innovations and the candidates' columns.
 
-        What the free parameters can explain is projected out of both.
+        What the free parameters can explain is projected out of both. Made once, as a fit is asked
+        for proposals, for swaps and beside a loose file.
         """
+        if seen not in self._grams:
+            self._grams[seen] = self._multiply(seen)
+        return self._grams[seen]
+
+    def _multiply(self, seen: Linearised) -> Array:
         rows = [one.astype(np.float32) for one in seen.rows]
         own = self.bank.flatten(rows, self.noise)
         columns, among = self._whiten(seen.at)
         across = own @ columns.T
-        M = np.block([[inner_products(own), across], [across.T, among]])
-        kept = [0, *range(len(own), len(M))]
-        left = project_out(M, range(1, len(own)))[np.ix_(kept, kept)]
+        G = np.block([[gram(own), across], [across.T, among]])
+        kept = [0, *range(len(own), len(G))]
+        left = project_out(G, range(1, len(own)))[np.ix_(kept, kept)]
         gone = 1 + np.flatnonzero(np.diag(left)[1:] < EXPLAINED * np.diag(among))
         left[gone], left[:, gone] = 0.0, 0.0
+        left.setflags(write=False)
         return left
 
 

@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.observer.filter_bank import FilterBank
 from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import inner_products, solve
+from rovsim.diagnosis.observer.least_squares import gram, newton_step
 from rovsim.diagnosis.observer.noise import Noise
 from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.observer.windows import score_windows
@@ -34,12 +34,12 @@ HOPELESS_LR = 100.0  # what is less likely by e^50 need not be known better
 class Removed:
     """A hypothesis without one of its terms, judged to first order.
 
-    `products` (1 + c, 1 + c) as of `WhiteColumns`; `ss_increase`: increase of the sum of squares;
+    `gram` (1 + c, 1 + c) as of `WhiteColumns`; `ss_increase`: increase of the sum of squares;
     `others`: all candidates for what the term took, best first.
     """
 
     hypothesis: Hypothesis
-    products: Array
+    gram: Array
     ss_increase: float
     others: list[Proposal]
 
@@ -167,17 +167,17 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        removed, left = [], float(self.columns.products(current.seen)[0, 0])
+        removed, left = [], float(self.columns.gram(current.seen)[0, 0])
         for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
-            M = self.columns.products(seen)
-            removed.append(Removed(seen.at, M, float(M[0, 0]) - left, self._rank(M)))
+            G = self.columns.gram(seen)
+            removed.append(Removed(seen.at, G, float(G[0, 0]) - left, self._rank(G)))
         return removed
 
-    def products_without(self, current: Fit, term: Term) -> Array:
-        """The `products` of the current hypothesis without one of its terms."""
+    def gram_without(self, current: Fit, term: Term) -> Array:
+        """The Gram matrix of the current hypothesis without one of its terms."""
         if known := self._removed.get(current.hypothesis.key):
-            return known[current.hypothesis.terms.index(term)].products
-        return self.columns.products(self._without(current, [(term,)])[0])
+            return known[current.hypothesis.terms.index(term)].gram
+        return self.columns.gram(self._without(current, [(term,)])[0])
 
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
         """The current hypothesis without each group of terms, the others refitted to first order.
@@ -190,8 +190,8 @@ class SearchWorkspace:
         """Where the derivatives say that the errors are least."""
         if not seen.finite:
             return seen.at
-        M = inner_products(self.bank.flatten(seen.rows, self.noise))
-        return seen.at.at(seen.at.x - solve(M[1:, 1:], M[1:, 0]))
+        step = newton_step(gram(self.bank.flatten(seen.rows, self.noise)))
+        return seen.at.at(seen.at.x + step)
 
     def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
         """The current hypothesis without each group of terms, the derivatives as they were."""
@@ -206,11 +206,11 @@ class SearchWorkspace:
             linearised.append(Linearised(rest, [of_run[k] for of_run in e], left))
         return linearised
 
-    def _rank(self, products: Array) -> list[Proposal]:
+    def _rank(self, G: Array) -> list[Proposal]:
         """All candidates, best first; none where the observer cannot hold the model."""
-        if not np.isfinite(products).all():
+        if not np.isfinite(G).all():
             return []
-        return rank_proposals(products, self.sensitivities.blocks, self.penalty)
+        return rank_proposals(G, self.sensitivities.blocks, self.penalty)
 
     def list_modes(self, term: Term) -> list[Term]:
         """Starts of the same effect, if it has modes, with the same free values."""
@@ -232,16 +232,16 @@ class SearchWorkspace:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
-            self._proposed[key] = self._rank(self.columns.products(current.seen))
+            self._proposed[key] = self._rank(self.columns.gram(current.seen))
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
         """Net decrease by the best candidate where all is chance, but for false alarms allowed."""
-        products = self.columns.products(current.seen)[1:, 1:]
-        if not np.isfinite(products).all():
+        G = self.columns.gram(current.seen)[1:, 1:]
+        if not np.isfinite(G).all():
             return np.inf  # the observer cannot hold the model, and nothing can be told
         decreases = draw_chance_decreases(
-            products, self.sensitivities.blocks, self.penalty, self.settings.draws, seed
+            G, self.sensitivities.blocks, self.penalty, self.settings.draws, seed
         )
         return max(0.0, float(np.quantile(decreases, 1.0 - self.settings.false_alarm)))
 

@@ -62,15 +62,15 @@ def add_term(
         h: some hypothesis, its law made of `known` terms.
         known: terms of its law.
         more: the term to add.
-        columns: inner products of the terms with what is left.
+        columns: the terms, and their Gram matrix with what is left.
         around: where the runs went.
     """
     rest, law = split_law(h)
     terms = (*known, more)
     values = dict(law.effect.given()) if law else {}
     k, i = len(terms), columns.terms.index(more)
-    power = columns.products[1 + i, 1 + i]
-    coefficient = columns.products[0, 1 + i] / power if power > 0.0 else 0.0
+    power = columns.gram[1 + i, 1 + i]
+    coefficient = columns.gram[0, 1 + i] / power if power > 0.0 else 0.0
     values |= {
         f"c{k}": float(coefficient),
         f"size{k}": float(1.0 / columns.size[i]),

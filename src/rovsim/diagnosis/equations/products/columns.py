@@ -21,9 +21,9 @@ Wrenches = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]  # as `li
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Terms, the size (c,) of each per unit coefficient, and inner products of what they do.
+    """Terms, the size (c,) of each per unit coefficient, and the Gram matrix of what they do.
 
-    `products` (1 + c, 1 + c) of whitened innovations and the terms' columns, each of unit size;
+    `gram` (1 + c, 1 + c) of whitened innovations and the terms' columns, each of unit size;
     what was fitted is projected out. One for all readings, and one `parts` for each block of time.
     `middle` (4,): place NED m and width m of terms that have none of their own.
     """
@@ -34,7 +34,7 @@ class Columns:
     middle: Array
 
     @property
-    def products(self) -> Array:
+    def gram(self) -> Array:
         """Over all blocks."""
         return np.asarray(sum(self.parts))
 
@@ -42,7 +42,7 @@ class Columns:
 def project(
     terms: Sequence[Any], fit: Fit, bank: FilterBank, middle: Array, wrenches: Wrenches
 ) -> Columns:
-    """Inner products of all terms' columns with what a fit leaves, and does not take up itself.
+    """Gram matrix of all terms' columns and what a fit leaves, less what it takes up itself.
 
     Args:
         terms: the candidates, on top of the fit.
@@ -108,7 +108,7 @@ def _measure_size(
 
 
 def _without(parts: Sequence[Array], kept: int) -> list[Array]:
-    """Products (kept, kept) of each part, the directions behind those taken out as in the whole."""
+    """Gram matrix (kept, kept) of each part: the directions behind taken out as in the whole."""
     whole = np.asarray(sum(parts))
     if len(whole) == kept:
         return list(parts)

@@ -27,27 +27,27 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
     Named by the likeliest `steps` terms together, on all blocks and without each of them, and by
     what each of the likeliest would explain alone.
     """
-    whole = columns.products
+    whole = columns.gram
     subsets = [whole, *(whole - part for part in columns.parts)]
-    named = Counter(k for products in subsets for k in _follow(products, steps))
+    named = Counter(k for G in subsets for k in _follow(G, steps))
     alone = find_alone(whole)
     order = sorted(named, key=lambda k: (-named[k], -alone[k]))
     order += [int(k) for k in np.argsort(-alone, kind="stable")[:FIRST] if k not in named]
     return [columns.terms[k] for k in order]
 
 
-def find_alone(products: Array) -> Array:
+def find_alone(G: Array) -> Array:
     """What each term (c,) explains alone: decrease of the sum of squares."""
-    power = np.diag(products)[1:]
-    return np.divide(products[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
+    power = np.diag(G)[1:]
+    return np.divide(G[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
 
 
-def _follow(products: Array, steps: int) -> list[int]:
+def _follow(G: Array, steps: int) -> list[int]:
     """The terms of PySINDy's forward regression, in order."""
     from pysindy import FROLS
 
-    kept = np.sort(np.argsort(-find_alone(products), kind="stable")[:KEPT])
-    H, b = products[1:, 1:][np.ix_(kept, kept)], products[1:, 0][kept]
+    kept = np.sort(np.argsort(-find_alone(G), kind="stable")[:KEPT])
+    H, b = G[1:, 1:][np.ix_(kept, kept)], G[1:, 0][kept]
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     X, y = _as_rows(H / np.outer(scale, scale), b / scale)
     with warnings.catch_warnings():

@@ -30,7 +30,7 @@ FILE_LR = lr_statistic_of(odds=1000.0)
 class FileNumber(NamedTuple):
     """A parameter of a candidate that the file states.
 
-    `row` of the workspace's products; `spread`, in scales, how far the file may be off.
+    `row` of the workspace's Gram matrix; `spread`, in scales, how far the file may be off.
     """
 
     candidate: Candidate
@@ -56,27 +56,27 @@ def list_numbers(workspace: SearchWorkspace) -> list[FileNumber]:
     return numbers
 
 
-def cost_beside(numbers: list[FileNumber], products: Array) -> float:
+def cost_beside(numbers: list[FileNumber], G: Array) -> float:
     """What is left of the sum of squares with all numbers of the file free, to first order.
 
     Args:
         numbers: of the file.
-        products: of the innovations and the candidates' columns (1 + c, 1 + c).
+        G: Gram matrix (1 + c, 1 + c) of the innovations and the candidates' columns.
     """
-    H, b, spread = _take(numbers, products)
-    return float(products[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
+    H, b, spread = _take(numbers, G)
+    return float(G[0, 0] - b @ solve(H + np.diag(spread**-2.0), b))
 
 
-def _take(numbers: list[FileNumber], products: Array) -> tuple[Array, Array, Array]:
-    """Of the numbers of the file: products with each other and the innovations, and spread."""
+def _take(numbers: list[FileNumber], G: Array) -> tuple[Array, Array, Array]:
+    """Inner products of the numbers with each other and with the innovations, and spread."""
     own = [number.row for number in numbers]
     spread = np.array([number.spread for number in numbers])
-    return products[np.ix_(own, own)], products[own, 0], spread
+    return G[np.ix_(own, own)], G[own, 0], spread
 
 
 def measure_cost(workspace: SearchWorkspace, fit: Fit) -> float:
     """The same of a fit."""
-    return cost_beside(list_numbers(workspace), workspace.columns.products(fit.seen))
+    return cost_beside(list_numbers(workspace), workspace.columns.gram(fit.seen))
 
 
 def measure_doubt(workspace: SearchWorkspace, fit: Fit) -> float:
@@ -85,16 +85,16 @@ def measure_doubt(workspace: SearchWorkspace, fit: Fit) -> float:
     Twice the log of Bayes' factor, to first order, of all numbers of the file as free as
     such files are off. Each number that nothing asks for counts against it.
     """
-    numbers, products = list_numbers(workspace), workspace.columns.products(fit.seen)
-    H, _, spread = _take(numbers, products)
+    numbers, G = list_numbers(workspace), workspace.columns.gram(fit.seen)
+    H, _, spread = _take(numbers, G)
     needless = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
-    return float(products[0, 0]) - cost_beside(numbers, products) - needless
+    return float(G[0, 0]) - cost_beside(numbers, G) - needless
 
 
 def measure_loss(workspace: SearchWorkspace, fit: Fit, term: Term) -> float:
     """How much more is left beside a loose file without one term of a fit."""
-    numbers, rest = list_numbers(workspace), workspace.products_without(fit, term)
-    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.columns.products(fit.seen))
+    numbers, rest = list_numbers(workspace), workspace.gram_without(fit, term)
+    return cost_beside(numbers, rest) - cost_beside(numbers, workspace.columns.gram(fit.seen))
 
 
 def find_limit(workspace: SearchWorkspace, term: Term) -> float:
@@ -135,8 +135,8 @@ def propose_file(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None:
     the common scale, and the gain would follow it away from what the file says.
     """
     numbers = [n for n in list_numbers(workspace) if n.candidate.effect.id != ThrusterGain.id]
-    own, M = [number.row for number in numbers], workspace.columns.products(current.seen)
-    reduction = eliminate_columns(M[np.ix_(own, own)], M[own, 0], workspace.penalty)
+    own, G = [number.row for number in numbers], workspace.columns.gram(current.seen)
+    reduction = eliminate_columns(G[np.ix_(own, own)], G[own, 0], workspace.penalty)
     h = current.hypothesis
     for j, x in zip(reduction.chosen, reduction.x, strict=True):
         term = numbers[j].candidate.term([numbers[j].parameter])
