@@ -13,7 +13,7 @@ from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.search_result import Rival, keep_likeliest
 from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
-from rovsim.diagnosis.selection.vehicle_file.stated import STATED, free_terms
+from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, free_terms
 from rovsim.diagnosis.selection.vehicle_file.steps import prefer_file
 from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -45,7 +45,7 @@ def workspace(tmp_path_factory):
     base, runs = observed(folder, duration=30.0, vehicle=str(path), effects=hidden)
     bank = FilterBank.design(runs, base, FIRST_NOISE)
     listed = list_candidates(runs, built_in(), base.vehicle)
-    some = [c for c in listed if c.effect.id in (*STATED, Payload.id)]
+    some = [c for c in listed if c.effect.id in (*FILE_EFFECT_IDS, Payload.id)]
     known = linearise_candidates(bank, Hypothesis(base), some)
     return SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
 
@@ -59,7 +59,7 @@ def test_a_payload_does_not_stand_for_a_scale(workspace):
     found = prefer_file(workspace, workspace.fit(Hypothesis(base, (*file, payload))))
     assert Payload.id in {term.id for term in found.hypothesis.terms}
     judged = judge_beside_file(workspace, found).fit.hypothesis
-    assert {term.id for term in judged.terms} <= {*STATED}
+    assert {term.id for term in judged.terms} <= {*FILE_EFFECT_IDS}
     (gain,) = (t.effect["all"] for t in judged.terms if t.id == ThrusterGain.id)
     assert gain == pytest.approx(GAIN, abs=0.1)
 

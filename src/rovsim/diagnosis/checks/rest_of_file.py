@@ -23,7 +23,7 @@ from rovsim.diagnosis.checks.nuisance_parameters import leave_open
 from rovsim.diagnosis.observer.least_squares import solve
 from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.vehicle_file.stated import is_off
+from rovsim.diagnosis.selection.vehicle_file.stated import has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import free_rest, list_spreads
 
 
@@ -39,7 +39,7 @@ def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScal
     h = fit.hypothesis
     freed = free_rest(h)
     further = [name for name in freed.parameter_names if name not in h.parameter_names]
-    opened = leave_open(fit, freed, runs) if is_off(h) and further else None
+    opened = leave_open(fit, freed, runs) if has_loose_file(h) and further else None
     if opened is None:
         return include_scale(fit, runs)
     spread = list_spreads(h, freed)

@@ -13,7 +13,7 @@ fit                  the most likely parameters of a hypothesis, and their sprea
 thresholds           where they may lie, which derivatives do not tell
 pruning              without what is not worth its penalty
 forward_selection    add, refit, swap, prune
-vehicle_file         one that is off explains as well what is rarer
+vehicle_file         a loose one explains as well what is rarer
 steady_current       or one that wanders?
 search_result        where that ended, and what else the effects could be
 filter_delay         beside what the camera does

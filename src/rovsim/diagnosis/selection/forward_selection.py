@@ -16,14 +16,14 @@ from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
 from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.thresholds import place_thresholds
-from rovsim.diagnosis.selection.vehicle_file import uncertain_file
+from rovsim.diagnosis.selection.vehicle_file.loose_file import Contender, LooseFile
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
-from rovsim.diagnosis.selection.vehicle_file.stated import is_off
+from rovsim.diagnosis.selection.vehicle_file.stated import has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.steps import (
-    add_file,
+    add_file_effects,
     fix_gain,
     prefer_file,
-    suspect_file,
+    suspect_loose_file,
 )
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 
@@ -37,10 +37,11 @@ DETERMINED = 0.5  # scales: the standard deviation of a shape, by which two scal
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
     """The best single addition, refitted and pruned; None when none beats chance and matters.
 
-    Where the vehicle file is off, it is no special effect that the file explains; if nothing else
+    Where the vehicle file is loose, it is no special effect that the file explains; if nothing else
     is left, several numbers of the file that only matter together.
     """
-    left, off = list_promising(workspace, current), is_off(current.hypothesis)
+    left, file = list_promising(workspace, current), LooseFile(workspace)
+    loose = has_loose_file(current.hypothesis)
     for _ in range(ROUNDS):
         level = sum(p.net_decrease > NEARLY_BEST_SHARE * left[0].net_decrease for p in left)
         trying = keep_close(left, max(workspace.settings.trials, level))
@@ -53,11 +54,11 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
             if not _beats_chance(workspace, best, current, threshold):
                 break
-            if off and uncertain_file.explains(workspace, best, name):
+            if loose and file.explains(best, name):
                 continue
             if workspace.find_relevant(best, [current.hypothesis.model])[0]:
                 return prune(workspace, best)
-    more = add_file(workspace, current) if off else current
+    more = add_file_effects(workspace, current) if loose else current
     if not _beats_chance(workspace, more, current, threshold):
         return None
     noticed = workspace.find_relevant(more, [current.hypothesis.model])[0]
@@ -78,7 +79,7 @@ def try_swaps(
 
     `swap`: the least difference of the scores.
     """
-    rivals, off = [], is_off(current.hypothesis)
+    rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
     rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
         for p in find_swaps(workspace, term, rest, trials):
@@ -90,11 +91,9 @@ def try_swaps(
                 trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
                 worse = workspace.score(current) - workspace.score(trial)
-                if worse < -swap and not (
-                    off and uncertain_file.explains(workspace, trial, p.term.id)
-                ):
+                if worse < -swap and not (loose and file.explains(trial, p.term.id)):
                     return try_swaps(workspace, prune(workspace, trial), trials, swap)
-                weight = uncertain_file.weigh(workspace, (current, term), (trial, p.term), worse)
+                weight = file.weigh(Contender(current, term), Contender(trial, p.term), worse)
                 worse = max(0.0, weight)  # likelier only beside a loose file: not told apart
             rivals.append(Rival(p.term.id, term.id, worse, trial))
     return current, rivals
@@ -155,7 +154,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     The workspace's noise and filters follow what is found.
     """
     workspace, current = _add_and_swap(*prefer_steady(workspace, base), seed)
-    loose = suspect_file(workspace, current)
+    loose = suspect_loose_file(workspace, current)
     if loose is not current:
         workspace, current = _add_and_swap(workspace, loose, seed)
     workspace = workspace.relinearise_if_changed(current)

@@ -31,7 +31,7 @@ from rovsim.diagnosis.selection.paired_comparison import (
 )
 from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD, fit_without
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.vehicle_file.stated import STATED
+from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread
 
@@ -138,7 +138,7 @@ class HoldoutValidation:
         A name then stands for part of what has none, unless replays are surely better for it. What
         the vehicle file states counts together; then whatever of it is not sure by itself goes.
         """
-        for split, least in ((_group, WORSE_SHARE), (_list_stated, SLIGHT_SHARE)):
+        for split, least in ((_group, WORSE_SHARE), (_list_file_effects, SLIGHT_SHARE)):
             selection = self._drop_idle(selection, split, least)
         return selection
 
@@ -203,13 +203,13 @@ def _compare_axes(windows: Windows, models: Sequence[Model]) -> Array:
     return windows.compare(models).swapaxes(1, 2)
 
 
-def _list_stated(h: Hypothesis) -> list[tuple[Term, ...]]:
-    """Each effect that a vehicle file states, by itself."""
-    return [(term,) for term in h.terms if term.id in STATED]
+def _list_file_effects(h: Hypothesis) -> list[tuple[Term, ...]]:
+    """Each file effect by itself."""
+    return [(term,) for term in h.terms if term.id in FILE_EFFECT_IDS]
 
 
 def _group(h: Hypothesis) -> list[tuple[Term, ...]]:
-    """Each special effect by itself, and all that a vehicle file states together."""
-    stated = tuple(term for term in h.terms if term.id in STATED)
-    groups: list[tuple[Term, ...]] = [(term,) for term in h.terms if term.id not in STATED]
-    return [*groups, stated] if stated else groups
+    """Each special effect by itself, and all file effects together."""
+    of_file = tuple(term for term in h.terms if term.id in FILE_EFFECT_IDS)
+    groups: list[tuple[Term, ...]] = [(term,) for term in h.terms if term.id not in FILE_EFFECT_IDS]
+    return [*groups, of_file] if of_file else groups

@@ -1,4 +1,4 @@
-"""Special effects judged beside all of a vehicle file that is off, fitted.
+"""Special effects judged beside all of a loose vehicle file, fitted.
 
 Beside what was selected of a file alone, numbers that were left as they are fix the factor that all
 forces and inertia share, and a rarer effect may make up for that: a payload a metre above a vehicle
@@ -15,8 +15,8 @@ from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.promising import find_swaps
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival
-from rovsim.diagnosis.selection.vehicle_file import uncertain_file
-from rovsim.diagnosis.selection.vehicle_file.stated import STATED, is_off
+from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
+from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, measure_misfit
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
@@ -43,20 +43,21 @@ class Judged(NamedTuple):
 def judge_beside_file(
     workspace: SearchWorkspace, current: Fit, gone: frozenset[str] = frozenset()
 ) -> Judged:
-    """With what holds in the place of each special effect beside all of a file that is off.
+    """With what holds in the place of each special effect beside all of a loose file.
 
     `gone`: effects that had to go already, and do not come back: so this ends.
     """
     named = {term.id for term in current.hypothesis.terms}
-    if not is_off(current.hypothesis) or named <= {*STATED}:
+    if not has_loose_file(current.hypothesis) or named <= {*FILE_EFFECT_IDS}:
         return Judged(current)
     _, own = _fit_beside(workspace, current.hypothesis)
     if np.isinf(own):
         return Judged(current)
-    rests, rivals = workspace.remove_each(current), []
+    file, rivals = LooseFile(workspace), []
+    rests = workspace.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, rests, strict=True):
-        limit = uncertain_file.find_limit(workspace, term)
-        for other in _list_alternatives(workspace, term, rest):
+        limit = file.find_limit(term)
+        for other in _list_alternatives(file, term, rest):
             if other.name in gone:
                 continue
             fitted, misfit = _fit_beside(workspace, other.start)
@@ -69,22 +70,20 @@ def judge_beside_file(
     return Judged(current, tuple(rivals))
 
 
-def _list_alternatives(
-    workspace: SearchWorkspace, term: Term, rest: Removed
-) -> Iterator[Alternative]:
+def _list_alternatives(file: LooseFile, term: Term, rest: Removed) -> Iterator[Alternative]:
     """The file alone, or another special effect, where these should explain nearly as much.
 
     The file is called by the gain of the thrusters: without that, the rest of it was free before.
     """
-    if term.id in STATED:
+    if term.id in FILE_EFFECT_IDS:
         return
     yield Alternative(ThrusterGain.id, rest.hypothesis, 0.0)
-    hopeless = WORTH_FITTING * uncertain_file.find_limit(workspace, term)
+    workspace, hopeless = file.workspace, WORTH_FITTING * file.find_limit(term)
     for p in find_swaps(workspace, term, rest, workspace.settings.trials):
-        if p.term.id in STATED or rest.ss_increase - p.net_decrease > hopeless:
+        if p.term.id in FILE_EFFECT_IDS or rest.ss_increase - p.net_decrease > hopeless:
             continue
         with_it = rest.hypothesis.with_term(p.term)
-        yield Alternative(p.term.id, with_it, uncertain_file.find_limit(workspace, p.term))
+        yield Alternative(p.term.id, with_it, file.find_limit(p.term))
 
 
 def _fit_beside(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Fit | None, float]:

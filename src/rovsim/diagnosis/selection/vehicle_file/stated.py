@@ -20,8 +20,8 @@ DRAG = (LinearDamping, QuadraticDamping)
 PER_AXIS = (*DRAG, AddedMass, ConstantWrench)
 ONE_GAIN = ("all",)  # of all thrusters
 FILE_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ThrusterGain)
-STATED = frozenset(effect.id for effect in FILE_EFFECTS)
-SEVERAL = 3  # effects of the file: one or two may be all that is wrong
+FILE_EFFECT_IDS = frozenset(effect.id for effect in FILE_EFFECTS)
+SEVERAL = 3  # file effects: one or two may be all that is wrong
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
 # Flinders University, of the lighter vehicle with six thrusters), differ by 0.41 in its logarithm,
@@ -35,9 +35,9 @@ GAIN_SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN
 # What a file states as zero, the ballast and its place may be off by one of the parameter's scales.
 
 
-def is_off(h: Hypothesis) -> bool:
-    """Whether so much was selected of what the vehicle file states that it is off everywhere."""
-    return sum(term.id in STATED for term in h.terms) >= SEVERAL
+def has_loose_file(h: Hypothesis) -> bool:
+    """Whether so many file effects were selected that the vehicle file is off everywhere."""
+    return sum(term.id in FILE_EFFECT_IDS for term in h.terms) >= SEVERAL
 
 
 def mark_gain(h: Hypothesis) -> Array:
@@ -49,11 +49,11 @@ def mark_gain(h: Hypothesis) -> Array:
 def doubt_gain(h: Hypothesis) -> float:
     """How far the gain of all thrusters is from the file's, in twice a log likelihood.
 
-    Nothing where the file is not off: a gain may be all that is wrong. Else a factor of all forces
-    and inertia is nearly free, and a gain of 1.6 may stand for a centre of buoyancy 4 mm lower.
-    Tails are Cauchy's, for a gain may have a fault.
+    Nothing where the file is not loose: a gain may be all that is wrong. Else a factor of all
+    forces and inertia is nearly free, and a gain of 1.6 may stand for a centre of buoyancy 4 mm
+    lower. Tails are Cauchy's, for a gain may have a fault.
     """
-    if not is_off(h):
+    if not has_loose_file(h):
         return 0.0
     away = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN
     return float(np.sum(cauchy(away**2)))

@@ -1,4 +1,4 @@
-"""All of a vehicle file that is off, fitted together with what was selected."""
+"""All of a loose vehicle file, fitted together with what was selected."""
 
 from typing import Sequence
 
@@ -17,7 +17,7 @@ from rovsim.diagnosis.selection.vehicle_file.stated import (
     GAIN_SCALE,
     ONE_GAIN,
     SEVERAL,
-    is_off,
+    has_loose_file,
     mark_gain,
     spread_of_file,
 )
@@ -26,8 +26,8 @@ from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 
 
 def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit | None:
-    """All that the file states, fitted; None where it is not off, or such a model diverges."""
-    if not is_off(selected):
+    """All that the file states, fitted; None where it is not loose, or such a model diverges."""
+    if not has_loose_file(selected):
         return None
     freed = free_rest(selected)
     prior = know_file(selected, freed)

@@ -11,9 +11,9 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.observer.least_squares import project_out
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
-from rovsim.diagnosis.selection.vehicle_file.stated import STATED, spread_of_file
-from rovsim.diagnosis.selection.vehicle_file.steps import suspect_file
-from rovsim.diagnosis.selection.vehicle_file.uncertain_file import list_numbers, measure_doubt
+from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
+from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, spread_of_file
+from rovsim.diagnosis.selection.vehicle_file.steps import suspect_loose_file
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
@@ -104,14 +104,14 @@ def make(seed, off, special):
 @pytest.mark.parametrize("seed", range(5))
 def test_many_small_errors_of_a_file_are_sought_in_the_place_of_what_looks_like_them(seed):
     workspace, found = make(seed, off=1.0, special=0.0)
-    names = {term.id for term in suspect_file(workspace, found).hypothesis.terms}
+    names = {term.id for term in suspect_loose_file(workspace, found).hypothesis.terms}
     assert names == {"linear_damping", "quadratic_damping", "added_mass"}
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_a_file_that_is_right_is_not_suspected(seed):
     workspace, found = make(seed, off=0.0, special=8.0)
-    assert suspect_file(workspace, found) is found
+    assert suspect_loose_file(workspace, found) is found
 
 
 def test_a_file_that_promises_more_than_its_fit_keeps_is_not_taken(monkeypatch):
@@ -120,24 +120,25 @@ def test_a_file_that_promises_more_than_its_fit_keeps_is_not_taken(monkeypatch):
     true = workspace.score
 
     def score(one):
-        return true(one) - 1e3 * any(term.id in STATED for term in one.hypothesis.terms)
+        return true(one) - 1e3 * any(term.id in FILE_EFFECT_IDS for term in one.hypothesis.terms)
 
     monkeypatch.setattr(workspace, "score", score)
-    assert suspect_file(workspace, found) is found
+    assert suspect_loose_file(workspace, found) is found
 
 
 def test_a_file_whose_errors_nobody_would_notice_is_not_taken():
     workspace, found = make(0, off=1.0, special=0.0)
     workspace.noticed = False
-    assert suspect_file(workspace, found) is found
+    assert suspect_loose_file(workspace, found) is found
 
 
 def test_doubt_is_the_ratio_of_two_densities_of_the_readings():
     workspace, _ = make(1, off=1.0, special=0.0)
     alone = workspace.fit(Hypothesis(BASE))
-    spread = np.array([number.spread for number in list_numbers(workspace)])
+    file = LooseFile(workspace)
+    spread = np.array([number.spread for number in file.numbers])
     loose = workspace.all[:-1].T * spread
     one, y = np.eye(READINGS), workspace.readings
     off = multivariate_normal(cov=one + loose @ loose.T).logpdf(y)
     right = multivariate_normal(cov=one).logpdf(y)
-    assert measure_doubt(workspace, alone) == pytest.approx(2.0 * (off - right))
+    assert file.measure_doubt(alone) == pytest.approx(2.0 * (off - right))

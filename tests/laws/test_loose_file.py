@@ -1,4 +1,4 @@
-"""A special effect beside a vehicle file that may be off everywhere."""
+"""A special effect beside a loose vehicle file."""
 
 from types import SimpleNamespace
 
@@ -11,13 +11,11 @@ from rovsim.diagnosis.observer.hypothesis import Hypothesis
 from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.proposals import rank_proposals
 from rovsim.diagnosis.selection.sensitivities import CandidateColumns
-from rovsim.diagnosis.selection.vehicle_file.uncertain_file import (
+from rovsim.diagnosis.selection.vehicle_file.loose_file import (
     FILE_LR,
-    FileNumber,
-    cost_beside,
-    explains,
-    propose_file,
-    weigh,
+    Contender,
+    LooseFile,
+    cost_within,
 )
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.model import nominal
@@ -32,8 +30,7 @@ LIMIT = PENALTY + FILE_LR  # of an effect with one number
 def test_a_loose_file_takes_what_its_numbers_take_within_their_spread(seed, count):
     random = np.random.default_rng(seed)
     rows, spread = random.normal(size=(1 + count, 40)), random.uniform(0.01, 3.0, count)
-    numbers = [FileNumber(None, "", 1 + k, one) for k, one in enumerate(spread)]
-    cost = cost_beside(numbers, rows @ rows.T)
+    cost = cost_within(rows @ rows.T, range(1, 1 + count), spread)
     stacked = np.hstack([rows, np.vstack([np.zeros(count), np.diag(1.0 / spread)])])
     x = np.linalg.lstsq(stacked[1:].T, -stacked[0], rcond=None)[0]
     assert cost == pytest.approx(np.sum((stacked[0] + x @ stacked[1:]) ** 2), rel=1e-6)
@@ -48,13 +45,15 @@ def fit(cost, *names):
     return SimpleNamespace(seen=cost, hypothesis=SimpleNamespace(terms=[term(n) for n in names]))
 
 
-def workspace_of(without=0.0):
-    """`without`: what is left beside a loose file if a term is taken away."""
-    return SimpleNamespace(
-        penalty=PENALTY,
-        columns=SimpleNamespace(gram=lambda seen: np.array([[seen]])),
-        gram_without=lambda found, term: np.array([[without]]),
-        sensitivities=SimpleNamespace(base_model=None, blocks=()),
+def loose_file(without=0.0):
+    """`without`: what is left beside it if a term is taken away."""
+    return LooseFile(
+        SimpleNamespace(
+            penalty=PENALTY,
+            columns=SimpleNamespace(gram=lambda seen: np.array([[seen]])),
+            gram_without=lambda found, term: np.array([[without]]),
+            sensitivities=SimpleNamespace(base_model=None, blocks=()),
+        )
     )
 
 
@@ -66,30 +65,31 @@ def workspace_of(without=0.0):
         (LIMIT - 1.0, "net_buoyancy", False),  # of the file itself
     ],
 )
-def test_a_special_effect_must_do_without_a_file_that_is_off(loss, name, explained):
+def test_a_special_effect_must_do_without_a_loose_file(loss, name, explained):
     found = fit(100.0, "added_mass", name)
-    assert explains(workspace_of(100.0 + loss), found, name) is explained
+    assert loose_file(100.0 + loss).explains(found, name) is explained
 
 
 @given(more=st.floats(-60.0, 60.0))
 def test_who_is_likelier_does_not_depend_on_who_was_selected(more):
     file = fit(100.0, "net_buoyancy", *OFF)
     special = fit(100.0 + more, "constant_wrench", *OFF)
-    own, other = (file, term("net_buoyancy")), (special, term("constant_wrench"))
-    there = weigh(workspace_of(), own, other, 0.0)
-    assert there == pytest.approx(-weigh(workspace_of(), other, own, 0.0))
+    own = Contender(file, term("net_buoyancy"))
+    other = Contender(special, term("constant_wrench"))
+    there = loose_file().weigh(own, other, 0.0)
+    assert there == pytest.approx(-loose_file().weigh(other, own, 0.0))
     assert there == pytest.approx(more + LIMIT)
 
 
 def test_two_effects_of_the_file_are_weighed_as_they_are():
-    own = fit(100.0, "net_buoyancy", *OFF), term("net_buoyancy")
-    other = fit(1.0, "buoyancy_center", *OFF), term("buoyancy_center")
-    assert weigh(workspace_of(), own, other, 7.0) == 7.0
+    own = Contender(fit(100.0, "net_buoyancy", *OFF), term("net_buoyancy"))
+    other = Contender(fit(1.0, "buoyancy_center", *OFF), term("buoyancy_center"))
+    assert loose_file().weigh(own, other, 7.0) == 7.0
 
 
 def test_a_file_with_one_or_two_wrong_effects_may_be_right_elsewhere():
-    own = fit(100.0, *OFF[:2]), term(OFF[0])
-    assert weigh(workspace_of(), own, (fit(1.0, "lift"), term("lift")), 7.0) == 7.0
+    own, other = Contender(fit(100.0, *OFF[:2]), term(OFF[0])), fit(1.0, "lift")
+    assert loose_file().weigh(own, Contender(other, term("lift")), 7.0) == 7.0
 
 
 def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
@@ -108,7 +108,8 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
         columns=SimpleNamespace(gram=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
     )
-    both = propose_file(workspace, SimpleNamespace(seen=None, hypothesis=Hypothesis(base)))
+    current = SimpleNamespace(seen=None, hypothesis=Hypothesis(base))
+    both = LooseFile(workspace).propose(current)
     assert [(one.id, one.free) for one in both.terms] == [
         ("linear_damping", ("heave",)),
         ("quadratic_damping", ("heave",)),
