@@ -63,7 +63,7 @@ class FilterBank:
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
         return [
-            evaluate_possible(models, len(run.time), partial(self._of_run, k))
+            evaluate_possible(models, len(run.time), partial(self._innovations_of_run, k))
             for k, run in enumerate(self.runs)
         ]
 
@@ -71,7 +71,8 @@ class FilterBank:
         """Innovations (6, n) of each run of one model."""
         return [e[0] for e in self.evaluate([model])]
 
-    def _of_run(self, k: int, models: Sequence[Model]) -> Array:
+    def _innovations_of_run(self, k: int, models: Sequence[Model]) -> Array:
+        """Innovations (m, 6, n) of the k-th run."""
         pushed = np.array([self._water.bends[k]] * len(models)) if self.paths else None
         return observe(models, self.runs[k], self.run_filters[k], pushed)
 
@@ -126,7 +127,7 @@ class FilterBank:
         draws = self._draws(e)
         if start.drift is None:
             return self._fit_calm(draws, start, thorough)
-        each = [self._take_out(own, start, start.drift.rate) for own in draws]
+        each = [self._subtract_drift(own, start, start.drift.rate) for own in draws]
         rests, walks = [rest for rest, _ in each], each[0][1]
         fit = self._fit_calm(rests, start, thorough)
         paths = (CurrentPath(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
@@ -171,28 +172,30 @@ class FilterBank:
 
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
         """How the current most likely wanders, from innovations (6, n) of each run."""
-        return self._water.find_drift(self._split(e, noise), self.design_filters(noise))
+        return self._water.find_drift(self._whiten_by_run(e, noise), self.design_filters(noise))
 
     def varies_with_place(self, e: Sequence[Array], noise: Noise) -> bool:
         """Whether a steady flow through the tank may be what seems to wander."""
-        return self._water.varies_with_place(self._split(e, noise), self.design_filters(noise))
+        return self._water.varies_with_place(
+            self._whiten_by_run(e, noise), self.design_filters(noise)
+        )
 
-    def _take_out(
+    def _subtract_drift(
         self, e: Sequence[Array], noise: Noise, rate: float
     ) -> tuple[list[Array], list[Array]]:
-        """Innovations of each run less the likeliest drift, and that current (n, 2)."""
-        z, run_filters = self._split(e, noise), self.design_filters(noise)
-        return self._water.walk.take_out(e, z, rate, run_filters)
+        """Innovations of each run less a likely drift, and the likeliest current (n, 2)."""
+        z, run_filters = self._whiten_by_run(e, noise), self.design_filters(noise)
+        return self._water.walk.subtract(e, z, rate, run_filters)
 
     def _lr_of_drift(
         self, e: Sequence[Array], rest: Sequence[Array], noise: Noise, rate: float
     ) -> float:
         """By how much likelier innovations are with a drift than what it left is without."""
-        z, left = self._split(e, noise), self._split(rest, noise)
+        z, left = self._whiten_by_run(e, noise), self._whiten_by_run(rest, noise)
         more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
         return more + self._water.walk.lr_statistic(z, rate, self.design_filters(noise))
 
-    def _split(self, e: Sequence[Array], noise: Noise) -> list[Array]:
+    def _whiten_by_run(self, e: Sequence[Array], noise: Noise) -> list[Array]:
         """Settled innovations (6, m) of each run, whitened axis by axis."""
         each = zip(e, self.runs, self.run_filters, self.design_filters(noise), strict=True)
         return [whiten_run(*one) for one in each]

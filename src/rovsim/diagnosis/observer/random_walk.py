@@ -103,12 +103,12 @@ class RandomWalk:
         power = np.concatenate([own.power for own in self._decompose(run_filters)])
         return _WalkLikelihood(1.0 + rate**2 * power, power).lr_statistic(rate)
 
-    def take_out(
+    def subtract(
         self, e: Sequence[Array], z: Sequence[Array], rate: float, run_filters: Sequence[RunFilters]
     ) -> tuple[list[Array], list[Array]]:
         """Innovations (6, n) of each run less a likely walk, and the likeliest walk (n, d).
 
-        What is taken out is drawn from all that the data allow: the likeliest walk takes the slow
+        What is subtracted is drawn from all that the data allow: the likeliest walk takes the slow
         part of the disturbance, too, which then would seem less than it is, and the walk more.
 
         Args:
