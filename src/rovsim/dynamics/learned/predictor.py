@@ -1,7 +1,7 @@
 """Evaluation of an exported residual (`layout`), one sample or many, by compiled kernels.
 
-`rovsim.learning.export` writes such arrays and checks those that come from a file: the kernels
-trust them. They are safe to call from many threads: scratch lies on the caller's stack.
+`rovsim.learning.export` writes such arrays, and `checks` refuses those of a file that do not fit:
+the kernels trust them. They are safe to call from many threads: scratch lies on the caller's stack.
 """
 
 import numpy as np
