@@ -9,6 +9,7 @@ from rovsim import AXES
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import score_step
+from rovsim.evaluation.scored import Scored
 from rovsim.evaluation.scores import Sums, subtract
 from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.replay import replay, simulate
@@ -67,7 +68,7 @@ def test_of_a_run_without_velocities_only_turns_are_scored(runs):
 
 def test_the_growth_of_the_error_is_that_of_measured_axes(runs):
     def grown(some):
-        score = GrowthScore()
+        score = GrowthScore(5.0)
         for run, replayed in some:
             score.add(run, replayed.horizons["5"])
         return score.curve.velocity_rmse
@@ -78,3 +79,16 @@ def test_the_growth_of_the_error_is_that_of_measured_axes(runs):
         assert both[axis] == pytest.approx(whole[axis])
     assert both["yaw"] != pytest.approx(whole["yaw"])
     assert max(alone["yaw"]) > 0.01
+
+
+@pytest.mark.parametrize("horizons", [(0.5, 2.0), (2.0, 5.0), (2.0, 4.0, 8.0)])
+def test_the_growth_of_the_error_is_seen_in_the_longest_windows(runs, horizons):
+    motion, _ = runs[0]
+    how = SimulationSettings().only(*horizons)
+    replayed = replay(model(), motion, how)
+    scored = Scored(["nominal"], how.replay.longest)
+    scored.add(motion, replayed)
+    seen = scored.growth.models["nominal"].horizon_s
+    assert seen[-1] == pytest.approx(max(horizons))
+    assert max(np.diff(seen)) == pytest.approx(max(0.2, max(horizons) / 25))
+    assert Scored.of([motion], {"nominal": {motion.run.id: replayed}}).growth == scored.growth

@@ -127,7 +127,7 @@ def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, 
         return found
 
     monkeypatch.setattr(replaying, "predict", watched)
-    scored = Scored(["nominal"])
+    scored = Scored(["nominal"], how.replay.longest)
     kept = score_run(scored, model(), motion, how, "2")
     assert held == [0, 0, 0, 1]  # when the open loop, 0.5, 2 and 5 s are made
     np.testing.assert_array_equal(kept.horizons["2"].nu, whole.horizons["2"].nu)

@@ -2,4 +2,11 @@
 
 OPEN_LOOP = "open_loop"  # once, over a whole run
 WINDOW = 2.0  # s, the windows that ladder, figures and summaries are of
-HORIZON = f"{WINDOW:g}"  # the same, as replays name them
+
+
+def name_horizon(seconds: float) -> str:
+    """What replays call windows of so many seconds."""
+    return f"{seconds:g}"
+
+
+HORIZON = name_horizon(WINDOW)

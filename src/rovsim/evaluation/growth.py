@@ -12,26 +12,31 @@ from rovsim.results.growth import Curve
 from rovsim.simulation.prediction import Prediction
 from rovsim.simulation.windows import find_windows, predicted
 
-LONG = "5"  # s, of the windows
-BINS = 25  # of 0.2 s: wider than the spacing of bins that were recorded as means
+BINS = 25  # at most
+NARROWEST = 0.2  # s: wider than the spacing of bins that were recorded as means
 
 
 class GrowthScore:
-    """Squared velocity errors (25, 6) by the time since the anchor, summed over test runs."""
+    """Squared velocity errors (b, 6) by the time since the anchor, summed over test runs.
 
-    def __init__(self) -> None:
-        self._edges = np.linspace(0.0, float(LONG), BINS + 1)
-        self._count, self._squares = np.zeros((BINS, 6)), np.zeros((BINS, 6))
+    `horizon` s: how long the windows are.
+    """
+
+    def __init__(self, horizon: float) -> None:
+        self.horizon = horizon
+        self._bins = max(1, min(BINS, round(horizon / NARROWEST)))
+        self._edges = np.linspace(0.0, horizon, self._bins + 1)
+        self._count, self._squares = np.zeros((self._bins, 6)), np.zeros((self._bins, 6))
 
     def add(self, motion: Motion, prediction: Prediction) -> None:
-        """Take in a run and its windows of 5 s; a train run is passed by."""
+        """Take in a run and its windows; a train run is passed by."""
         if motion.run.split != "test":
             return
-        age = _age(motion, float(LONG))
+        age = _age(motion, self.horizon)
         known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
         member = np.digitize(age, self._edges) - 1
-        known &= (member >= 0) & (member < BINS)
-        count = np.bincount(member[known], minlength=BINS)
+        known &= (member >= 0) & (member < self._bins)
+        count = np.bincount(member[known], minlength=self._bins)
         self._count += count[:, None] * find_measured(motion.measured)
         with np.errstate(over="ignore"):  # of a model that diverged: infinite
             squares = np.square((prediction.nu - motion.nu)[known])

@@ -2,8 +2,8 @@
 
 from typing import Iterable, Mapping
 
-from rovsim.core.horizons import HORIZON, OPEN_LOOP
-from rovsim.evaluation.growth import LONG, GrowthScore
+from rovsim.core.horizons import HORIZON, OPEN_LOOP, name_horizon
+from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import StepScore
 from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.signals.motion import Motion
@@ -14,15 +14,18 @@ from rovsim.simulation.prediction import Prediction, Replay
 
 
 class Scored:
-    """Errors of models by run, how they grow, and the models' steps of the ladder."""
+    """Errors of models by run, how they grow, and the models' steps of the ladder.
 
-    def __init__(self, models: Iterable[str]) -> None:
-        self._models = {name: _Score(name) for name in models}
+    `longest` s of the horizons of their replays: in these windows the growth is seen.
+    """
+
+    def __init__(self, models: Iterable[str], longest: float) -> None:
+        self._models = {name: _Score(name, longest) for name in models}
 
     @staticmethod
     def of(motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> "Scored":
         """Of replays by model and run."""
-        found = Scored(replays)
+        found = Scored(replays, _find_longest(replays))
         for motion in motions:
             for runs in replays.values():
                 found.add(motion, runs[motion.run.id])
@@ -55,15 +58,20 @@ class Scored:
 
 def score(motion: Motion, replay: Replay) -> RunErrors:
     """All metrics of one model on one run."""
-    one = _Score(replay.model)
+    one = _Score(replay.model, replay.longest)
     one.add(motion, replay.horizons.items())
     return one.runs[motion.run.id]
 
 
+def _find_longest(replays: Mapping[str, Mapping[str, Replay]]) -> float:
+    """Of all alike: they are of one configuration."""
+    return next((one.longest for runs in replays.values() for one in runs.values()), 0.0)
+
+
 class _Score:
-    def __init__(self, model: str) -> None:
+    def __init__(self, model: str, longest: float) -> None:
         self.runs: dict[str, RunErrors] = {}
-        self.growth, self.step = GrowthScore(), StepScore(model)
+        self.growth, self.step = GrowthScore(longest), StepScore(model)
 
     def add(self, motion: Motion, horizons: Iterable[tuple[str, Prediction]]) -> None:
         found = {}
@@ -79,6 +87,6 @@ class _Score:
         errors = subtract(motion, prediction)
         if horizon == HORIZON:
             self.step.add(motion, errors)
-        if horizon == LONG:
+        if horizon == name_horizon(self.growth.horizon):
             self.growth.add(motion, prediction)
         return summarize(errors)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.array_files import read_arrays, write_arrays
+from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.run import RunInfo
 
 LEVEL = 0.9  # of what is measured that a band holds
@@ -43,6 +44,11 @@ class Replay:
     run: RunInfo
     time: Array
     horizons: dict[str, Prediction]
+
+    @property
+    def longest(self) -> float:
+        """Of its windows, s; 0 without any."""
+        return max((float(name) for name in self.horizons if name != OPEN_LOOP), default=0.0)
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""

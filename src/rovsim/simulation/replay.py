@@ -10,7 +10,7 @@ from typing import Iterable, Iterator, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.horizons import OPEN_LOOP
+from rovsim.core.horizons import OPEN_LOOP, name_horizon
 from rovsim.core.rotations import normalized
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.binned import backward_difference, bin_means
@@ -71,7 +71,7 @@ def find_spans(
     """The windows of each horizon: `open_loop`, `0.5`, `2`, `5`."""
     spans: dict[str, Spans] = {OPEN_LOOP: find_whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
-        spans[f"{seconds:g}"] = list(find_windows(motion, seconds))
+        spans[name_horizon(seconds)] = list(find_windows(motion, seconds))
     return spans
 
 

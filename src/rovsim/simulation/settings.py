@@ -19,6 +19,11 @@ class ReplaySettings(Section):
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
 
+    @property
+    def longest(self) -> float:
+        """Of the windows, s."""
+        return max(self.horizons)
+
     def only(self, *horizons: float) -> "ReplaySettings":
         """The same with these windows, perhaps none."""
         return self.model_copy(update={"horizons": horizons})

@@ -30,7 +30,7 @@ def compare(
 
     Once over the runs, one after the other: what memory holds does not grow with their number.
     """
-    scored = Scored(model.name for model in models)
+    scored = Scored((model.name for model in models), settings.replay.longest)
     searches = _searches(data, models, settings)
     shown = replay_when_asked(models, data.motions, settings)
     budgets = Remade(

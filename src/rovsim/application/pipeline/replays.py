@@ -34,7 +34,7 @@ def score_models(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> Scored:
     """Every run replayed with every model, and scored."""
-    scored = Scored(model.name for model in models)
+    scored = Scored((model.name for model in models), settings.replay.longest)
     for run in counted(list(motions), "replaying"):
         for model in models:
             score_run(scored, model, motions[run], settings)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from numpy import ndarray as Array
 
 from rovsim.core.bounded_cache import Recent
-from rovsim.core.horizons import OPEN_LOOP, WINDOW
+from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.ladder import score_step
@@ -44,7 +44,7 @@ class KeptReplays:
 
     def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
         """What the model predicts in windows of `horizon` s, or open loop (None)."""
-        name = OPEN_LOOP if horizon is None else f"{horizon:g}"
+        name = OPEN_LOOP if horizon is None else name_horizon(horizon)
         return self.replayed(model, run, horizon).horizons[name]
 
     def band(self, model: Model, run: str, horizon: float | None) -> Band | None:

@@ -35,7 +35,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
-from rovsim.core.horizons import OPEN_LOOP, WINDOW
+from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
@@ -212,7 +212,7 @@ def _tell_errors(run: str, errors: Errors) -> None:
         cells: list[str] = []
         for horizon in horizons:
             values = {model: _read(found[horizon], name) for model, found in errors.items()}
-            at = OPEN_LOOP if horizon is None else f"{horizon:g}"
+            at = OPEN_LOOP if horizon is None else name_horizon(horizon)
             cells += [cell(v, f"{model}/{at}/{name.split()[0]}") for model, v in values.items()]
             if len(values) == 2:
                 cells.append(f'<td class="number">{tell_change(*values.values())}</td>')
