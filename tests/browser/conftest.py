@@ -73,9 +73,8 @@ def planned(workbench, campaign):
     """
     settings = compose([f"campaign='{campaign}'", "seconds=20"])
     bench = Workbench.opened(settings, built_in())
-    asked = {"between": RIVALS, "seconds": 20.0}
-    how = settings.model_dump(include={"design", "signals", "replay", "seed"})
-    folder = workbench[1] / bench.flight_folder("nominal", Question(**how, **asked))
+    question = Question.of(settings, "the test", between=RIVALS, seconds=20.0)
+    folder = workbench[1] / bench.flight_folder("nominal", question)
     write_flight(folder, flight())
     one, other = RIVALS
     return f"flight?asked=between&one={one}&other={other}&seconds=20&model=nominal", folder

@@ -9,6 +9,7 @@ from rovsim.application.sections import SimulationSections, TrainingSettings
 from rovsim.application.settings import CampaignSettings, Settings, select
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section, checked
+from rovsim.design.settings import Question
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
@@ -60,3 +61,13 @@ def test_the_page_names_every_key_of_the_tank():
         assert f"`tank.{name}" in text, name
         for own in below:
             assert f"`tank.{name}.{own}`" in text or f"`.{own}`" in text, f"{name}.{own}"
+
+
+def test_of_the_search_a_question_takes_what_a_design_looks_at_alone():
+    def asked(*overrides):
+        return Question.of(compose(overrides), "here", seconds=20.0)
+
+    some = asked("search.most_seconds=120")
+    assert (some.most_seconds, some.seconds) == (120.0, 20.0)
+    assert asked("search.most_seconds=120", "search.false_alarm=0.01") == some
+    assert asked() == asked().model_copy(update={"most_seconds": 600.0})

@@ -94,8 +94,9 @@ def plan(
             anything.
     """
     stage("learning")
-    most = question.search.most_seconds
-    train = prepare_train(runs, question.replay, catalogue, model.body.free, most).runs
+    train = prepare_train(
+        runs, question.replay, catalogue, model.body.free, question.most_seconds
+    ).runs
     usable = select_usable(train)
     if not usable.enough:
         raise BadInput(

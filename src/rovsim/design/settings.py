@@ -1,11 +1,11 @@
 """What a design may be asked, and limits that a flight keeps to."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
-from rovsim.core.schema import Section
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.core.schema import Section, checked
+from rovsim.diagnosis.settings import MAX_TRAIN_SECONDS, MostSeconds
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
@@ -49,8 +49,8 @@ class DesignSettings(Section):
 class Question(Section):
     """What is asked, on which settings of signals and replays it depends, and the seed.
 
-    `between` two effects; `know` parameters, as `effect.parameter`. Of `search` only `most_seconds`
-    matters: how much of the train runs is looked at.
+    `between` two effects; `know` parameters, as `effect.parameter`. `most_seconds` of the train
+    runs are looked at.
     """
 
     between: tuple[str, ...] = ()
@@ -59,8 +59,19 @@ class Question(Section):
     design: DesignSettings = DesignSettings()
     signals: SignalSettings = SignalSettings()
     replay: ReplaySettings = ReplaySettings()
-    search: SearchSettings = SearchSettings()
+    most_seconds: MostSeconds = MAX_TRAIN_SECONDS
     seed: int = Field(0, ge=0)
+
+    @staticmethod
+    def of(settings: Section, where: str, **asked: Any) -> "Question":
+        """What is asked, the rest as the settings of a command have it.
+
+        Raises:
+            BadInput: it is no question; `where` says whose.
+        """
+        own = dict.fromkeys(("design", "signals", "replay", "seed"), True)
+        known = settings.model_dump(include={**own, "search": {"most_seconds"}})
+        return checked(Question, known.pop("search") | known | asked, where)
 
     @property
     def simulation(self) -> SimulationSettings:

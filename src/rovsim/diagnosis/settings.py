@@ -10,6 +10,8 @@ from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 MAX_TRAIN_SECONDS = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
 
+MostSeconds = Annotated[float, Field(ge=60)]
+
 
 class SearchSettings(Section):
     """How effects are chosen.
@@ -26,7 +28,7 @@ class SearchSettings(Section):
     trials: PositiveInt = 3
     most_effects: PositiveInt = 12
     relevant: Annotated[float, Field(ge=0)] = 0.02
-    most_seconds: Annotated[float, Field(ge=60)] = MAX_TRAIN_SECONDS
+    most_seconds: MostSeconds = MAX_TRAIN_SECONDS
 
 
 class DiagnosisSettings(Section):

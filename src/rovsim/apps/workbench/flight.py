@@ -23,7 +23,6 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.core.schema import checked
 from rovsim.design.settings import LONGEST, SHORTEST, Question
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import with_thruster_names
@@ -118,10 +117,9 @@ class Flight:
     def question(self) -> Question:
         """What is asked."""
         chosen = self.chosen
-        known = self.bench.settings.model_dump(include={"design", "signals", "replay", "seed"})
         names = {"between": (chosen["one"], chosen["other"])}
         asked = names if chosen["asked"] == "between" else {"know": chosen["know"]}
-        return checked(Question, known | asked | {"seconds": chosen["seconds"]}, "the question")
+        return Question.of(self.bench.settings, "the question", **asked, seconds=chosen["seconds"])
 
     async def _draw(self) -> None:
         """The flight that answers the question, or the way to it."""

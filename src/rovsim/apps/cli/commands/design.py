@@ -16,7 +16,6 @@ from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
-from rovsim.core.schema import checked
 from rovsim.design.settings import DesignSettings, Question
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
@@ -47,8 +46,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
 def _ask(settings: Settings) -> Question:
     """What is asked, checked."""
-    asked = settings.model_dump(
-        include={"seconds", "design", "signals", "replay", "search", "seed"}
+    between, know = settings.between or [], settings.know or []
+    return Question.of(
+        settings, "command line", between=between, know=know, seconds=settings.seconds
     )
-    names = {"between": settings.between or [], "know": settings.know or []}
-    return checked(Question, asked | names, "command line")
