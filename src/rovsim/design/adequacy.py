@@ -95,7 +95,7 @@ def measure_replay_error(
         spans = list(find_windows(motion, AFTER))
         if not spans:
             continue
-        found = replay(model, motion, spans, question.simulation)
+        found = replay(model, motion, spans, question)
         ends = last_predicted(motion, spans)
         off = found.eta[ends, :3] - motion.eta[ends, :3]
         squares += list(np.sum(off**2, axis=1))

@@ -6,8 +6,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section, checked
 from rovsim.diagnosis.settings import MAX_TRAIN_SECONDS, MostSeconds
-from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings, SimulationSettings
+from rovsim.simulation.settings import SimulationSettings
 
 # s: shorter shows little; longer nobody foresees, and a search over it would fill the memory
 SHORTEST, LONGEST = 10, 600
@@ -46,7 +45,7 @@ class DesignSettings(Section):
     rounds: Annotated[int, Field(ge=1, le=1000)] = 12
 
 
-class Question(Section):
+class Question(SimulationSettings):
     """What is asked, on which settings of signals and replays it depends, and the seed.
 
     `between` two effects; `know` parameters, as `effect.parameter`. `most_seconds` of the train
@@ -57,8 +56,6 @@ class Question(Section):
     know: tuple[str, ...] = ()
     seconds: Annotated[float, Field(ge=SHORTEST, le=LONGEST)] = 60.0
     design: DesignSettings = DesignSettings()
-    signals: SignalSettings = SignalSettings()
-    replay: ReplaySettings = ReplaySettings()
     most_seconds: MostSeconds = MAX_TRAIN_SECONDS
     seed: int = Field(0, ge=0)
 
@@ -72,8 +69,3 @@ class Question(Section):
         own = dict.fromkeys(("design", "signals", "replay", "seed"), True)
         known = settings.model_dump(include={**own, "search": {"most_seconds"}})
         return checked(Question, known.pop("search") | known | asked, where)
-
-    @property
-    def simulation(self) -> SimulationSettings:
-        """How measurements are cleaned and models replayed."""
-        return SimulationSettings(signals=self.signals, replay=self.replay)

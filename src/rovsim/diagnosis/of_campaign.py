@@ -99,12 +99,11 @@ def _look(
     base: Model, runs: Runs, settings: DiagnosisSettings
 ) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
     """Where the base fails, and where train runs stand still; each run is sampled once."""
-    how = settings.simulation
-    search = ConditionSearch(base, set(runs.splits.values()), how)
+    search = ConditionSearch(base, set(runs.splits.values()), settings)
 
     def sampled() -> Iterator[tuple[Motion, Samples]]:
         for motion in map(runs.motions.__getitem__, runs.of("train")):
-            samples = sample_run(base, motion, how)
+            samples = sample_run(base, motion, settings)
             search.take(motion, samples)
             yield motion, samples
 
@@ -122,7 +121,7 @@ def _climb(
     Where a law is proposed, it and what is beside it come last, before the noise floor. Also the
     test runs in which the base runs away.
     """
-    models, how = _list_models(diagnosis), settings.simulation.only(WINDOW)
+    models, how = _list_models(diagnosis), settings.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]

@@ -5,8 +5,7 @@ from typing import Annotated
 from pydantic import Field, PositiveInt
 
 from rovsim.core.schema import Section
-from rovsim.measurement.signals.chain import SignalSettings
-from rovsim.simulation.settings import ReplaySettings, SimulationSettings
+from rovsim.simulation.settings import SimulationSettings
 
 MAX_TRAIN_SECONDS = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
 
@@ -31,15 +30,8 @@ class SearchSettings(Section):
     most_seconds: MostSeconds = MAX_TRAIN_SECONDS
 
 
-class DiagnosisSettings(Section):
+class DiagnosisSettings(SimulationSettings):
     """All that a diagnosis depends on but the runs and the model."""
 
     search: SearchSettings = SearchSettings()
-    signals: SignalSettings = SignalSettings()
-    replay: ReplaySettings = ReplaySettings()
     seed: int = Field(0, ge=0)
-
-    @property
-    def simulation(self) -> SimulationSettings:
-        """How measurements are cleaned and models replayed."""
-        return SimulationSettings(signals=self.signals, replay=self.replay)

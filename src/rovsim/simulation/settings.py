@@ -1,6 +1,6 @@
 """How measurements are cleaned, and how runs are replayed."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field, PositiveFloat, field_validator
 
@@ -24,7 +24,7 @@ class ReplaySettings(Section):
         """Of the windows, s."""
         return max(self.horizons)
 
-    def only(self, *horizons: float) -> "ReplaySettings":
+    def only(self, *horizons: float) -> Self:
         """The same with these windows, perhaps none."""
         return self.model_copy(update={"horizons": horizons})
 
@@ -42,6 +42,6 @@ class SimulationSettings(Section):
     signals: SignalSettings = SignalSettings()
     replay: ReplaySettings = ReplaySettings()
 
-    def only(self, *horizons: float) -> "SimulationSettings":
+    def only(self, *horizons: float) -> Self:
         """The same with these windows in s, perhaps none."""
         return self.model_copy(update={"replay": self.replay.only(*horizons)})
