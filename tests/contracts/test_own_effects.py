@@ -141,6 +141,7 @@ class Hose(Wrench):
 """
 BAD = {  # what is replaced, by what: what the message says
     ("class Hose(Wrench):", "class Hose(Wrench"): r"hose.py, line 4: .*never closed",
+    ("Wrench\n\nclass Hose(Wrench)", "Effect\n\nclass Hose(Effect)"): "acts nowhere.*another kind",
     ("from rovsim", "from rovsinn"): r"line 2: ModuleNotFoundError",
     ("class Hose(Wrench)", "class Hose"): "declares no effect",
     ('    "A hose drags behind."\n', ""): "has no 'docstring'",
@@ -249,6 +250,7 @@ def test_every_kind_is_tried_before_it_is_used(wrong):
 def test_there_are_trials_of_every_kind():
     kinds = {cls for cls in vars(base).values() if inspect.isclass(cls) and issubclass(cls, Effect)}
     assert set(TRIALS) == kinds - {Effect}
+    assert all(issubclass(cls, tuple(TRIALS)) for cls in load_catalogue().values())
 
 
 @pytest.mark.parametrize("vehicle", VEHICLES)

@@ -201,6 +201,11 @@ class Wrench(Effect):
         return namedtuple(f"{cls.__name__}Channels", cls.channels)
 
     @classmethod
+    def example_channels(cls) -> Any:
+        """Channels with which the kernel can be tried; where it has none, the engine's number."""
+        return cls.named_channels()(*(1.0 for _ in cls.channels)) if cls.channels else 0.0
+
+    @classmethod
     def reads(cls) -> bool:
         """Whether its kernel, or a helper that it calls, reads actuators or channels."""
         return bool(cls.channels) or says(cls.wrench, "actuators")

@@ -210,13 +210,12 @@ def _reading(cls: type[Wrench], acting: Array, have: tuple[int, int, int], beyon
     from rovsim.dynamics.engine.reading import Actuators, example_reading
 
     forces, commands, places = have
-    channels = cls.named_channels()(*(1.0 for _ in cls.channels)) if cls.channels else 0.0
     actuators = Actuators(
         _surrounded(acting[0, :forces], beyond),
         _surrounded(acting[1, :commands], beyond),
         _surrounded(np.ascontiguousarray(acting[2:, :places].T), beyond),
     )
-    return example_reading(channels)._replace(actuators=actuators)
+    return example_reading(cls.example_channels())._replace(actuators=actuators)
 
 
 def _surrounded(values: Array, beyond: float) -> Array:

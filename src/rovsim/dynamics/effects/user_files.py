@@ -15,6 +15,7 @@ from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
 from rovsim.dynamics.effects.declarations import TEXTS, find_faults, refused
 from rovsim.dynamics.effects.kernels import compiled_alone
+from rovsim.dynamics.effects.trials import TRIALS
 
 
 def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]]:
@@ -73,6 +74,8 @@ def check_effects(
 
 
 def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
+    if not issubclass(cls, tuple(TRIALS)):
+        raise refused("acts nowhere", where, "a class on top of Wrench or another kind")
     missing = [name for name in ("id", *TEXTS) if not isinstance(getattr(cls, name, None), str)]
     missing += [] if cls.__doc__ else ["docstring"]
     missing += [] if getattr(cls, "parameters", ()) else ["parameters"]
@@ -107,9 +110,8 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
         raise refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
     p = cls.named_parameters()(*(0.0 for _ in cls.parameters))
     kernel = compiled_alone(cls)
-    channels = cls.named_channels()(*(0.0 for _ in cls.channels)) if cls.channels else 0.0
     try:
-        kernel(example_reading(channels) if cls.reads() else EXAMPLE, p)
+        kernel(example_reading(cls.example_channels()) if cls.reads() else EXAMPLE, p)
     except (NumbaError, UnsupportedBytecodeError, TypeError) as error:
         raise refused(
             f"'wrench' does not compile: {_reason(str(error))}",
