@@ -11,7 +11,7 @@ from rovsim.benchmarks.blind.outside import Backlash
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
-from rovsim.dynamics.effects.force_curve import ForceCurve
+from rovsim.dynamics.effects.force_curve import CurveExponent
 from rovsim.dynamics.effects.thruster_play import ThrusterPlay
 from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
@@ -166,7 +166,7 @@ def test_gain_asymmetry_sag_and_deadband():
 
 @given(exponent=st.floats(0.2, 4.0))
 def test_a_bent_curve_keeps_its_ends_and_its_sign(exponent):
-    path = model(ForceCurve(exponent=exponent)).thrust_path
+    path = model(CurveExponent(exponent=exponent)).thrust_path
     command = np.repeat(np.linspace(-1.0, 1.0, 21)[:, None], 8, axis=1)
     nominal = path.thrusters.static_force(command)
     found, full = path.static(command, np.zeros(21), 1.0), nominal[-1]
@@ -179,13 +179,13 @@ def test_a_bent_curve_keeps_its_ends_and_its_sign(exponent):
 def test_a_curve_of_unequal_ends_is_bent_about_each_of_them():
     force, full = np.array([[-8.0, 4.0]]), np.array([[-16.0, -16.0], [40.0, 40.0]])
     expected = [-16.0 * 0.5**2, 40.0 * 0.1**2]
-    np.testing.assert_allclose(ForceCurve(exponent=2.0).reshaped_force(force, full)[0], expected)
-    assert ForceCurve(exponent=2.0).reshaped_force(force, 0.0 * full).tolist() == [[0.0, 0.0]]
+    np.testing.assert_allclose(CurveExponent(exponent=2.0).reshaped_force(force, full)[0], expected)
+    assert CurveExponent(exponent=2.0).reshaped_force(force, 0.0 * full).tolist() == [[0.0, 0.0]]
 
 
 def test_the_order_of_stages_is_fixed():
     effects = [
-        ForceCurve(exponent=1.3),
+        CurveExponent(exponent=1.3),
         ThrusterGain(all=-0.8),
         ThrustAsymmetry(ratio=0.6),
         VoltageSag(fraction=0.1),

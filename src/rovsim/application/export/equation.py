@@ -19,14 +19,13 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import CubicDamping
 from rovsim.dynamics.effects.dry_friction import DryFriction
-from rovsim.dynamics.effects.force_curve import ForceCurve
+from rovsim.dynamics.effects.force_curve import CurveExponent
 from rovsim.dynamics.effects.lift import Lift
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import ThrustAsymmetry, ThrusterDeadband, ThrusterGain
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.cross_flow import CrossFlow
-from rovsim.dynamics.vehicle.curves import ForceCurve as Curve
-from rovsim.dynamics.vehicle.curves import Table, Tables
+from rovsim.dynamics.vehicle.curves import ForceCurve, Table, Tables
 
 E = TypeVar("E", bound=Effect)
 
@@ -117,14 +116,14 @@ class Equation:
         return max((e["width"] for e in self._those(ThrusterDeadband)), default=0.0)
 
     @property
-    def curves(self) -> list[Curve]:
+    def curves(self) -> list[ForceCurve]:
         """The force curve of each thruster (n); tables by voltage are those of the nominal one."""
         return [_at_nominal_voltage(c) for c in self.model.thrust_path.thrusters.curves]
 
     @property
     def exponent(self) -> float:
         """F -> sign(F) F_max (|F| / F_max)^e, with F_max (2, n) of `full`."""
-        return float(np.prod([e["exponent"] for e in self._those(ForceCurve)]))
+        return float(np.prod([e["exponent"] for e in self._those(CurveExponent)]))
 
     @property
     def full(self) -> Array:
@@ -165,13 +164,13 @@ class Equation:
         return [e for e in self.model.effects if isinstance(e, kind)]
 
 
-def _at_nominal_voltage(curve: Curve) -> Curve:
+def _at_nominal_voltage(curve: ForceCurve) -> ForceCurve:
     """The same where it does not ask for the voltage, else the table at the nominal one."""
     tables = curve.tables
     if tables is None:
         return curve
     commands = sorted({c for table in tables.volts.values() for c in table.command})
-    return Curve(table=_table(tables, np.array(commands)))
+    return ForceCurve(table=_table(tables, np.array(commands)))
 
 
 def _table(tables: Tables, command: Array) -> Table:

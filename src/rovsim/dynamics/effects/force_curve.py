@@ -7,7 +7,7 @@ from rovsim.dynamics.effects.base import Parameter, ThrustCurveShape
 from rovsim.dynamics.effects.parameters import Signature
 
 
-class ForceCurve(ThrustCurveShape):
+class CurveExponent(ThrustCurveShape):
     """Thrusters whose curve is more bent, or straighter, than the published one.
 
     The force at full command stays; below 1 small commands push more, above 1 less.
