@@ -6,6 +6,8 @@ import pytest
 from rovsim.core.rotations import exp
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, DemandTransform
+from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.evaluation import force_budget
 from rovsim.evaluation.force_budget import RESTORING, balance_forces
 from rovsim.results.force_budget import ForceBudget
 from rovsim.simulation.measured_states import (
@@ -14,6 +16,7 @@ from rovsim.simulation.measured_states import (
     undo_mocap_view,
 )
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings
+from small_study import ROOT
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
 
 
@@ -61,6 +64,22 @@ def test_each_part_is_what_its_equation_says(tmp_path):
     again = ForceBudget.read(tmp_path / "b.npz")
     assert again.rms() == found.rms()
     assert list(again.parts) == list(found.parts)
+
+
+def test_an_effect_of_the_vehicle_without_a_named_part_is_one_of_its_own(monkeypatch):
+    named = made(model())
+    monkeypatch.delitem(force_budget.NOMINAL, "quadratic_damping")
+    found = made(model())
+    drag = found.parts["quadratic_damping"]
+    np.testing.assert_allclose(drag, named.parts["quadratic damping"], atol=1e-9)
+    np.testing.assert_allclose(sum(found.parts.values()), sum(named.parts.values()), atol=1e-9)
+
+
+@pytest.mark.parametrize("name", [path.stem for path in (ROOT / "conf/vehicle").glob("*.yaml")])
+def test_all_that_a_vehicle_has_is_part_of_the_budget(name):
+    held = {"rigid_body", "thrusters", "held_axes"}  # weight, Coriolis; commands; no force
+    for effect in load_vehicle(name).effects():
+        assert effect.id in (held if effect.neutral() is effect else force_budget.NOMINAL)
 
 
 def test_the_missing_force_is_the_one_that_was_left_out():

@@ -32,7 +32,9 @@ from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL = "learned residual"
-NOMINAL = {  # parts of the vehicle's own effects, in the order in which they are put in
+# Parts of the vehicle's own effects, in the order in which they are put in; one that is not listed
+# comes last, under its id.
+NOMINAL = {
     "net_buoyancy": RESTORING,
     "buoyancy_center": RESTORING,
     "waterplane_stiffness": RESTORING,
@@ -71,9 +73,11 @@ def _cumulative(
     yield CORIOLIS, _force(bare, motion, none)
     own = len(model.effects) - len(model.added)
     for k in sorted(range(own), key=lambda k: _place(model.effects[k])):
-        if model.effects[k].id in NOMINAL:
-            neutral[k] = model.effects[k]
-            yield NOMINAL[neutral[k].id], _force(_with(model, neutral), motion, none)
+        effect = model.effects[k]
+        if neutral[k] is not effect:  # else it is in from the start
+            neutral[k] = effect
+            name = NOMINAL.get(effect.id, effect.id)
+            yield name, _force(_with(model, neutral), motion, none)
     yield THRUSTERS, _at(_with(model, neutral), motion, settings)
     for k in range(own, len(neutral)):
         neutral[k] = model.effects[k]
