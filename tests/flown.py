@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from rovsim.application.pipeline.reading import load_campaign_vehicle
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.model import Model, nominal
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.train_runs import prepare_train
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.runs import Runs

@@ -10,6 +10,7 @@ measurement  campaigns, readers of raw exports, signals
 simulation   models driven by commands, and the synthetic tank
 evaluation   how far model and measurement are apart
 learning     trained residuals
+estimation   values of given effects, and how likely each hypothesis is
 diagnosis    which physical effects a model lacks
 design       the next flight
 intake       files that nobody has described yet

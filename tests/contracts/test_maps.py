@@ -51,4 +51,4 @@ def test_the_steps_of_a_diagnosis_are_where_its_docstring_says():
     told = ast.get_docstring(ast.parse(source)) or ""
     places = re.findall(r"^[a-z ]+? {2,}([a-z_/]+) {2,}\S", told, re.MULTILINE)[1:]
     assert len(places) > 10
-    assert not [place for place in places if not (SOURCE / "diagnosis" / f"{place}.py").is_file()]
+    assert not [place for place in places if not (SOURCE / f"{place}.py").is_file()]

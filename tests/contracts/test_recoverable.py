@@ -6,16 +6,16 @@ from rovsim.application.configuration import compose
 from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import build_effect
 from rovsim.dynamics.effects.base import MeasurementFilter, StochasticCurrent
 from rovsim.dynamics.model import nominal
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.fit import fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.train_runs import prepare_train
 
 MINUTE = {"runs": [{"id": "train", "control": "6dof", "split": "train"}]}
 

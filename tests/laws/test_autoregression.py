@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
-from rovsim.diagnosis.observer.innovations import ErrorDynamics
+from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
+from rovsim.estimation.observer.innovations import ErrorDynamics
 
 LENGTHS = (1500, 2500)
 SWAY, YAW = 1, 5

@@ -7,14 +7,14 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
-from rovsim.diagnosis.observer.innovations import serve_all
-from rovsim.diagnosis.observer.observed_run import prepare_run
-from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.tether import TetherTension
 from rovsim.dynamics.effects.thrusters import VoltageSag
+from rovsim.estimation.observer.innovations import serve_all
+from rovsim.estimation.observer.observed_run import prepare_run
+from rovsim.estimation.observer.windows import Windows
 from rovsim.evaluation.force_budget import balance_forces
 from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation.batch import Batch, Starts

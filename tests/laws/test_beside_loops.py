@@ -6,13 +6,6 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.fit import judge
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -20,6 +13,13 @@ from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
 from rovsim.dynamics.effects.thrusters import PropellerTorque
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.fit import judge
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 from rovsim.simulation.synthetic_tank.settings import Log
 
 LOOP = {"gain_yaw": 1.4, "bandwidth_yaw": 2.5}

@@ -3,12 +3,6 @@
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -16,6 +10,12 @@ from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.sensing import MarkerOffset
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 PLACE, DRAG = {"x": 0.15}, {"heave": 90.0}  # m, N s2/m2
 

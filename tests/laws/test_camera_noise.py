@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rovsim.core import gauss_markov
-from rovsim.diagnosis.observer.camera import fit_smoothing
-from rovsim.diagnosis.observer.camera_noise import describe_noise
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.low_pass import LowPass
+from rovsim.estimation.observer.camera import fit_smoothing
+from rovsim.estimation.observer.camera_noise import describe_noise
 
 FRAMES, PERIOD = 12_000, 0.01  # two minutes
 WHITE = 1.0

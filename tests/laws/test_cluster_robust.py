@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import number_blocks
-from rovsim.diagnosis.observer.sandwich import estimate_covariance
-from rovsim.diagnosis.selection.fit import fit
 from rovsim.dynamics.catalogue import built_in
+from rovsim.estimation.fit import fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.observed_run import number_blocks
+from rovsim.estimation.observer.sandwich import estimate_covariance
 
 DRAG = built_in()["quadratic_damping"]
 

@@ -7,15 +7,15 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.advice import FIX_SCALE, advise
 from rovsim.diagnosis.checks.common_scale import include_scale
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.vehicle_file.stated import free_terms
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
+from rovsim.estimation.file_effects import free_terms
+from rovsim.estimation.fit import fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.usable_runs import UsableRuns
 from rovsim.reporting.words.verdict import explain
 from rovsim.results.diagnosis import ScaleOfForces
 from synthetic_study import study

@@ -6,8 +6,8 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.equations.disturbance import smooth_stretch
 from rovsim.diagnosis.equations.spectrum import SEGMENT, find_spectrum
-from rovsim.diagnosis.observer.axis_kernels import POSE
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
+from rovsim.estimation.observer.axis_kernels import POSE
+from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, NOISE, COUNT = 0.05, AxisNoise(0.1, 1.0, 1e-3), 4000
 

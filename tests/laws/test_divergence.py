@@ -5,10 +5,10 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis import explanation
-from rovsim.diagnosis.observer.divergence import ModelLost, require_finite
 from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
+from rovsim.estimation.observer.divergence import ModelLost, require_finite
 
 
 @pytest.fixture(scope="module")

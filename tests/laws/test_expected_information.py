@@ -18,11 +18,11 @@ from rovsim.design.expected_information import (
 )
 from rovsim.design.from_train_runs import check_fitted, widen
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
 from rovsim.dynamics.effects.proximity import WallProximity
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 N = 4096
 

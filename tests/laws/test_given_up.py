@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.fit import fit, fit_or_give_up
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
+from rovsim.estimation.fit import fit, fit_or_give_up
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
 
 HIDDEN = EffectEntry(effect="quadratic_damping", parameters={"surge": 60.0, "sway": 80.0})
 

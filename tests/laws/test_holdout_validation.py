@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.windows import Windows
 from rovsim.diagnosis.selection import holdout_validation
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
 from rovsim.diagnosis.selection.paired_comparison import find_sure_improvement, surely_costs
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.windows import Windows
 
 
 def test_no_reading_is_on_both_sides(tmp_path):

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.vehicle import default_vehicle
+from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from worlds import model
 
 DRAG = Term(QuadraticDamping(surge=3.0), ("surge",))

@@ -10,13 +10,6 @@ import pytest
 from rovsim import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
-from rovsim.diagnosis.observer.drifting_current import DriftFit
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.random_walk import Rate
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.ranking import (
     Named,
     Selected,
@@ -26,7 +19,6 @@ from rovsim.diagnosis.selection.ranking import (
     find_stand_ins,
     name_drift,
 )
-from rovsim.diagnosis.selection.vehicle_file.stated import free_terms
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
@@ -38,6 +30,14 @@ from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.estimation.file_effects import free_terms
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.drifting_current import DriftFit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.random_walk import Rate
+from rovsim.estimation.observer.residual_source import Linearised
+from rovsim.estimation.observer.usable_runs import UsableRuns
 from worlds import motion, sticks
 
 TERMS = ("linear_damping", "net_buoyancy")  # surge … yaw, and a force

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
-from rovsim.diagnosis.observer.axis_kernels import (
+from rovsim.estimation.observer.axis_kernels import (
     LEAST_DRIVING,
     POSE,
     SOLVABLE,
@@ -19,9 +19,9 @@ from rovsim.diagnosis.observer.axis_kernels import (
     misfit,
     sum_of_squares,
 )
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
-from rovsim.diagnosis.observer.noise import Noise, RunFilters
-from rovsim.diagnosis.observer.noise_fit import fit_noise
+from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
+from rovsim.estimation.observer.noise import Noise, RunFilters
+from rovsim.estimation.observer.noise_fit import fit_noise
 
 H = 0.01
 noises = st.tuples(

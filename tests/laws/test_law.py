@@ -14,9 +14,9 @@ from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
 from rovsim.diagnosis.equations.products.wording import write_equation
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.engine.types import EXAMPLE
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from worlds import model, tank, write_and_read

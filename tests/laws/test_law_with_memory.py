@@ -5,7 +5,7 @@ import pytest
 
 from rovsim.diagnosis.equations.form import get_law
 from rovsim.diagnosis.equations.with_memory import FORMS, Wake
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, model, motion, sticks, write_and_read

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.least_squares import (
+from rovsim.estimation.observer.least_squares import (
     eliminate_columns,
     gram,
     project_out,

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.residual_source import linearise
-from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
 from rovsim.dynamics.catalogue import built_in
+from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.residual_source import linearise
 from worlds import model
 
 COUNT = 50

@@ -7,10 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.diagnosis.selection.proposals import rank_proposals
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.diagnosis.selection.vehicle_file.loose_file import (
     FILE_LR,
     Contender,
@@ -20,6 +17,9 @@ from rovsim.diagnosis.selection.vehicle_file.loose_file import (
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+from rovsim.estimation.candidates import Candidate
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.sensitivities import CandidateColumns
 
 PENALTY = 10.0
 OFF = ("linear_damping", "quadratic_damping", "added_mass")

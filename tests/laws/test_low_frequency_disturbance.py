@@ -10,12 +10,12 @@ from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance
 from rovsim.design.recording_setup import describe_setup
 from rovsim.design.scenarios import draw_scenarios
 from rovsim.design.settings import Question
-from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.estimation.observer.noise import Noise
 
 FORCE, HEAVE = 3.0, 2
 NOISE = Noise(np.full(6, 0.02), np.ones(6), np.full(6, 1e-3))

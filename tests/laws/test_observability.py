@@ -4,18 +4,18 @@ import numpy as np
 
 from flown import observed
 from rovsim.diagnosis.checks.observability import DETECTION_STDS, find_shown, list_not_observable
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates, measure_columns
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.onboard_control import OnboardControl
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.sensitivities import linearise_candidates, measure_columns
+from rovsim.estimation.white_columns import WhiteColumns
 from rovsim.simulation.synthetic_tank.settings import Log
 
 LOOPS = {

@@ -11,23 +11,23 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, multiply, normalized
-from rovsim.diagnosis.observer.camera import Smoothing
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.residual_source import Linearised
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
     absorb_delay,
     search_consistent,
     seen_through,
 )
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.sensing import MarkerOffset, WorldTilt
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.low_pass import LowPass, in_body, in_world
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.camera import Smoothing
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.residual_source import Linearised
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.chain import SignalSettings, velocities
 from rovsim.measurement.signals.filter import Butterworth

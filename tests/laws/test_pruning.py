@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.residual_source import Linearised
 
 PENALTY = 11.5  # of about 300 columns
 

@@ -13,14 +13,14 @@ from flown import observed
 from rovsim.core.run import Commands
 from rovsim.diagnosis.checks.residual import split_by_axis
 from rovsim.diagnosis.checks.unknown_thrust import find_different, find_jumps, find_lost_commands
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import prepare_run
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.thrusters import ThrusterDeadband
 from rovsim.dynamics.mocap_view import NO_CHANGE
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.observed_run import prepare_run
 from rovsim.simulation.drive import Actuation, Drives
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera

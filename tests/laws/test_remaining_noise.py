@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.remaining_noise import draw_remainder
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.remaining_noise import draw_remainder
 
 
 def flatten(rows, noise):

@@ -9,12 +9,6 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.prior import Prior
-from rovsim.diagnosis.selection.vehicle_file.stated import doubt_gain, free_terms
 from rovsim.diagnosis.selection.vehicle_file.whole_file import (
     fit_whole_file,
     free_rest,
@@ -23,6 +17,12 @@ from rovsim.diagnosis.selection.vehicle_file.whole_file import (
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.estimation.file_effects import doubt_gain, free_terms
+from rovsim.estimation.fit import fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.prior import Prior
 
 OFF = 0.2  # of each coefficient
 WEAK, WEAKER = 0.95, 0.75  # thrusters of this strength

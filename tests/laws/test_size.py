@@ -12,10 +12,10 @@ from flown import observed
 from rovsim.application.pipeline.replays import score_run
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.bounded_cache import ReadAgain, Recent, Remade, size
-from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import ClockDrift
 from rovsim.dynamics.effects.thrusters import VoltageSag
+from rovsim.estimation.observer.train_runs import prepare_train
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.scored import Scored, score
 from rovsim.evaluation.scores import Moments, Sums, subtract, summarize

@@ -7,8 +7,8 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.checks.residual import AxisResidual
 from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
-from rovsim.diagnosis.observer.axis_kernels import POSE
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
+from rovsim.estimation.observer.axis_kernels import POSE
+from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, COUNT, KICK = 0.05, 1200, 600
 NOISE = AxisNoise(disturbance_std=0.02, correlation_time=1.0, measurement_std=1e-3)

@@ -7,18 +7,18 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from rovsim import AXES
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import project_out
-from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
-from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, spread_of_file
 from rovsim.diagnosis.selection.vehicle_file.steps import suspect_loose_file
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
+from rovsim.estimation.candidates import Candidate
+from rovsim.estimation.file_effects import FILE_EFFECT_IDS, spread_of_file
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import project_out
+from rovsim.estimation.sensitivities import CandidateColumns
 
 READINGS = 400
 BASE = nominal(load_vehicle(default_vehicle()))

@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.diagnosis.selection.forward_selection import find_swaps
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
+from rovsim.estimation.observer.hypothesis import Term
 
 
 @pytest.mark.parametrize(("loss", "tried"), [(100.0, 3), (300.0, 1)])

@@ -6,16 +6,9 @@ import yaml
 
 from flown import observed
 from rovsim import AXES
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.search_result import Rival, keep_likeliest
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
-from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, free_terms
 from rovsim.diagnosis.selection.vehicle_file.steps import prefer_file
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
@@ -24,6 +17,13 @@ from rovsim.dynamics.effects.rigid_body import Payload
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.vehicle import default_vehicle
 from rovsim.dynamics.vehicle.load import vehicle_file
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.file_effects import FILE_EFFECT_IDS, free_terms
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 OFF, GAIN = 0.2, 1.3
 NUMBERS = ("linear_damping", "quadratic_damping", "added_mass")

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
 from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.estimation.observer.camera import Smoothing, find_smoothing
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.simulation.synthetic_tank.settings import Camera
 
 LAG = EffectEntry(effect="thruster_lag", parameters={"time_constant": 0.3})

@@ -8,22 +8,22 @@ import pytest
 
 from flown import observed
 from rovsim.benchmarks.blind.laws import carried
-from rovsim.diagnosis.observer.drifting_current import MIN_LR_OF_DRIFT, MovingWater
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import FIRST_NOISE, CurrentPath, DriftingCurrent
-from rovsim.diagnosis.observer.random_walk import list_terms
 from rovsim.diagnosis.procedure import diagnose_train_runs
-from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
 from rovsim.diagnosis.selection.steady_current import prefer_steady
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.current import Current
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.observer.drifting_current import MIN_LR_OF_DRIFT, MovingWater
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import FIRST_NOISE, CurrentPath, DriftingCurrent
+from rovsim.estimation.observer.random_walk import list_terms
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 
 def rms(values):

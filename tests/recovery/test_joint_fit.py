@@ -7,24 +7,24 @@ from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.answer import settle
 from rovsim.diagnosis.checks.identifiability import group_joint_parameters
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.observer.usable_runs import select_usable
-from rovsim.diagnosis.selection.candidates import list_candidates
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
-from rovsim.diagnosis.selection.replay_fit import Replays, fit_to_replays
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.residual_source import Linearised
+from rovsim.estimation.observer.usable_runs import select_usable
+from rovsim.estimation.replay_fit import Replays, fit_to_replays
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 from rovsim.simulation.synthetic_tank.settings import Log
 
 GAIN = dict(zip(AXES, (0.9, 0.8, 0.7, 2.0, 2.0, 2.0), strict=True))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.selection.vehicle_file.refit import refit_nominal
 from rovsim.dynamics.effect_entry import EffectEntry
+from rovsim.estimation.refit import refit_nominal
 
 
 def train(folder, effects, control="6dof", duration=25.0):

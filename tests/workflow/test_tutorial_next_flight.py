@@ -16,15 +16,15 @@ from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json
 from rovsim.core.run import Commands
 from rovsim.core.yaml_files import read_yaml
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import gram
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.selection.fit import fit, polish
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.damping import LinearDamping
 from rovsim.dynamics.model import nominal
+from rovsim.estimation.fit import fit, polish
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import gram
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.train_runs import prepare_train
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands, as_logged
 from rovsim.results.experiment import Experiment

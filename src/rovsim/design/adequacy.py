@@ -16,8 +16,8 @@ from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance
 from rovsim.design.prior_information import PriorInformation
 from rovsim.design.search import DesignProblem
 from rovsim.design.settings import Question
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows, last_predicted
 

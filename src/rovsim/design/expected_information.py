@@ -22,14 +22,14 @@ from rovsim.core.run import Commands
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.record import record
 from rovsim.design.recording_setup import RecordingSetup
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.innovations import estimate_errors
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.least_squares import gram, solve
-from rovsim.diagnosis.observer.noise import design_filters
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.selection.fit import REACH
+from rovsim.estimation.fit import REACH
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.innovations import estimate_errors
+from rovsim.estimation.observer.kalman import AxisErrorDynamics
+from rovsim.estimation.observer.least_squares import gram, solve
+from rovsim.estimation.observer.noise import design_filters
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import Linearised
 
 NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison
 THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart

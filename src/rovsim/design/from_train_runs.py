@@ -8,20 +8,20 @@ import numpy as np
 from rovsim.core.errors import BadInput, nearest
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.settings import Question
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import gram
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.candidates import Candidate, list_candidates
-from rovsim.diagnosis.selection.fit import REACH, Fit, fit, polish
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
+from rovsim.estimation.candidates import Candidate, list_candidates
+from rovsim.estimation.fit import REACH, Fit, fit, polish
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import gram
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 
 def fit_prior(

@@ -14,11 +14,11 @@ import scipy
 from numpy import ndarray as Array
 
 from rovsim.core import gauss_markov
-from rovsim.diagnosis.observer.innovations import observe
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.noise import Noise, RunFilters, design_filters
-from rovsim.diagnosis.observer.observed_run import BLOCK, ObservedRun, number_blocks
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.innovations import observe
+from rovsim.estimation.observer.kalman import AxisErrorDynamics
+from rovsim.estimation.observer.noise import Noise, RunFilters, design_filters
+from rovsim.estimation.observer.observed_run import BLOCK, ObservedRun, number_blocks
 
 LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
 CHANCE = 2.0  # standard errors: less is not told from the short disturbance

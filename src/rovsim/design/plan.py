@@ -32,10 +32,10 @@ from rovsim.design.search import (
     search,
 )
 from rovsim.design.settings import Question
-from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.observer.usable_runs import select_usable
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.train_runs import prepare_train
+from rovsim.estimation.observer.usable_runs import select_usable
 from rovsim.measurement.runs import Runs
 from rovsim.simulation.batch import Batch
 

@@ -7,13 +7,13 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance, estimate_disturbance
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.least_squares import solve
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import REACH
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import REACH
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.kalman import AxisErrorDynamics
+from rovsim.estimation.observer.least_squares import solve
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart
 

@@ -10,8 +10,8 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import continuous
 from rovsim.core.run import Commands, RunInfo
 from rovsim.design.recording_setup import RecordingSetup
-from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
 from rovsim.measurement.signals.motion import Motion, Poses
 
 INFO = RunInfo("designed", "6dof", "train")

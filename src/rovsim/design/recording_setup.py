@@ -9,9 +9,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Commands, Site
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings

@@ -5,7 +5,8 @@ from typing import Annotated, Any
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section, checked
-from rovsim.diagnosis.settings import MAX_TRAIN_SECONDS, MostSeconds
+from rovsim.diagnosis.settings import MostSeconds
+from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.simulation.settings import SimulationSettings
 
 # s: shorter shows little; longer nobody foresees, and a search over it would fill the memory

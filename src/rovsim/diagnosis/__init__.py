@@ -1,6 +1,5 @@
 """Which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-observer         the model runs along the train runs, filtered: what it could not foresee
 selection        which effects explain that: candidates, search, fits, what else they could be
 checks           what is asked of the answer: structure left, what is known, noise floor
 equations        a law for what is left, where one holds

@@ -10,18 +10,18 @@ from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.checks.rest_of_file import include_rest
 from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
-from rovsim.diagnosis.selection.fit import Fit, judge, polish
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
-from rovsim.diagnosis.selection.replay_fit import fit_to_replays
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit, judge, polish
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.usable_runs import UsableRuns
+from rovsim.estimation.replay_fit import fit_to_replays
 
 
 @dataclass(frozen=True, eq=False)

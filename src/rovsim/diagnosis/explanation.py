@@ -5,14 +5,6 @@ from typing import Callable, Iterator, Sequence
 
 from rovsim.diagnosis.answer import SettledAnswer, choose, settle, settle_noticed
 from rovsim.diagnosis.equations.masked import find_masked_laws
-from rovsim.diagnosis.observer.camera import Smoothing, find_smoothing
-from rovsim.diagnosis.observer.divergence import require_finite
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.candidates import list_candidates
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
     absorb_delay,
@@ -22,14 +14,22 @@ from rovsim.diagnosis.selection.filter_delay import (
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
-from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.sensitivities import linearise_candidates
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.estimation.candidates import list_candidates
+from rovsim.estimation.observer.camera import Smoothing, find_smoothing
+from rovsim.estimation.observer.divergence import require_finite
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.usable_runs import UsableRuns
+from rovsim.estimation.remaining_noise import fit_remaining_noise
+from rovsim.estimation.sensitivities import linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 Stages = Callable[[str], None]
 

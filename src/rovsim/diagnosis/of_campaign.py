@@ -12,7 +12,6 @@ from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
-from rovsim.diagnosis.observer.train_runs import prepare_test, prepare_train
 from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.result import report
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -20,6 +19,7 @@ from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
+from rovsim.estimation.observer.train_runs import prepare_test, prepare_train
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch, SearchedModel
 from rovsim.evaluation.ladder import StepScore

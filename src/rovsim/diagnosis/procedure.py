@@ -1,24 +1,24 @@
 """Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-step              where                          what
-filter bank       observer/filter_bank           the base runs along the train runs, corrected
-camera            observer/camera                does software smooth what the cameras report?
-sensitivities     selection/sensitivities        how candidates would change the innovations
-search            selection/forward_selection    add, refit, swap, prune; against chance
-held out          selection/cross_validation     on blocks that an addition was not fitted to
-few blocks        selection/cluster_robust       must not make it sure, without velocities
-validation        selection/holdout_validation   replays of stretches that were kept apart
-structure         checks/residual_structure      what is left, and no candidate explains
-unnoticed         selection/forward_selection    then also those that nobody would notice
-masked laws       equations/masked               do names stand in for a law that they resemble?
-joint fit         selection/joint_fit            all that could be wrong together; it competes
-wandering         observer/drifting_current      is the water that wanders a matter of place? again
-replay fit        selection/replay_fit           values that replay best, where structure is left
-whole file        checks/whole_file              all of a file that is off, where none is left
-common scale      checks/common_scale            does a factor of all forces stay open?
-equation          equations/proposal             a law for what is left
-disturbance       equations/disturbance          the force in time, where there is no law
-test runs         of_campaign                    opened once, for the errors that are reported
+step           where                                  what
+filter bank    estimation/observer/filter_bank        the base runs along the train runs, corrected
+camera         estimation/observer/camera             does software smooth what the cameras report?
+sensitivities  estimation/sensitivities               how candidates would change the innovations
+search         diagnosis/selection/forward_selection  add, refit, swap, prune; against chance
+held out       diagnosis/selection/cross_validation   on blocks that an addition was not fitted to
+few blocks     diagnosis/selection/cluster_robust     must not make it sure, without velocities
+validation     diagnosis/selection/holdout_validation  replays of stretches that were kept apart
+structure      diagnosis/checks/residual_structure    what is left, and no candidate explains
+unnoticed      diagnosis/selection/forward_selection  then also those that nobody would notice
+masked laws    diagnosis/equations/masked             do names stand in for a law like them?
+joint fit      diagnosis/selection/joint_fit          all that could be wrong together; it competes
+wandering      estimation/observer/drifting_current   if it is a matter of place: anew, without
+replay fit     estimation/replay_fit                  values that replay best, with structure left
+whole file     diagnosis/checks/whole_file            all of a file that is off, where none is left
+common scale   diagnosis/checks/common_scale          does a factor of all forces stay open?
+equation       diagnosis/equations/proposal           a law for what is left
+disturbance    diagnosis/equations/disturbance        the force in time, where there is no law
+test runs      diagnosis/of_campaign                  opened once, for the errors that are reported
 """
 
 from dataclasses import replace
@@ -32,11 +32,6 @@ from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.explanation import DiagnosisProblem, Explanation, Stages, explain
-from rovsim.diagnosis.observer.divergence import ModelLost
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.usable_runs import select_usable
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.ranking import (
     Named,
     doubt_lead,
@@ -54,6 +49,11 @@ from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.uncertainty import correlate
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.divergence import ModelLost
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.usable_runs import select_usable
 from rovsim.results.fitted import Correlation
 
 

@@ -17,13 +17,13 @@ from rovsim.diagnosis.equations.describe import (
     describe_values,
     rounded,
 )
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.uncertainty import correlate
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Term
 from rovsim.results.diagnosis import (
     Diagnosis,
     DiagnosisErrors,

@@ -5,9 +5,8 @@ from typing import Annotated
 from pydantic import Field, PositiveInt
 
 from rovsim.core.schema import Section
+from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.simulation.settings import SimulationSettings
-
-MAX_TRAIN_SECONDS = 600.0  # s of train runs: ten minutes at 100 Hz take 1.5 GB
 
 MostSeconds = Annotated[float, Field(ge=60)]
 

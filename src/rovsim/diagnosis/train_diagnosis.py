@@ -8,11 +8,11 @@ from rovsim.diagnosis.checks.common_scale import CommonScale
 from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import ProposedLaw
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.ranking import Ranked, Selected
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.usable_runs import UsableRuns
 from rovsim.results.diagnosis import Verdict
 from rovsim.results.fitted import Correlation
 

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from rovsim.diagnosis.observer.train_runs import prepare_train
-from rovsim.diagnosis.selection.vehicle_file.refit import refit_nominal
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import write_model
+from rovsim.estimation.observer.train_runs import prepare_train
+from rovsim.estimation.refit import refit_nominal
 from rovsim.measurement.runs import Runs
 
 

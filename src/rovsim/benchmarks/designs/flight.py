@@ -8,9 +8,9 @@ from rovsim.design.from_train_runs import fit_prior
 from rovsim.design.prior_information import PriorInformation
 from rovsim.design.report import describe_start
 from rovsim.design.search import CandidateFlight
-from rovsim.diagnosis.observer.train_runs import prepare_train
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
+from rovsim.estimation.observer.train_runs import prepare_train
 from rovsim.measurement.recording.commands_csv import format_commands
 from rovsim.results.design_benchmark import Outcome, ReachedOdds, ReachedStd, ThroughWall
 from rovsim.simulation.synthetic_tank.campaign import make_campaign

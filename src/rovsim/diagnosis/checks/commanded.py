@@ -6,8 +6,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.observer.usable_runs import UsableRuns
 from rovsim.dynamics.vehicle import Vehicle
+from rovsim.estimation.observer.usable_runs import UsableRuns
 
 RESTING = 0.01  # of a command or a demand, N, N m, rad: 4 us of a pulse, the rounding of a log
 

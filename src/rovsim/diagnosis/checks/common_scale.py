@@ -15,11 +15,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.checks.nuisance_parameters import leave_open
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.vehicle_file.stated import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.estimation.file_effects import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 INERTIA = ("added_mass", "payload")
 GAIN_NAME = f"{ThrusterGain.id}.{ONE_GAIN[0]}"

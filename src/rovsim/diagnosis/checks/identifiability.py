@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2
 
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.estimation.fit import Fit
 
 ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
 UNSURE_STDS = 2.0  # standard deviations: the value could as well be that of absence

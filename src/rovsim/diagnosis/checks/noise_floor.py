@@ -12,11 +12,11 @@ from typing import Iterable, NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.drifting_current import push_by_current
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.windows import Windows
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.drifting_current import push_by_current
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.windows import Windows
 from rovsim.evaluation.scores import Moments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws

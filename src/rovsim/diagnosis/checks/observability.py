@@ -12,15 +12,15 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.candidates import list_means
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
 from rovsim.dynamics.effects.parameters import REFERENCE_MASS
 from rovsim.dynamics.vehicle import Vehicle
+from rovsim.estimation.candidates import list_means
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.sensitivities import CandidateColumns
 
 DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
 OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of

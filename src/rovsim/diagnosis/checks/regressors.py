@@ -11,10 +11,10 @@ from scipy.stats import chi2
 from rovsim import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
-from rovsim.diagnosis.observer.observed_run import ObservedRun, number_blocks
-from rovsim.diagnosis.observer.sandwich import find_inflation
 from rovsim.dynamics.effects.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
+from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
+from rovsim.estimation.observer.sandwich import find_inflation
 
 # The measured velocity at an instant holds some noise of the readings around it, and so would agree
 # with the innovation there; a little earlier it does not, and a vehicle changes little meanwhile.

@@ -15,11 +15,11 @@ from rovsim.diagnosis.checks.unknown_thrust import (
     mark_undecided,
     mark_unlogged,
 )
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.kalman import AxisFilter
-from rovsim.diagnosis.observer.least_squares import solve
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.kalman import AxisFilter
+from rovsim.estimation.observer.least_squares import solve
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 FALSE_ALARM = 0.002  # of all looks together, for each kind of structure
 MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score

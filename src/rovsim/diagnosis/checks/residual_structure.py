@@ -10,8 +10,8 @@ from rovsim.diagnosis.checks.regressors import find_dependence, tabulate
 from rovsim.diagnosis.checks.residual import Structure, split_by_axis
 from rovsim.diagnosis.checks.spectral_lines import find_lines
 from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
 
 
 def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:

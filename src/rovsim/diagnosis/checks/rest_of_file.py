@@ -20,11 +20,11 @@ from rovsim.diagnosis.checks.common_scale import (
     include_scale,
 )
 from rovsim.diagnosis.checks.nuisance_parameters import leave_open
-from rovsim.diagnosis.observer.least_squares import solve
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.vehicle_file.stated import has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import free_rest, list_spreads
+from rovsim.estimation.file_effects import has_loose_file
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.least_squares import solve
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 
 def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:

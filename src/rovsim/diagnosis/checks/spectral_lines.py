@@ -18,7 +18,7 @@ from scipy.stats import chi2
 
 from rovsim import AXES
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 # s: the steps between which bins begin, and of frames at 100 Hz. Where readings lie between them

@@ -10,8 +10,8 @@ from scipy.stats import binom, chi2, norm
 from rovsim import AXES
 from rovsim.core.robust import STD_PER_MAD
 from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
-from rovsim.diagnosis.observer.kalman import AxisFilter
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.kalman import AxisFilter
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes

@@ -4,10 +4,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.robust import LONG_STEP
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.actuation import ThrustPath
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 SPIN = 0.3  # s within which propellers and motors follow a command
 FEW = 0.05  # of all lines: a log that is never regular lost none

@@ -29,16 +29,16 @@ from scipy.stats import chi2
 
 from rovsim.diagnosis.checks.common_scale import CommonScale, describe_scale
 from rovsim.diagnosis.checks.residual import FALSE_ALARM
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import solve
-from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.fit import Fit, judge
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
-from rovsim.diagnosis.selection.vehicle_file.stated import mark_gain, share_of_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_new
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
+from rovsim.estimation.file_effects import mark_gain, share_of_file
+from rovsim.estimation.fit import Fit, judge
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.least_squares import solve
+from rovsim.estimation.observer.windows import score_windows
 
 TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
 MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see

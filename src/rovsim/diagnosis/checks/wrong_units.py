@@ -10,11 +10,11 @@ from typing import Iterator, Sequence
 import numpy as np
 
 from rovsim.core.signs import minus
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.vehicle_file.stated import GAIN, ONE_GAIN, SHARE, spread_of_file
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import GAIN, ONE_GAIN, SHARE, spread_of_file
+from rovsim.estimation.observer.hypothesis import Term
 
 WIDTHS = 10.0  # such distances of two files: a factor of 20 of drag or added mass, 2.7 of thrust
 

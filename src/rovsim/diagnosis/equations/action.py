@@ -8,12 +8,12 @@ from numpy import ndarray as Array
 from rovsim import AXES
 from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.equations.form import Form, get_law, split_law
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.innovations import accelerate
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.innovations import accelerate
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.measured_states import undo_mocap_view
 
 

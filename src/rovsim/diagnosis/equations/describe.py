@@ -9,7 +9,7 @@ from rovsim.core.model_names import PROPOSED
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.equations.spectrum import Spectrum
-from rovsim.diagnosis.observer.hypothesis import Term
+from rovsim.estimation.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import (
     LAW,

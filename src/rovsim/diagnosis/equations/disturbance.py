@@ -16,10 +16,10 @@ from scipy.signal import find_peaks
 from rovsim import AXES
 from rovsim.diagnosis.checks.residual import AxisResidual, Structure, split_by_axis
 from rovsim.diagnosis.equations.spectrum import Spectrum, find_spectrum
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.kalman import AxisFilter
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.kalman import AxisFilter
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out by, how many
 

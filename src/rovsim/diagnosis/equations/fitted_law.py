@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from typing import Iterable
 
 from rovsim.diagnosis.equations.form import Form, get_law
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.fit import Fit
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Term
 
 
 @dataclass(frozen=True, eq=False)

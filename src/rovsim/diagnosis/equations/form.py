@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Mapping, Sequence
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 
 @dataclass(frozen=True)

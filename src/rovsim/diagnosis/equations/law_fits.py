@@ -12,11 +12,11 @@ from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, project
 from rovsim.diagnosis.equations.products.library import push
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 Key = TypeVar("Key")
 

@@ -14,11 +14,11 @@ from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import select_terms
 from rovsim.diagnosis.equations.with_memory import FORMS
 from rovsim.diagnosis.equations.with_thrust import WithThrust, begin, list_thrust_terms, push_thrust
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.candidates import list_means
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
+from rovsim.estimation.candidates import list_means
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 HALF_LAW_MARGIN = 2.0  # times what chance allows: no fit to all runs brings so much below it
 THRUST_LAWS_TRIED = 4

@@ -10,16 +10,16 @@ from rovsim.diagnosis.equations.action import find_action, is_half
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.law_search import search_laws
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.windows import score_windows
 from rovsim.diagnosis.selection.cross_validation import cross_validate
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.windows import score_windows
 from rovsim.results.base import or_nan
 
 STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."

@@ -19,12 +19,12 @@ from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.products import KERNEL
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, Variable, write_unit
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.law_codes import NONE, SIZE
 from rovsim.dynamics.effects.thrust_law import OTHER, THRUSTERS, ThrustLaw
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
 THRUST = tuple(

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovsim.diagnosis.observer.observed_run import BLOCK, number_blocks
-from rovsim.diagnosis.observer.sandwich import estimate_covariance
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.observed_run import BLOCK, number_blocks
+from rovsim.estimation.observer.sandwich import estimate_covariance
 
 LASTING = (BLOCK, 3.0 * BLOCK)  # s: what drags on, and what drifts
 BLOCKS_EACH = 3  # of every number of an effect: fewer do not tell how much blocks differ

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.least_squares import as_rows, gram, newton_step
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import number_blocks
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.observed_run import number_blocks
 
 FOLDS = 6
 

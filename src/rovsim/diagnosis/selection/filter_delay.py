@@ -11,15 +11,15 @@ from typing import Callable, Iterable, NamedTuple
 
 import numpy as np
 
-from rovsim.diagnosis.observer.camera import Smoothing
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.camera import Smoothing
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 DELAY, LAG = InputDelay.id, ThrusterLag.id
 # Frames: later by so much, and no more, is a latency, not a lower cutoff. Two stages between frames

@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
     PROMISING_SHARE,
@@ -18,7 +16,6 @@ from rovsim.diagnosis.selection.steady_current import prefer_steady
 from rovsim.diagnosis.selection.thresholds import place_thresholds
 from rovsim.diagnosis.selection.vehicle_file.loose_file import Contender, LooseFile
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
-from rovsim.diagnosis.selection.vehicle_file.stated import has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.steps import (
     add_file_effects,
     fix_gain,
@@ -26,6 +23,9 @@ from rovsim.diagnosis.selection.vehicle_file.steps import (
     suspect_loose_file,
 )
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
+from rovsim.estimation.file_effects import has_loose_file
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 ROUNDS = 3  # of trials, when none of the first matters
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name

@@ -17,11 +17,6 @@ from typing import Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import evaluate_possible
-from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.paired_comparison import (
     WORSE_SHARE,
     find_better,
@@ -29,10 +24,15 @@ from rovsim.diagnosis.selection.paired_comparison import (
     ratio,
     surely_costs,
 )
-from rovsim.diagnosis.selection.replay_fit import MIN_SPREAD, fit_without
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import FILE_EFFECT_IDS
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import evaluate_possible
+from rovsim.estimation.observer.windows import Windows
+from rovsim.estimation.replay_fit import MIN_SPREAD, fit_without
 from rovsim.evaluation.scores import measured_spread
 
 Split = Callable[[Hypothesis], list[tuple[Term, ...]]]

@@ -11,11 +11,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.fit import REACH, Fit
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult
-from rovsim.diagnosis.selection.vehicle_file.stated import DRAG, free_terms, mark_gain
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
@@ -24,6 +21,9 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import DRAG, free_terms, mark_gain
+from rovsim.estimation.fit import REACH, Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
 # Ways in which commands could act.

@@ -2,10 +2,10 @@
 
 from typing import Sequence
 
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Term
 
 # Of what a term explains: another name may do better than first order predicts, not twice.
 PROMISING_SHARE = 0.5

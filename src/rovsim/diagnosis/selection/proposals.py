@@ -6,10 +6,10 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.least_squares import Reduction, select_columns, solve_bounded
-from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.sensitivities import CandidateColumns
+from rovsim.estimation.candidates import Candidate
+from rovsim.estimation.observer.hypothesis import Term
+from rovsim.estimation.observer.least_squares import Reduction, select_columns, solve_bounded
+from rovsim.estimation.sensitivities import CandidateColumns
 
 TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
 

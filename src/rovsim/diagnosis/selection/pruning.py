@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 
 def prune(workspace: SearchWorkspace, current: Fit) -> Fit:

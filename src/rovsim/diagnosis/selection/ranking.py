@@ -7,17 +7,17 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.odds import probability_of, share_odds
-from rovsim.diagnosis.observer.camera import Smoothing
-from rovsim.diagnosis.observer.drifting_current import DriftFit
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.camera import Smoothing
+from rovsim.estimation.observer.drifting_current import DriftFit
+from rovsim.estimation.observer.hypothesis import Term
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.windows import score_windows
 from rovsim.results.diagnosis import bound_unexplained
 
 CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside something else

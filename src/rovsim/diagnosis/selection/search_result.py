@@ -6,10 +6,10 @@ from typing import Iterable
 import numpy as np
 
 from rovsim.core.odds import lr_statistic_of
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 MIN_LR_APART = lr_statistic_of(odds=20.0)
 

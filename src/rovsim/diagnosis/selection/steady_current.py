@@ -6,11 +6,11 @@ takes a steady one with it, which nothing then asks for, so the two are fitted s
 
 from dataclasses import replace
 
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.current import Current
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Term
 
 
 def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorkspace, Fit]:

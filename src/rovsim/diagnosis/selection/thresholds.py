@@ -7,8 +7,8 @@ step tells nothing of a larger one: a fit moves by single lines of the log, and 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 ABOUT = np.arange(-2.0, 2.5, 0.5)  # resolutions from the best of those that are tried
 

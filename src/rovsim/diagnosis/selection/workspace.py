@@ -12,20 +12,20 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import gram, newton_step
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.observer.windows import score_windows
-from rovsim.diagnosis.selection.fit import Fit, fit, fit_or_give_up
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
-from rovsim.diagnosis.selection.remaining_noise import fit_remaining_noise
-from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_candidates
-from rovsim.diagnosis.selection.vehicle_file.stated import doubt_gain
-from rovsim.diagnosis.selection.white_columns import WhiteColumns
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import doubt_gain
+from rovsim.estimation.fit import Fit, fit, fit_or_give_up
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import gram, newton_step
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.residual_source import Linearised
+from rovsim.estimation.observer.windows import score_windows
+from rovsim.estimation.remaining_noise import fit_remaining_noise
+from rovsim.estimation.sensitivities import Sensitivities, linearise_candidates
+from rovsim.estimation.white_columns import WhiteColumns
 
 HOPELESS_LR = 100.0  # what is less likely by e^50 need not be known better
 

@@ -10,10 +10,10 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
-from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.law import FACTORS, Law
 from rovsim.dynamics.effects.law_codes import DEEP, EAST, NEAR, NONE, NORTH, SWIRL
+from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little apart
 

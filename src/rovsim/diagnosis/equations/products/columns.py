@@ -7,11 +7,11 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.noise import RunFilters
-from rovsim.diagnosis.observer.observed_run import ObservedRun, number_blocks
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.noise import RunFilters
+from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 
 BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
 NEGLIGIBLE = 1e-9  # of an axis' acceleration per newton

@@ -5,7 +5,6 @@ from typing import Iterator, Sequence
 from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.variables import IN_CODE, VARIABLES
-from rovsim.diagnosis.observer.hypothesis import Term
 from rovsim.dynamics.effects.law_codes import (
     DEEP,
     DIRECTION,
@@ -19,6 +18,7 @@ from rovsim.dynamics.effects.law_codes import (
     WATER,
     WORLD,
 )
+from rovsim.estimation.observer.hypothesis import Term
 
 
 def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Iterator[str]:

@@ -16,7 +16,6 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.law_codes import (
     DEEP,
     DIRECTION,
@@ -33,6 +32,7 @@ from rovsim.dynamics.effects.law_codes import (
     WORLD,
 )
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 SPACING, WIDTH = 1.0, 0.6  # m: places tried, and how wide each is; the fit moves both
 MOST_PLACES = 60

@@ -17,8 +17,8 @@ from rovsim.diagnosis.equations.products.wording import (
     name_terms,
     write_equation,
 )
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
 from rovsim.dynamics.effects.base import Effect
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 PLACES = {  # unit, symbol and scale of a place's numbers
     "x": ("m", "x_0", 0.5),

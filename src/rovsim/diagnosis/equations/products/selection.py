@@ -22,9 +22,9 @@ from rovsim.diagnosis.equations.products.library import (
 )
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.dynamics.effects.law import TERMS
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 TRIED = 5  # terms that are fitted before one is added
 

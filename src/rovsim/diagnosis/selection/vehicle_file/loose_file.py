@@ -16,18 +16,18 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.odds import lr_statistic_of
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.least_squares import eliminate_columns, solve
-from rovsim.diagnosis.selection.candidates import Candidate
-from rovsim.diagnosis.selection.fit import Fit
-from rovsim.diagnosis.selection.vehicle_file.stated import (
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
+from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.estimation.candidates import Candidate
+from rovsim.estimation.file_effects import (
     FILE_EFFECT_IDS,
     ONE_GAIN,
     has_loose_file,
     spread_of_file,
 )
-from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
-from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import eliminate_columns, solve
 
 # Some thirty effects, each there once in thirty times, against a coefficient of a file that is
 # known to be off.

@@ -10,16 +10,16 @@ from typing import Iterator, NamedTuple
 
 import numpy as np
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.promising import find_swaps
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
-from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECT_IDS, has_loose_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, measure_misfit
 from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.estimation.file_effects import FILE_EFFECT_IDS, has_loose_file
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 # Times its limit, to first order: another effect that leaves more in its place is not fitted.
 WORTH_FITTING = 30.0

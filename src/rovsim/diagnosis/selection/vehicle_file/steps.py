@@ -1,16 +1,16 @@
 """What the vehicle file, where it is off anyway, explains as well as something that is rarer."""
 
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.selection.fit import Fit
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.diagnosis.selection.vehicle_file.loose_file import FILE_LR, LooseFile
-from rovsim.diagnosis.selection.vehicle_file.stated import (
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.file_effects import (
     FILE_EFFECT_IDS,
     has_loose_file,
     mark_gain,
 )
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.hypothesis import Term
 
 
 def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:

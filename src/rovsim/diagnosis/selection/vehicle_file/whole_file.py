@@ -5,13 +5,9 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis, Term
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.selection.fit import Fit, judge
-from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
-from rovsim.diagnosis.selection.prior import Prior
-from rovsim.diagnosis.selection.vehicle_file.stated import (
+from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
+from rovsim.estimation.file_effects import (
     FILE_EFFECTS,
     GAIN,
     GAIN_SCALE,
@@ -21,8 +17,12 @@ from rovsim.diagnosis.selection.vehicle_file.stated import (
     mark_gain,
     spread_of_file,
 )
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
+from rovsim.estimation.fit import Fit, judge
+from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.prior import Prior
 
 
 def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit | None:

@@ -5,8 +5,6 @@ from typing import Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
-from rovsim.diagnosis.observer.hypothesis import Term
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import (
     Effect,
@@ -17,6 +15,8 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.vehicle import Vehicle
+from rovsim.estimation.observer.hypothesis import Term
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 
 @dataclass(frozen=True, eq=False)

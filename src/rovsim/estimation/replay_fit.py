@@ -14,17 +14,17 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
-from rovsim.diagnosis.observer.sandwich import estimate_covariance_of_few
-from rovsim.diagnosis.observer.windows import Windows
-from rovsim.diagnosis.selection.fit import REACH, Fit, judge
-from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
-from rovsim.diagnosis.selection.prior import Prior
 from rovsim.dynamics.model import Model
+from rovsim.estimation.fit import REACH, Fit, judge
+from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import Linearised, evaluate_possible, linearise
+from rovsim.estimation.observer.sandwich import estimate_covariance_of_few
+from rovsim.estimation.observer.windows import Windows
+from rovsim.estimation.prior import Prior
 
 WINDOW_SECONDS = 10.0  # twice the longest horizon of the contract: the open loop is judged as well
 MIN_SPREAD = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not count

@@ -9,11 +9,11 @@ from numpy import ndarray as Array
 
 from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import normalized
-from rovsim.diagnosis.observer.axis_kernels import BIN_MEAN, POSE, SUM
-from rovsim.diagnosis.observer.steps import Steps, divide_run
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
+from rovsim.estimation.observer.axis_kernels import BIN_MEAN, POSE, SUM
+from rovsim.estimation.observer.steps import Steps, divide_run
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured

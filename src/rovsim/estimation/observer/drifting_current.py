@@ -9,12 +9,12 @@ from numpy import ndarray as Array
 
 from rovsim.core import rotations
 from rovsim.core.odds import lr_statistic_of
-from rovsim.diagnosis.observer.innovations import accelerate, observe
-from rovsim.diagnosis.observer.noise import CurrentPath, RunFilters, whiten_run
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.innovations import accelerate, observe
+from rovsim.estimation.observer.noise import CurrentPath, RunFilters, whiten_run
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
 from rovsim.simulation.measured_states import undo_mocap_view
 
 CURRENT_STEP = 0.05  # m/s, a usual current

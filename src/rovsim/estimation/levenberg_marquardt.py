@@ -6,11 +6,11 @@ from typing import Callable, Iterator, NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.residual_source import Linearised, ResidualSource
-from rovsim.diagnosis.selection.prior import Prior
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.least_squares import as_rows, gram, solve
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.residual_source import Linearised, ResidualSource
+from rovsim.estimation.prior import Prior
 
 MOST_ITERATIONS = 12
 STEP_TOLERANCE = 0.02  # standard deviations: a smaller step changes nothing anyone could see

@@ -6,9 +6,9 @@ from typing import Callable, Protocol, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.noise import Noise
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.noise import Noise
 
 Errors = Callable[[Sequence[Model]], list[Array]]
 

@@ -6,13 +6,13 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import gram
-from rovsim.diagnosis.observer.noise import FIRST_NOISE, Noise
-from rovsim.diagnosis.observer.noise_fit import NoiseFit
-from rovsim.diagnosis.selection.sensitivities import Sensitivities
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.least_squares import gram
+from rovsim.estimation.observer.noise import FIRST_NOISE, Noise
+from rovsim.estimation.observer.noise_fit import NoiseFit
+from rovsim.estimation.sensitivities import Sensitivities
 
 DRAW = 0  # seed
 MIN_READINGS = 10_000  # the noise of fewer hangs on what was drawn; so more is drawn

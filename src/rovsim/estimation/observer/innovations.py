@@ -6,10 +6,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core import rotations
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.noise import RunFilters
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.kalman import AxisErrorDynamics
+from rovsim.estimation.observer.noise import RunFilters
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.batch import Batch, Correction, Starts
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import true_states, undo_mocap_view

@@ -12,13 +12,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import gram, project_out
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.selection.sensitivities import Sensitivities, linearise_beside
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.least_squares import gram, project_out
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.residual_source import Linearised
+from rovsim.estimation.sensitivities import Sensitivities, linearise_beside
 
 # Of the square of a derivative: if one has turned by more, what was found has changed columns.
 # Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.

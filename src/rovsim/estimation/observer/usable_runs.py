@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.measurement.quality import EXCITED
 from rovsim.measurement.signals.measured import find_measured
 

@@ -13,11 +13,11 @@ from numpy import ndarray as Array
 from scipy.signal import welch
 
 from rovsim.core.rotations import body_rates
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.whittle import least_misfit
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.whittle import least_misfit
 
 LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 SEGMENT = 2.56  # s of each periodogram

@@ -8,7 +8,7 @@ in what they are asked for, and in what they do where there are few clusters.
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
+from rovsim.estimation.observer.least_squares import as_rows, gram, solve
 
 
 def estimate_covariance(rows: Array, cluster: Array) -> Array:

@@ -19,17 +19,17 @@ from typing import NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.autoregression import Autoregression
-from rovsim.diagnosis.observer.axis_kernels import filter_kept
-from rovsim.diagnosis.observer.kalman import (
+from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.estimation.observer.autoregression import Autoregression
+from rovsim.estimation.observer.axis_kernels import filter_kept
+from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,
     AxisErrorDynamics,
     AxisFilter,
     AxisNoise,
     design_filter,
 )
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.noise_draws import NoiseDraws
 
 

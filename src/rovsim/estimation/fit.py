@@ -6,14 +6,14 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.least_squares import as_rows, gram, solve
-from rovsim.diagnosis.observer.noise import Noise
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised
-from rovsim.diagnosis.selection.levenberg_marquardt import levenberg_marquardt
-from rovsim.diagnosis.selection.prior import Prior
+from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.least_squares import as_rows, gram, solve
+from rovsim.estimation.observer.noise import Noise
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import Linearised
+from rovsim.estimation.prior import Prior
 
 # Scales: where much is free at once, what acts only together (drag and a loop, drag and thrust)
 # stays near where it began.

@@ -11,11 +11,11 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.residual_source import Linearised, step_back
-from rovsim.diagnosis.selection.candidates import Candidate
 from rovsim.dynamics.model import Model
+from rovsim.estimation.candidates import Candidate
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.residual_source import Linearised, step_back
 
 FAINT = 0.1  # standard deviations that a whole scale moves all readings together
 SLOPE = 0.5  # of a difference: less of it stays if taken both ways, and it is curvature

@@ -14,7 +14,7 @@ from typing import NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 # Readings before the present one, in growing groups whose sum counts: about a second at 20 Hz.
 GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))

@@ -13,10 +13,10 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize_scalar
 
-from rovsim.diagnosis.observer.camera_noise import KINDS, NoiseKind, NoiseSpectrum, measure_spectra
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.camera_noise import KINDS, NoiseKind, NoiseSpectrum, measure_spectra
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 MIN_LR_OF_FILTER = 30.0  # odds of a million to one, for no effect depends on it
 MAX_RELATIVE_STD = 0.15  # of the cutoff: software at 6 Hz is known to 0.03 of it in four minutes

@@ -15,9 +15,9 @@ from scipy.integrate import cumulative_simpson
 
 from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import step
-from rovsim.diagnosis.observer.innovations import recall, serve_all
-from rovsim.diagnosis.observer.observed_run import ObservedRun
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.innovations import recall, serve_all
+from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.simulation.batch import Starts

@@ -9,15 +9,15 @@ from dataclasses import replace
 from typing import Sequence
 
 from rovsim.core.model_names import REFITTED
-from rovsim.diagnosis.observer.filter_bank import FilterBank
-from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
-from rovsim.diagnosis.observer.noise import FIRST_NOISE
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.usable_runs import select_usable
-from rovsim.diagnosis.selection.fit import fit
-from rovsim.diagnosis.selection.vehicle_file.stated import FILE_EFFECTS, ONE_GAIN, free_terms
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import FILE_EFFECTS, ONE_GAIN, free_terms
+from rovsim.estimation.fit import fit
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
+from rovsim.estimation.observer.noise import FIRST_NOISE
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.usable_runs import select_usable
 
 # A curve measured on the bench; gain, masses and drag are known to one scale only.
 GAINS = Bounds(0.5, 2.0)

@@ -8,15 +8,15 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.diagnosis.observer.axis_kernels import misfit
-from rovsim.diagnosis.observer.kalman import (
+from rovsim.estimation.observer.axis_kernels import misfit
+from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,
     AxisErrorDynamics,
     AxisFilter,
     AxisNoise,
 )
-from rovsim.diagnosis.observer.noise import Noise, RunFilters
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.noise import Noise, RunFilters
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 # Eddies as large as the vehicle (0.2 to 0.5 m) pass it within 0.3 to 3 s at 0.15 to 0.7 m/s.
 # A longer one would let the disturbance swallow a steady force, which is a missing effect.

@@ -10,7 +10,7 @@ All that is compiled for it is in this file, `solve` too: see `axis_kernels`.
 import numpy as np
 from numba import njit
 
-from rovsim.diagnosis.observer.axis_kernels import FROM_PYTHON, INTERNAL
+from rovsim.estimation.observer.axis_kernels import FROM_PYTHON, INTERNAL
 
 MOST_STEPS = 200
 COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still gains

@@ -9,8 +9,8 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.observer.noise_fit import MAX_CORRELATION_TIME
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.noise_fit import MAX_CORRELATION_TIME
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 
 class ModelLost(Exception):

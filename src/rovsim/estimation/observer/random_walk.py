@@ -14,8 +14,8 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize_scalar
 
 from rovsim.core.bounded_cache import Recent
-from rovsim.diagnosis.observer.noise import RunFilters, whiten_run
-from rovsim.diagnosis.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.noise import RunFilters, whiten_run
+from rovsim.estimation.observer.observed_run import ObservedRun
 
 MAX_FREQUENCY_HZ = 0.5  # what is faster is too little to be told from the disturbance
 LEAD_SECONDS = 60.0  # for which it has wandered when a recording begins: a flight made ready

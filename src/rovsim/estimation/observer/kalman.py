@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.linalg import expm
 
-from rovsim.diagnosis.observer.axis_kernels import (
+from rovsim.estimation.observer.axis_kernels import (
     BIN_MEAN,
     POSE,
     characteristic,

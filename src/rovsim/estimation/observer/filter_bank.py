@@ -8,13 +8,14 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.progress import step
-from rovsim.diagnosis.observer.autoregression import COUPLED, Stretches, fit_autoregression
-from rovsim.diagnosis.observer.drifting_current import DriftFit, MovingWater
-from rovsim.diagnosis.observer.hypothesis import Hypothesis
-from rovsim.diagnosis.observer.innovations import estimate_errors, observe
-from rovsim.diagnosis.observer.kalman import AxisErrorDynamics
-from rovsim.diagnosis.observer.least_squares import as_rows
-from rovsim.diagnosis.observer.noise import (
+from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
+from rovsim.estimation.observer.drifting_current import DriftFit, MovingWater
+from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.innovations import estimate_errors, observe
+from rovsim.estimation.observer.kalman import AxisErrorDynamics
+from rovsim.estimation.observer.least_squares import as_rows
+from rovsim.estimation.observer.noise import (
     CurrentPath,
     DriftingCurrent,
     Noise,
@@ -23,10 +24,9 @@ from rovsim.diagnosis.observer.noise import (
     whiten,
     whiten_run,
 )
-from rovsim.diagnosis.observer.noise_fit import NoiseFit, fit_noise
-from rovsim.diagnosis.observer.observed_run import ObservedRun
-from rovsim.diagnosis.observer.residual_source import Linearised, evaluate_possible, linearise
-from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.noise_fit import NoiseFit, fit_noise
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import Linearised, evaluate_possible, linearise
 
 ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
 RATE_TOLERANCE = 0.05  # of a drift, which its standard deviation exceeds

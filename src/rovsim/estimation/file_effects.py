@@ -6,8 +6,6 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.observer.hypothesis import Bounds, Hypothesis, Term
-from rovsim.diagnosis.selection.prior import cauchy
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
@@ -15,6 +13,8 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
+from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
+from rovsim.estimation.prior import cauchy
 
 DRAG = (LinearDamping, QuadraticDamping)
 PER_AXIS = (*DRAG, AddedMass, ConstantWrench)

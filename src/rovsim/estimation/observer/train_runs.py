@@ -16,9 +16,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import unrotate
-from rovsim.diagnosis.observer.observed_run import ObservedRun, prepare_run
-from rovsim.diagnosis.settings import MAX_TRAIN_SECONDS
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
+from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.results.diagnosis import LookedAt
