@@ -8,6 +8,7 @@ app            the page: header, navigation, progress of long work
 gate           only pages of the workbench itself talk to it
 session        what each browser tab looks at: its campaign, and work
 place          what a screen shows stands in its address
+choices        what is chosen on a screen, and the controls that change it
 workbench      the open campaign and its models; knows nothing of a browser
 kept_replays   replays and errors of models, each computed once
 runaway        replays that run away

@@ -1,13 +1,13 @@
 """Add: tick effects, move their values, see the replay move; save the model as a file."""
 
 import asyncio
-from functools import partial
 from typing import Any, Mapping, Sequence
 
 from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.add_effects import Effects
+from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import about_axes, computed, heading, text, tile, tile_html
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
@@ -34,7 +34,7 @@ class Add:
     """The screen."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
-        self.bench, self.draft, self.place = bench, bench.draft, place
+        self.bench, self.draft = bench, bench.draft
         train = bench.data.runs.of("train")
         self.runs = train or list(bench.data.motions)
         run = first_run(bench)
@@ -44,7 +44,7 @@ class Add:
             "axes": AXES,
             "horizon": HORIZONS,
         }
-        self.chosen = place.choose(first, possible)
+        self.chosen = Choices(place, first, possible, self._redraw)
         self.wanted = self.drawing = False
         self.missing = False  # no chart, as the draft was no model
         self.drawn = 0  # times
@@ -65,35 +65,28 @@ class Add:
                 Saving(self.bench)
             with ui.column().classes("half right"):
                 with ui.row().classes("controls"):
-                    self._choice("run", ui.select(self.runs, label="Run"))
-                    self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
-                    horizon_slider(self.chosen["horizon"], partial(self._chosen, "horizon"))
+                    bind = self.chosen.bind
+                    bind("run", ui.select(self.runs, label="Run"))
+                    bind("axes", ui.select(list(AXES), label="Axes", multiple=True))
+                    horizon_slider(self.chosen["horizon"], self._horizon)
                 with ui.row().classes("tiles"):
                     self.before = tile("This run, before", None, "run/before")
                     self.after = tile("This run, now", None, "run/now")
                 self.area = ui.column().classes("area")
         await self.draw()
 
-    def _choice(self, name: str, control: Any) -> None:
-        control.value = self.chosen[name]
-        control.classes("control").props("outlined dense options-dense")
-        control.on_value_change(lambda e: self._chosen(name, e.value))
+    async def _horizon(self, horizon: float | None) -> None:
+        self.chosen.put("horizon", horizon)
+        await self.draw()
 
-    async def _chosen(self, name: str, value: Any) -> None:
-        if value or name == "horizon":  # None: open loop
-            self.chosen[name] = value
-            self.place.tell(self.chosen)
-            await self.draw()
+    async def _redraw(self) -> None:
+        self.chosen.tell()
+        await self.draw()
 
     @property
     def run(self) -> str:
         """The run shown."""
         return self.chosen["run"]
-
-    @property
-    def axes(self) -> list[str]:
-        """The axes shown, in order."""
-        return [axis for axis in AXES if axis in self.chosen["axes"]]
 
     def _model(self) -> Model | None:
         """The draft as a model; None, with a message, if no such model can be."""
@@ -141,7 +134,7 @@ class Add:
             waiting.delete()
             motion = self.bench.data.motions[self.run]
             self.base = base
-            shown = panels(motion, {self.bench.base.name: base, "new": new}, self.axes)
+            shown = panels(motion, {self.bench.base.name: base, "new": new}, self.chosen["axes"])
             about = f"Run {self.run}, before and with the effects"
             remark = self._remark({self.bench.base.name: base, "the new model": new})
             self.traces = Traces(motion.time, shown, about, remark=remark)
@@ -175,7 +168,7 @@ class Add:
             return
         motion = self.bench.data.motions[self.run]
         remark = self._remark({self.bench.base.name: self.base, "the new model": new})
-        traces.redraw(panels(motion, {"new": new}, self.axes), remark)
+        traces.redraw(panels(motion, {"new": new}, self.chosen["axes"]), remark)
         await asyncio.sleep(SENT)
         self._tell(self.after, "now", now)
 

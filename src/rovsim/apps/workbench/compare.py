@@ -6,6 +6,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
+from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
     about_axes,
     cell,
@@ -23,7 +24,6 @@ from rovsim.apps.workbench.traces import (
     BANDED,
     HORIZONS,
     QUANTITIES,
-    Span,
     Traces,
     beside,
     excited,
@@ -50,7 +50,7 @@ class Compare:
     """The screen, with what was chosen on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
-        self.bench, self.place = bench, place
+        self.bench = bench
         runs = list(bench.data.motions)
         run = first_run(bench)
         first = {
@@ -71,8 +71,7 @@ class Compare:
             "horizon": HORIZONS,
             "bands": (False, True),
         }
-        self.chosen = place.choose(first, possible)
-        self.span = (place.number("from"), place.number("to"))
+        self.chosen = Choices(place, first, possible, self.draw, zooms=True)
         self.traces: Traces | None = None
 
     @property
@@ -95,33 +94,20 @@ class Compare:
             if r in self.bench.data.motions
         }
         with ui.row().classes("controls"):
-            self._choice("run", ui.select(runs, label="Run"))
-            self._choice("beside", ui.select(runs, label="Other runs", multiple=True))
-            self._choice(
-                "models", ui.select(titled(self.bench.models), label="Models", multiple=True)
-            )
-            self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
+            bind = self.chosen.bind
+            bind("run", ui.select(runs, label="Run"))
+            bind("beside", ui.select(runs, label="Other runs", multiple=True), optional=True)
+            models = titled(self.bench.models)
+            bind("models", ui.select(models, label="Models", multiple=True))
+            bind("axes", ui.select(list(AXES), label="Axes", multiple=True))
             names = {key: name for key, (name, _) in QUANTITIES.items()}
-            self._choice("quantity", ui.select(names, label="Quantity"))
+            bind("quantity", ui.select(names, label="Quantity"))
             if any(m.uncertainty is not None for m in self.bench.models.values()):
-                self._choice("bands", ui.switch(f"{LEVEL:.0%} bands"))
+                bind("bands", ui.switch(f"{LEVEL:.0%} bands"), optional=True)
             horizon_slider(self.chosen["horizon"], self._horizon)
 
-    def _choice(self, name: str, control: Any) -> None:
-        control.value = self.chosen[name]
-        control.classes("control").props("outlined dense options-dense")
-
-        async def changed() -> None:
-            if control.value or name in ("beside", "bands"):  # at least one of several
-                self.chosen[name] = control.value
-                self.span = (None, None) if name == "run" else self.span
-                await self.draw()
-
-        control.on_value_change(changed)
-
     async def _horizon(self, horizon: float | None) -> None:
-        self.chosen["horizon"] = horizon
-        self._tell()
+        self.chosen.put("horizon", horizon)
         shown, predicted = await self._predicted()
         if self.chosen["horizon"] != horizon:  # moved on meanwhile
             return
@@ -148,8 +134,8 @@ class Compare:
 
     async def _panels(self, run: str, predicted: dict[str, Prediction]) -> Drawn:
         """One run and its panels; bands are those of the run shown."""
-        motion, quantity = self.bench.data.motions[run], self.chosen["quantity"]
-        axes = [axis for axis in AXES if axis in self.chosen["axes"]]
+        motion = self.bench.data.motions[run]
+        axes, quantity = self.chosen["axes"], self.chosen["quantity"]
         thrust = await computed(self.bench.replays.thrust, self.bench.base, run)
         bands: dict[str, Band] = {}
         if self.chosen["bands"] and run == self.chosen["run"] and quantity in BANDED:
@@ -183,27 +169,18 @@ class Compare:
     async def draw(self) -> None:
         """Everything below the controls."""
         shown, predicted = await self._predicted()
-        self._tell()
+        self.chosen.tell()
         self.area.clear()
         with self.area:
             about = f"Measured and simulated, run {', '.join(self.runs)}"
             self._tell_missing_bands()
             remark = self._remark(predicted)
-            self.traces = Traces(
-                self.motion.time, shown, about, self.span, self._zoomed, remark=remark
-            )
+            span, zoom = self.chosen.span, self.chosen.zoom
+            self.traces = Traces(self.motion.time, shown, about, span, zoom, remark=remark)
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)
             await self._path(self.traces)
             onward("Where does it fail?", "/where")
-
-    def _zoomed(self, span: Span) -> None:
-        self.span = span
-        self._tell()
-
-    def _tell(self) -> None:
-        """Let the address say what is shown."""
-        self.place.tell({**self.chosen, "from": self.span[0], "to": self.span[1]})
 
     def _numbers(self, found: Predicted) -> None:
         """Errors of the runs and this horizon, as comparison.json has them."""

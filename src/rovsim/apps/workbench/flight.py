@@ -8,6 +8,7 @@ from typing import Any, Mapping, Sequence
 from nicegui import ui
 
 from rovsim.apps.workbench import jobs
+from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
     cell,
     computed,
@@ -39,7 +40,7 @@ class Flight:
     """The screen, with what was chosen on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
-        self.bench, self.place = bench, place
+        self.bench = bench
         unsure = bench.diagnosis.indistinguishable if bench.diagnosis else ()
         one, other = next((pair for pair in unsure if len(pair) == 2), RIVALS)
         trained = {name for name, m in bench.models.items() if m.residual is not None or m.inert}
@@ -60,7 +61,7 @@ class Flight:
             "other": effects,
             "seconds": range(SHORTEST, LONGEST + 1),
         }
-        self.chosen = place.choose(first, possible)
+        self.chosen = Choices(place, first, possible, self._draw)
 
     async def show(self) -> None:
         """Build the screen."""
@@ -69,10 +70,12 @@ class Flight:
             "A minute of commands, made for your question: predicted from all that the train runs "
             "leave open, within the walls and limits, and compared with the usual manoeuvres."
         )
-        known = {"know": await self._values()}
-        self.chosen = self.place.choose({**self.chosen, "know": []}, known)
+        self.chosen.add({"know": []}, {"know": await self._values()})
         self.controls = ui.row().classes("controls")
         self.area = ui.column().classes("area")
+        await self._draw_all()
+
+    async def _draw_all(self) -> None:
         await self._controls()
         await self._draw()
 
@@ -82,15 +85,18 @@ class Flight:
         chosen["know"] = [name for name in chosen["know"] if name in known]
         self.controls.clear()
         with self.controls:
-            self._choice("asked", ui.select(ASKED, label="The question"))
+            bind, anew = chosen.bind, self._draw_all
+            bind("asked", ui.select(ASKED, label="The question"), redraw=anew)
             if chosen["asked"] == "between":
-                self._choice("one", ui.select(effects, label="One", with_input=True))
-                self._choice("other", ui.select(effects, label="Or the other", with_input=True))
+                bind("one", ui.select(effects, label="One", with_input=True))
+                bind("other", ui.select(effects, label="Or the other", with_input=True))
             else:
-                self._choice("know", ui.select(known, label="Values (none: all)", multiple=True))
-            self._choice("model", ui.select(titled(self.known), label="Model"))
+                values = ui.select(known, label="Values (none: all)", multiple=True)
+                bind("know", values, optional=True)
+            bind("model", ui.select(titled(self.known), label="Model"), redraw=anew)
             seconds = ui.number("Length (s)", min=SHORTEST, max=LONGEST, precision=0)
-            self._choice("seconds", seconds.props("debounce=500"))  # ms, for two more digits
+            seconds.props("debounce=500")  # ms, for two more digits
+            bind("seconds", seconds, convert=int)
 
     async def _values(self) -> list[str]:
         """`effect.parameter` of every value that was added to the model."""
@@ -99,19 +105,6 @@ class Flight:
         except RovsimError:  # told where the flight would stand
             return []
         return [f"{e.id}.{name}" for e in model.added for name in describe_effect(e).parameters]
-
-    def _choice(self, name: str, control: Any) -> None:
-        control.value = self.chosen[name]
-        control.classes("control").props("outlined dense options-dense")
-
-        async def changed() -> None:
-            if control.value or name == "know":
-                self.chosen[name] = int(control.value) if name == "seconds" else control.value
-                if name in ("asked", "model"):
-                    await self._controls()
-                await self._draw()
-
-        control.on_value_change(changed)
 
     @property
     def question(self) -> Question:
@@ -123,7 +116,7 @@ class Flight:
 
     async def _draw(self) -> None:
         """The flight that answers the question, or the way to it."""
-        self.place.tell(self.chosen)
+        self.chosen.tell()
         self.area.clear()
         try:
             question = self.question

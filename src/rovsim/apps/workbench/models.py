@@ -7,6 +7,7 @@ from nicegui import ui
 
 from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
+from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
     Failure,
     about_axes,
@@ -25,7 +26,6 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.traces import (
     HORIZONS,
-    Span,
     Traces,
     excited,
     first_run,
@@ -62,7 +62,7 @@ class Models:
     """The screen, with what was chosen on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
-        self.bench, self.place = bench, place
+        self.bench = bench
         motions, run = bench.data.motions, first_run(bench)
         known = list(bench.known_models())
         added = list(bench.models)[1:]
@@ -81,8 +81,7 @@ class Models:
             "axes": AXES,
             "horizon": HORIZONS,
         }
-        self.chosen = place.choose(first, possible)
-        self.span: Span = (place.number("from"), place.number("to"))
+        self.chosen = Choices(place, first, possible, self.draw, zooms=True)
         self.models: dict[str, Model] = {}  # those shown, by name
         self.traces: Traces | None = None
         self.drawn = 0  # times
@@ -94,11 +93,10 @@ class Models:
         known = titled(self.bench.known_models())
         runs = {r: f"{r} ({split})" for r, split in self.bench.data.runs.splits.items()}
         with ui.row().classes("controls"):
-            self.sides = [
-                self._choice(side, ui.select(known, label=side.capitalize())) for side in SIDES
-            ]
-            self._choice("run", ui.select(runs, label="Run"))
-            self._choice("axes", ui.select(list(AXES), label="Axes", multiple=True))
+            bind = self.chosen.bind
+            self.sides = [bind(side, ui.select(known, label=side.capitalize())) for side in SIDES]
+            bind("run", ui.select(runs, label="Run"))
+            bind("axes", ui.select(list(AXES), label="Axes", multiple=True))
             horizon_slider(self.chosen["horizon"], self._horizon)
         with ui.row().classes("controls"):
             self.file = ui.input("Another model file").classes("control wide")
@@ -107,19 +105,6 @@ class Models:
         self.failure = Failure()
         self.area = ui.column().classes("area")
         await self.draw()
-
-    def _choice(self, name: str, control: Any) -> Any:
-        control.value = self.chosen[name]
-        control.classes("control").props("outlined dense options-dense")
-
-        async def changed() -> None:
-            if control.value:
-                self.chosen[name] = control.value
-                self.span = (None, None) if name == "run" else self.span
-                await self.draw()
-
-        control.on_value_change(changed)
-        return control
 
     async def _open(self) -> None:
         try:
@@ -133,23 +118,14 @@ class Models:
         self.sides[1].value = model.name
 
     async def _horizon(self, horizon: float | None) -> None:
-        self.chosen["horizon"] = horizon
-        self._tell()
+        self.chosen.put("horizon", horizon)
         shown, remark = await self._panels()
         if self.chosen["horizon"] == horizon and self.traces:  # not moved on meanwhile
             self.traces.redraw(shown, remark)
 
-    def _zoomed(self, span: Span) -> None:
-        self.span = span
-        self._tell()
-
-    def _tell(self) -> None:
-        """Let the address say what is shown."""
-        self.place.tell({**self.chosen, "from": self.span[0], "to": self.span[1]})
-
     async def draw(self) -> None:
         """Everything below the controls."""
-        self._tell()
+        self.chosen.tell()
         self.area.clear()
         self.traces, self.drawn = None, self.drawn + 1
         mine = self.drawn
@@ -173,7 +149,8 @@ class Models:
             about = f"Measured and simulated, run {self.chosen['run']}"
             time = self.bench.data.motions[self.chosen["run"]].time
             look = {"measured": FAMILIES["measured"], **dict(zip(self.models, LOOKS, strict=False))}
-            self.traces = Traces(time, shown, about, self.span, self._zoomed, look, remark)
+            span, zoom = self.chosen.span, self.chosen.zoom
+            self.traces = Traces(time, shown, about, span, zoom, look, remark)
             section("What is in them")
             _tell_parameters(self.models)
             _tell_totals(self.models, self.bench.catalogue)
@@ -188,9 +165,9 @@ class Models:
             )
             for name, model in self.models.items()
         }
-        axes = [axis for axis in AXES if axis in self.chosen["axes"]]
         named = {title(name): one for name, one in predicted.items()}
-        return panels(motion, predicted, axes), tell_divergence(motion.time, named)
+        shown = panels(motion, predicted, self.chosen["axes"])
+        return shown, tell_divergence(motion.time, named)
 
     def _errors(self) -> Errors:
         """Of each model at each horizon that comparison.json has."""

@@ -84,15 +84,16 @@ def panels(
 ) -> list[Panel]:
     """A panel per axis, and under it what each model missed (measured minus model).
 
-    `bands` by model: within what it may lie. Under that `thrust` (n, 6), what the commands push
-    along the axis of the body, N and N m.
+    `axes` in any order. `bands` by model: within what it may lie. Under that `thrust` (n, 6), what
+    the commands push along the axis of the body, N and N m.
     """
     (what, units), run = QUANTITIES[quantity], motion.run.id
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
     lost = [n for n, p in predicted.items() if find_divergence(motion.time, p) is not None]
     found = []
-    for axis in axes:
-        k = AXES.index(axis)
+    for k, axis in enumerate(AXES):
+        if axis not in axes:
+            continue
         models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
         models |= {name: cut(models[name], measured[:, k]) for name in lost}
         missed = {name: measured[:, k] - values for name, values in models.items()}
