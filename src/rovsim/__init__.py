@@ -23,7 +23,7 @@ apps         command line, workbench, notebook, other programs
 from importlib import import_module
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 NOTEBOOK = ("open", "tank")
