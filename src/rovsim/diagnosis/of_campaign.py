@@ -13,12 +13,11 @@ from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.procedure import diagnose_train_runs
-from rovsim.diagnosis.result import report
+from rovsim.diagnosis.result import CampaignContext, report
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import describe_model
 from rovsim.estimation.observer.train_runs import prepare_test, prepare_train
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch, SearchedModel
@@ -82,16 +81,8 @@ def diagnose_campaign(
     stage("scoring")
     shares = [finding.share() for one in searched for finding in one.explanation.findings]
     ladder, away = _climb(diagnosis, runs, settings, catalogue)
-    told = report(
-        diagnosis,
-        shares,
-        ladder,
-        describe_model(base),
-        catalogue,
-        train.looked_at,
-        standstills,
-        away,
-    )
+    context = CampaignContext(shares, ladder, train.looked_at, standstills, away)
+    told = report(diagnosis, context, catalogue)
     return Diagnosed(told, where, diagnosis.proposed.source if diagnosis.proposed else None)
 
 

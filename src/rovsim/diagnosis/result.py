@@ -1,9 +1,9 @@
 """A diagnosis as `diagnosis.json` holds it."""
 
+from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 import numpy as np
-from pydantic import JsonValue
 from scipy.sparse.csgraph import connected_components
 
 from rovsim.core.odds import share_odds
@@ -21,6 +21,7 @@ from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.model_file import describe_model
 from rovsim.dynamics.uncertainty import correlate
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Term
@@ -44,27 +45,29 @@ TOO_LITTLE = "There is too little data to say what is left."
 LISTED = 10  # effects of the ranking
 
 
-def report(
-    diagnosis: TrainDiagnosis,
-    where: Sequence[ConditionShare],
-    ladder: Ladder,
-    base: Mapping[str, JsonValue],
-    catalogue: Catalogue,
-    looked_at: LookedAt | None = None,
-    standstills: Sequence[Standstill] = (),
-    away: Sequence[str] = (),
-) -> Diagnosis:
-    """What is written of a diagnosis.
+@dataclass(frozen=True, eq=False)
+class CampaignContext:
+    """What a campaign shows beside the diagnosis of its train runs.
 
-    Args:
-        diagnosis: of the train runs.
+    Attributes:
         where: conditions in which the base fails.
         ladder: the base, the effects one after the other, and the noise floor, on the test runs.
-        base: file of the model that was diagnosed, so that `rovsim add` needs nothing else.
-        catalogue: what the effects are.
         looked_at: how much of the train runs.
         standstills: of train runs, where the model would move.
         away: test runs in which the base runs away.
+    """
+
+    where: Sequence[ConditionShare]
+    ladder: Ladder
+    looked_at: LookedAt | None = None
+    standstills: Sequence[Standstill] = ()
+    away: Sequence[str] = ()
+
+
+def report(diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catalogue) -> Diagnosis:
+    """What is written of a diagnosis; `catalogue`: what the effects are.
+
+    With it the file of the model that was diagnosed, so that `rovsim add` needs nothing else.
     """
     alike = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
@@ -75,10 +78,10 @@ def report(
         indistinguishable=tuple(map(tuple, alike)),
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
-        where=tuple(where),
+        where=tuple(context.where),
         unexplained=describe_structures(diagnosis),
         next_experiment=advise(diagnosis, alike, joint, catalogue),
-        error=_errors(ladder, len(diagnosis.selected)),
+        error=_errors(context.ladder, len(diagnosis.selected)),
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,
         not_commanded=diagnosis.not_commanded,
@@ -92,13 +95,13 @@ def report(
         ),
         noise=_noise(diagnosis),
         posterior=_describe_posterior(diagnosis),
-        looked_at=looked_at,
+        looked_at=context.looked_at,
         not_followed_from_s={run: round(at, 1) for run, at in diagnosis.usable.lost.items()},
-        runs_away_in=tuple(away),
-        standstills=tuple(standstills),
+        runs_away_in=tuple(context.away),
+        standstills=tuple(context.standstills),
         thrusters=diagnosis.base.vehicle.thruster_names,
-        base=dict(base),
-        ladder=ladder,
+        base=describe_model(diagnosis.base),
+        ladder=context.ladder,
     )
 
 

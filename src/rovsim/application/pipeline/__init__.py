@@ -8,7 +8,7 @@ bands             how surely models predict, and what of the test runs lies insi
 error_conditions  under which conditions a model fails
 diagnosis         which effects a model lacks
 given_diagnosis   one that a user gives, of the open campaign
-shown_diagnosis   the same with figures, tracked, while the command goes on
+shown_diagnosis   the same with figures, tracked, by another process
 design            the flight that would tell most
 result_cache      diagnoses that are found again where nothing changed
 refit             the nominal model's own parameters, fitted

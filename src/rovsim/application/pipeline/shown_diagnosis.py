@@ -1,52 +1,64 @@
 """A diagnosis as figures, as a page, and as an MLflow run."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking import track_diagnosis
 from rovsim.core.errors import RovsimError
+from rovsim.core.progress import heard_by
 from rovsim.dynamics.catalogue import load_catalogue
-from rovsim.reporting.html.folder import present
 from rovsim.reporting.html.picture import Drawn
 from rovsim.reporting.report_data import ReportData
 
 
-def show_diagnosis(
-    out: Path,
-    campaign: str,
-    base: str,
-    data: ReportData,
-    drawn: Sequence[Drawn],
-    provenance: Mapping[str, object],
-    effect_files: Sequence[Path],
-    params: Mapping[str, Any],
-    tracking: TrackingSettings | None,
-) -> str:
-    """Draw what is not yet drawn, write the page, and log everything where there is MLflow.
+@dataclass(frozen=True, eq=False)
+class ShownDiagnosis:
+    """A diagnosis, and what is said of where it comes from; another process may show it.
 
-    Returns why nothing could be logged, or nothing: the diagnosis stands without.
-
-    Args:
+    Attributes:
         out: folder that has the `diagnosis.json`.
         campaign: its name.
         base: name of the model that was diagnosed.
         data: the diagnosis, and what else figures need.
-        drawn: figures that are there already.
         provenance: of the diagnosis.
         effect_files: of effects that the catalogue has beside the built-in ones.
         params: settings of the diagnosis, nested plain values.
-        tracking: where to log, None for nowhere.
     """
-    found = data.diagnosis
-    assert found is not None
-    catalogue = load_catalogue(effect_files)
-    files = present(out, campaign, data, provenance, catalogue, drawn=drawn)
-    if tracking is None:
+
+    out: Path
+    campaign: str
+    base: str
+    data: ReportData
+    provenance: Mapping[str, object]
+    effect_files: Sequence[Path]
+    params: Mapping[str, Any]
+
+    def show(self, drawn: Sequence[Drawn], tracking: TrackingSettings | None) -> str:
+        """Write the page, and log everything to where there is MLflow (None: nowhere).
+
+        Nothing is said of its progress. Returns why nothing could be logged, or nothing: the
+        diagnosis stands without.
+        """
+        with heard_by():
+            files = self.write(drawn)
+            return self.track(tracking, files) if tracking else ""
+
+    def write(self, drawn: Sequence[Drawn]) -> list[Path]:
+        """Draw what is not yet `drawn`, and write the page; returns all files."""
+        from rovsim.reporting.html.folder import present  # who only hands this on draws nothing
+
+        catalogue = load_catalogue(self.effect_files)
+        return present(self.out, self.campaign, self.data, self.provenance, catalogue, drawn=drawn)
+
+    def track(self, tracking: TrackingSettings, files: Sequence[Path]) -> str:
+        """Log the diagnosis with these files; returns why it could not be, or nothing."""
+        found = self.data.diagnosis
+        assert found is not None
+        kept = [self.out / "diagnosis.json", *files]
+        try:
+            track_diagnosis(tracking, self.campaign, self.base, found, self.params, kept)
+        except (RovsimError, OSError) as error:
+            return str(error)
         return ""
-    try:
-        kept = [out / "diagnosis.json", *files]
-        track_diagnosis(tracking, campaign, base, found, params, kept)
-    except (RovsimError, OSError) as error:
-        return str(error)
-    return ""

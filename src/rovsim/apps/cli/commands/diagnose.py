@@ -8,12 +8,15 @@ used to decide; the test runs are opened once, for the errors that are reported.
 effects is then written by `rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml`.
 """
 
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
+from pathlib import Path
+from typing import Mapping
 
 from pydantic import Field
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
+from rovsim.application.pipeline.shown_diagnosis import ShownDiagnosis
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.apps.cli.complaint import warn
@@ -25,12 +28,15 @@ from rovsim.core.second_process import call, second_process
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.kept import keep_other
+from rovsim.reporting.html.picture import Drawn
 from rovsim.reporting.report_data import ReportData
+from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
+from rovsim.results.quality import Quality
 from rovsim.simulation.compiled_ahead import is_compiled
 
 # The second process imports these; this one does without them, to begin sooner.
-DRAWING, SHOWING = "rovsim.reporting.html.folder", "rovsim.application.pipeline.shown_diagnosis"
+DRAWING = "rovsim.reporting.html.folder"
 COMPILING = "rovsim.simulation.compiled_ahead:compile_ahead"
 LOGGING = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
 
@@ -48,58 +54,76 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data, out = measure_campaign(settings, "diagnosis", even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
-    others = (DRAWING, SHOWING, *(LOGGING if tracking else ()))
+    others = (DRAWING, *(LOGGING if tracking else ()))
     with second_process(*others, first=None if is_compiled() else COMPILING) as other:
-        drawing: dict[str, Future] = {}
-
-        def draw(known: ReportData) -> None:
-            for figure in known.figures:
-                if figure not in drawing:
-                    drawing[figure] = other.submit(
-                        call, f"{DRAWING}:draw_one", out, figure, "", known
-                    )
+        drawing = _Drawing(other, out)
 
         def draw_early(where: ErrorConditions) -> None:
-            draw(ReportData(where=where, quality=data.quality))
+            drawing.begin(ReportData(where=where, quality=data.quality))
 
         how = select(settings, DiagnosisSettings)
         read = digest_recordings(data.campaign)
         found = diagnose(data.runs, base, how, catalogue, read, draw_early)
         found.write(out / "diagnosis.json")
-        shown = ReportData(
+        known = ReportData(
             quality=data.quality,
             ladder=found.diagnosis.ladder,
             where=found.where,
             diagnosis=found.diagnosis,
         )
-        draw(shown)
-
-        from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts, tell_roles
-
-        files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-        text = tell_diagnosis(found.diagnosis, catalogue)
-        if found.diagnosis.verdict == "insufficient_data":
-            text += tell_roles(data.quality)
-        text += tell_doubts(data.quality)
-        kept = keep_other(out / "report.html", "diagnose")
-        told = join_files(text, files, kept)
-        say(settings, told, found.diagnosis.to_json())
-        drawn = [future.result() for future in counted(list(drawing.values()), "drawing")]
-        origin = provenance(settings, catalogue, data.campaign, read)
-        last = other.submit(
-            call,
-            f"{SHOWING}:show_diagnosis",
-            out,
-            data.campaign.name,
-            base.name,
-            shown,
-            drawn,
-            origin,
-            settings.effect_files,
-            how.model_dump(mode="json"),
-            tracking,
+        drawing.begin(known)
+        _tell(settings, out, found.diagnosis, data.quality, catalogue)
+        drawn = drawing.finish()
+        shown = ShownDiagnosis(
+            out=out,
+            campaign=data.campaign.name,
+            base=base.name,
+            data=known,
+            provenance=provenance(settings, catalogue, data.campaign, read),
+            effect_files=settings.effect_files,
+            params=how.model_dump(mode="json"),
         )
+        last = other.submit(shown.show, drawn, tracking)
         with reported("writing the page and logging" if tracking else "writing the page"):
             unlogged = last.result()
     if unlogged:
         warn(f"the diagnosis is complete, but MLflow does not have it: {unlogged}")
+
+
+class _Drawing:
+    """Figures that another process draws, each once, as soon as what it shows is known."""
+
+    def __init__(self, other: Executor, out: Path) -> None:
+        self._other, self._out = other, out
+        self._begun: dict[str, Future[Drawn]] = {}
+
+    def begin(self, known: ReportData) -> None:
+        """Have drawn what is known and was not begun before."""
+        for figure in known.figures:
+            if figure not in self._begun:
+                self._begun[figure] = self._other.submit(
+                    call, f"{DRAWING}:draw_one", self._out, figure, "", known
+                )
+
+    def finish(self) -> list[Drawn]:
+        """All of them, once they are drawn."""
+        return [one.result() for one in counted(list(self._begun.values()), "drawing")]
+
+
+def _tell(
+    settings: Settings,
+    out: Path,
+    found: Diagnosis,
+    quality: Mapping[str, Quality],
+    catalogue: Catalogue,
+) -> None:
+    """Say what was found, what speaks against the recordings, and where it is written."""
+    from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts, tell_roles
+
+    text = tell_diagnosis(found, catalogue)
+    if found.verdict == "insufficient_data":
+        text += tell_roles(quality)
+    text += tell_doubts(quality)
+    files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
+    kept = keep_other(out / "report.html", "diagnose")
+    say(settings, join_files(text, files, kept), found.to_json())
