@@ -121,7 +121,7 @@ class HoldoutValidation:
         """Whether the first replays whole runs better, at the values that replay the others best.
 
         What is fitted as well by values that mean nothing elsewhere is lost in a run of another
-        kind. None where there is but one run, or by chance.
+        kind. None where there is but one run, where both are lost, or by chance.
         """
         groups = [self.whole[k::FOLDS] for k in range(min(FOLDS, len(self.whole)))]
         if len(groups) < 2:
@@ -130,7 +130,12 @@ class HoldoutValidation:
         for group in groups:
             models = [fit_without(fit, self.whole, group) for fit in (one, other)]
             errors.append(replace(self, runs=group)._errors(models))
-        return find_better(*np.concatenate(errors, axis=1))
+        own, others = np.concatenate(errors, axis=1)
+        if not (np.isfinite(own).all() or np.isfinite(others).all()):
+            return None
+        if surely_costs(others, own, WORSE_SHARE):
+            return True
+        return False if surely_costs(own, others, WORSE_SHARE) else None
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
         """Where physics is left that no name explains: only what makes a difference there.
