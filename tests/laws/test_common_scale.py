@@ -6,8 +6,8 @@ import pytest
 from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.advice import FIX_SCALE, advise
-from rovsim.diagnosis.checks.common_scale import include_scale
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
+from rovsim.diagnosis.uncertainty.common_scale import include_scale
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.estimation.file_effects import free_terms

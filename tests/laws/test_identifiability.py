@@ -9,7 +9,6 @@ import pytest
 
 from rovsim import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
-from rovsim.diagnosis.checks.identifiability import find_doubtful, group_joint_parameters
 from rovsim.diagnosis.selection.ranking import (
     Named,
     Selected,
@@ -20,6 +19,7 @@ from rovsim.diagnosis.selection.ranking import (
     name_drift,
 )
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
+from rovsim.diagnosis.uncertainty.identifiability import find_doubtful, group_joint_parameters
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.clocks import InputDelay

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import worlds
 from flown import observed
 from rovsim.core.run import Commands
-from rovsim.diagnosis.checks.residual import split_by_axis
-from rovsim.diagnosis.checks.unknown_thrust import find_different, find_jumps, find_lost_commands
+from rovsim.diagnosis.structure.residual import split_by_axis
+from rovsim.diagnosis.structure.unknown_thrust import find_different, find_jumps, find_lost_commands
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.thrusters import ThrusterDeadband

@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import lfilter
 
 from rovsim.core.rotations import from_euler, matrix
-from rovsim.diagnosis.checks.regressors import tabulate
+from rovsim.diagnosis.structure.regressors import tabulate
 from rovsim.estimation.observer.sandwich import find_inflation
 
 COUNT, PERIOD = 400, 0.05

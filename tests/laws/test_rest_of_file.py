@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from flown import observed
 from rovsim import AXES
-from rovsim.diagnosis.checks.rest_of_file import include_rest
-from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.selection.vehicle_file.whole_file import (
     fit_whole_file,
     free_rest,
     list_spreads,
 )
+from rovsim.diagnosis.uncertainty.file_values import is_right_elsewhere, settle_whole_file
+from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import lfilter, lombscargle
 from scipy.stats import chi2, kstest
 
-from rovsim.diagnosis.checks.spectral_lines import FINE, Periodogram, fit_lines
+from rovsim.diagnosis.structure.spectral_lines import FINE, Periodogram, fit_lines
 
 
 def bins(random, count=300):

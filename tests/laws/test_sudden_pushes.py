@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 from scipy.signal import lfilter
 
-from rovsim.diagnosis.checks.residual import AxisResidual
-from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
+from rovsim.diagnosis.structure.residual import AxisResidual
+from rovsim.diagnosis.structure.sudden_pushes import find_kicks, find_sudden
 from rovsim.estimation.observer.axis_kernels import POSE
 from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 

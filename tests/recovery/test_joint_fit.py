@@ -6,11 +6,11 @@ import pytest
 from flown import observed
 from rovsim import AXES
 from rovsim.diagnosis.answer import settle
-from rovsim.diagnosis.checks.identifiability import group_joint_parameters
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.uncertainty.identifiability import group_joint_parameters
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.model import nominal

@@ -1,7 +1,9 @@
 """Which physical effects a model lacks, how sure that is, and what is left unexplained.
 
 selection        which effects explain that: candidates, search, fits, what else they could be
-checks           what is asked of the answer: structure left, what is known, noise floor
+structure        is there structure in what is left?
+uncertainty      how sure values are
+checks           what is asked of the runs and of values
 equations        a law for what is left, where one holds
 answer           what was selected, validated, at its final values, and what that leaves
 explanation      what explains the runs: observed, searched, settled

@@ -4,18 +4,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Sequence
 
-from rovsim.diagnosis.checks.common_scale import CommonScale, include_scale
-from rovsim.diagnosis.checks.identifiability import find_doubtful
-from rovsim.diagnosis.checks.residual import Structure
-from rovsim.diagnosis.checks.residual_structure import find_structure
-from rovsim.diagnosis.checks.rest_of_file import include_rest
-from rovsim.diagnosis.checks.whole_file import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file
+from rovsim.diagnosis.structure.residual import Structure
+from rovsim.diagnosis.structure.residual_structure import find_structure
+from rovsim.diagnosis.uncertainty.common_scale import CommonScale, include_scale
+from rovsim.diagnosis.uncertainty.file_values import is_right_elsewhere, settle_whole_file
+from rovsim.diagnosis.uncertainty.identifiability import find_doubtful
+from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit, judge, polish
 from rovsim.estimation.observer.filter_bank import FilterBank

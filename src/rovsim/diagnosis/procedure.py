@@ -1,24 +1,24 @@
 """Diagnosis: which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-step           where                                  what
-filter bank    estimation/observer/filter_bank        the base runs along the train runs, corrected
-camera         estimation/observer/camera             does software smooth what the cameras report?
-sensitivities  estimation/sensitivities               how candidates would change the innovations
-search         diagnosis/selection/forward_selection  add, refit, swap, prune; against chance
-held out       diagnosis/selection/cross_validation   on blocks that an addition was not fitted to
-few blocks     diagnosis/selection/cluster_robust     must not make it sure, without velocities
+step           where                                   what
+filter bank    estimation/observer/filter_bank         the base runs along the train runs, corrected
+camera         estimation/observer/camera              does software smooth what the cameras report?
+sensitivities  estimation/sensitivities                how candidates would change the innovations
+search         diagnosis/selection/forward_selection   add, refit, swap, prune; against chance
+held out       diagnosis/selection/cross_validation    on blocks that an addition was not fitted to
+few blocks     diagnosis/selection/cluster_robust      must not make it sure, without velocities
 validation     diagnosis/selection/holdout_validation  replays of stretches that were kept apart
-structure      diagnosis/checks/residual_structure    what is left, and no candidate explains
-unnoticed      diagnosis/selection/forward_selection  then also those that nobody would notice
-masked laws    diagnosis/equations/masked             do names stand in for a law like them?
-joint fit      diagnosis/selection/joint_fit          all that could be wrong together; it competes
-wandering      estimation/observer/drifting_current   if it is a matter of place: anew, without
-replay fit     estimation/replay_fit                  values that replay best, with structure left
-whole file     diagnosis/checks/whole_file            all of a file that is off, where none is left
-common scale   diagnosis/checks/common_scale          does a factor of all forces stay open?
-equation       diagnosis/equations/proposal           a law for what is left
-disturbance    diagnosis/equations/disturbance        the force in time, where there is no law
-test runs      diagnosis/of_campaign                  opened once, for the errors that are reported
+structure      diagnosis/structure/residual_structure  what is left, and no candidate explains
+unnoticed      diagnosis/selection/forward_selection   then also those that nobody would notice
+masked laws    diagnosis/equations/masked              do names stand in for a law like them?
+joint fit      diagnosis/selection/joint_fit           all that could be wrong together; it competes
+wandering      estimation/observer/drifting_current    if it is a matter of place: anew, without
+replay fit     estimation/replay_fit                   values that replay best, with structure left
+whole file     diagnosis/uncertainty/file_values       all of a file that is off, where none is left
+common scale   diagnosis/uncertainty/common_scale      does a factor of all forces stay open?
+equation       diagnosis/equations/proposal            a law for what is left
+disturbance    diagnosis/equations/disturbance         the force in time, where there is no law
+test runs      diagnosis/of_campaign                   opened once, for the errors that are reported
 """
 
 from dataclasses import replace

@@ -8,9 +8,6 @@ from scipy.sparse.csgraph import connected_components
 
 from rovsim.core.odds import share_odds
 from rovsim.diagnosis.advice import advise
-from rovsim.diagnosis.checks.common_scale import CommonScale
-from rovsim.diagnosis.checks.identifiability import group_joint_parameters
-from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.describe import (
     describe_force,
     describe_law,
@@ -19,7 +16,10 @@ from rovsim.diagnosis.equations.describe import (
 )
 from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
+from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
+from rovsim.diagnosis.uncertainty.common_scale import CommonScale
+from rovsim.diagnosis.uncertainty.identifiability import group_joint_parameters
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model_file import describe_model
 from rovsim.dynamics.uncertainty import correlate

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import Sequence
 
 from rovsim.diagnosis.checks.commanded import list_not_commanded
-from rovsim.diagnosis.checks.common_scale import CommonScale
-from rovsim.diagnosis.checks.residual import Structure
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.selection.ranking import Ranked, Selected
 from rovsim.diagnosis.selection.search_result import Rival
+from rovsim.diagnosis.structure.residual import Structure
+from rovsim.diagnosis.uncertainty.common_scale import CommonScale
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.usable_runs import UsableRuns

@@ -6,8 +6,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.residual_structure import find_structure
 from rovsim.diagnosis.equations.form import Form, get_law, split_law
+from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit

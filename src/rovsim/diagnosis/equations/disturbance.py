@@ -14,8 +14,8 @@ from scipy.fft import next_fast_len
 from scipy.signal import find_peaks
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.residual import AxisResidual, Structure, split_by_axis
 from rovsim.diagnosis.equations.spectrum import Spectrum, find_spectrum
+from rovsim.diagnosis.structure.residual import AxisResidual, Structure, split_by_axis
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.kalman import AxisFilter

@@ -7,13 +7,13 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.stats import chi2
 
-from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, project
 from rovsim.diagnosis.equations.products.library import push
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.structure.residual import FALSE_ALARM
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.observed_run import ObservedRun

@@ -10,14 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from rovsim.diagnosis.checks.regressors import list_dependences, tabulate
-from rovsim.diagnosis.checks.residual import Structure, split_by_axis
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.law_search import is_seen
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
+from rovsim.diagnosis.structure.residual import Structure, split_by_axis
 
 # Likelihood-ratio statistics. Of all functions of an axis one reaches 15 by chance in one campaign
 # of fifteen, 8 in most; of those that names could have taken half of there are few.

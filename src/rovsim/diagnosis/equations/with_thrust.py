@@ -13,12 +13,12 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.axes import FORCE, VELOCITY
-from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.products import KERNEL
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, Variable, write_unit
+from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.law_codes import NONE, SIZE
 from rovsim.dynamics.effects.thrust_law import OTHER, THRUSTERS, ThrustLaw

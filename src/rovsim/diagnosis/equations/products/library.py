@@ -14,8 +14,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.checks.regressors import earlier_states
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
+from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.effects.law_codes import (
     DEEP,
     DIRECTION,

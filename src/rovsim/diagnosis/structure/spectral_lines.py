@@ -17,7 +17,7 @@ from scipy.ndimage import median_filter
 from scipy.stats import chi2
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see

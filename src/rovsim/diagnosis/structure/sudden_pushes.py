@@ -9,7 +9,7 @@ from scipy.stats import binom, chi2, norm
 
 from rovsim import AXES
 from rovsim.core.robust import STD_PER_MAD
-from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.observed_run import ObservedRun
 

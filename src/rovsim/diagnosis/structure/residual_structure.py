@@ -6,10 +6,10 @@ from the filter of its axis. One that explains more than chance allows, and enou
 physics the catalogue does not have.
 """
 
-from rovsim.diagnosis.checks.regressors import find_dependence, tabulate
-from rovsim.diagnosis.checks.residual import Structure, split_by_axis
-from rovsim.diagnosis.checks.spectral_lines import find_lines
-from rovsim.diagnosis.checks.sudden_pushes import find_kicks, find_sudden
+from rovsim.diagnosis.structure.regressors import find_dependence, tabulate
+from rovsim.diagnosis.structure.residual import Structure, split_by_axis
+from rovsim.diagnosis.structure.spectral_lines import find_lines
+from rovsim.diagnosis.structure.sudden_pushes import find_kicks, find_sudden
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 
 from rovsim import AXES
-from rovsim.diagnosis.checks.unknown_thrust import (
+from rovsim.diagnosis.structure.unknown_thrust import (
     SPIN,
     find_jumps,
     find_lost_commands,

@@ -27,11 +27,11 @@ from numpy import ndarray as Array
 from scipy.special import comb
 from scipy.stats import chi2
 
-from rovsim.diagnosis.checks.common_scale import CommonScale, describe_scale
-from rovsim.diagnosis.checks.residual import FALSE_ALARM
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_new
+from rovsim.diagnosis.structure.residual import FALSE_ALARM
+from rovsim.diagnosis.uncertainty.common_scale import CommonScale, describe_scale
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 from rovsim.estimation.file_effects import mark_gain, share_of_file
 from rovsim.estimation.fit import Fit, judge

@@ -12,15 +12,15 @@ from typing import Sequence
 
 import numpy as np
 
-from rovsim.diagnosis.checks.common_scale import (
+from rovsim.diagnosis.selection.vehicle_file.whole_file import free_rest, list_spreads
+from rovsim.diagnosis.uncertainty.common_scale import (
     GAIN_NAME,
     CommonScale,
     describe_fitted_scale,
     describe_scale,
     include_scale,
 )
-from rovsim.diagnosis.checks.nuisance_parameters import leave_open
-from rovsim.diagnosis.selection.vehicle_file.whole_file import free_rest, list_spreads
+from rovsim.diagnosis.uncertainty.nuisance_parameters import leave_open
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.least_squares import solve

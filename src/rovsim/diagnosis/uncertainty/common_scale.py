@@ -14,7 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.checks.nuisance_parameters import leave_open
+from rovsim.diagnosis.uncertainty.nuisance_parameters import leave_open
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.estimation.file_effects import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.estimation.fit import Fit

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from rovsim import AXES
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.checks.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.dynamics.effects.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
