@@ -52,3 +52,18 @@ def test_the_steps_of_a_diagnosis_are_where_its_docstring_says():
     places = re.findall(r"^[a-z ]+? {2,}([a-z_/]+) {2,}\S", told, re.MULTILINE)[1:]
     assert len(places) > 10
     assert not [place for place in places if not (SOURCE / f"{place}.py").is_file()]
+
+
+def test_files_that_docs_and_docstrings_name_are_there():
+    root = Path(__file__).parents[2]
+    told = [*root.glob("docs/*.md"), *root.glob("*.md"), *SOURCE.rglob("*.py")]
+    files = [path for top in ("src", "tests", "workflow") for path in (root / top).rglob("*.py")]
+    there = [f"/{path.relative_to(root).as_posix()}" for path in files]
+    named = {
+        (path.relative_to(root).as_posix(), name)
+        for path in told
+        if path.name != "CHANGELOG.md"
+        for name in re.findall(r"`([a-z_]+(?:/[a-z_]+)+\.py)`", path.read_text(encoding="utf-8"))
+    }
+    assert len(named) > 30
+    assert not [one for one in named if not any(file.endswith(f"/{one[1]}") for file in there)]

@@ -1,7 +1,7 @@
 """Values so far from the vehicle file that a unit is likelier to be wrong than the file.
 
 How far files are off is known in proportion, from published sets
-(`selection/vehicle_file/stated.py`), so distances are those of logarithms. What a file states as
+(`estimation/file_effects.py`), so distances are those of logarithms. What a file states as
 little is off by a scale of the parameter at least.
 """
 

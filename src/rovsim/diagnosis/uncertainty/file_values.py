@@ -3,7 +3,7 @@
 What was selected was fitted as if the rest of the file were right. Where several of its effects
 were selected it is not, and what was left as it was draws the others away: thrust, inertia and
 drag share a factor that little but such numbers fixes. So in the end all that the file states is
-fitted, each number beside what is known of such files (`selection/vehicle_file/stated.py`). Then
+fitted, each number beside what is known of such files (`estimation/file_effects.py`). Then
 what is not sure, or nobody would miss, is left out again, at the gain that was found: the others
 take what it did, and their intervals stay those of all together. The gain itself stays where it is
 surely not what the file says, although replays without it are as good: the others were all off by

@@ -1,7 +1,7 @@
 """A vehicle file that is off in several ways is off in others, too little to be found.
 
 What was selected was fitted as if all the rest of the file were right. Where several of its effects
-were selected, the rest is taken for known as such files are (`selection/vehicle_file/stated.py`),
+were selected, the rest is taken for known as such files are (`estimation/file_effects.py`),
 and what that leaves open is added to the intervals: how far the rest is open beside the runs, and
 how far the runs draw it from what the file says. The gain of the thrusters is part of the rest: a
 mass that was left as it is would fix the common scale, and is as little known.

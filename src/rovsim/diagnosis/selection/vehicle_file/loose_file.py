@@ -3,9 +3,9 @@
 Where several effects that the file states were selected, it is off elsewhere too, mostly by too
 little to be found: a dozen such numbers, none of them worth its penalty, may explain together what
 a special effect seems to. So there it is judged with all of the file free, as far as such files are
-off (`stated.py`), and to first order. Where the file explains it, its numbers are sought
-together: linear and quadratic drag of opposite sign look like friction, and neither alone explains
-anything.
+off (`estimation/file_effects.py`), and to first order. Where the file explains it, its numbers are
+sought together: linear and quadratic drag of opposite sign look like friction, and neither alone
+explains anything.
 """
 
 from dataclasses import dataclass
