@@ -59,7 +59,7 @@ def test_noise_stays_what_it_was_where_its_filters_do_not_hold_what_was_found(tm
     assert not workspace.columns.beside(h).finite
     for after in (workspace.update_after(found), workspace.relinearise_if_changed(found)):
         assert np.isfinite(after.noise.disturbance_std).all()
-        assert np.isfinite(after.columns.gram(found.seen)).all()
+        assert np.isfinite(after.columns.gram(found.linearised)).all()
 
 
 def test_a_gram_matrix_is_made_once_and_anew_under_another_noise(tmp_path):

@@ -29,15 +29,15 @@ def spread(bank, found, lasting):
     """Variance of the drag where innovations of each block have a push of that size in common."""
     blocks = number_blocks(bank.runs)
     random = np.random.default_rng(1)
-    shown = bank.whiten(found.seen.e, found.noise)
+    shown = bank.whiten(found.linearised.e, found.noise)
     scale = bank.run_filters[0].variance[:, None] ** 0.5
     pushes = random.normal(size=(blocks.max() + 1, 6, 1)) * scale
     settled = bank.runs[0].settled
     assert shown.shape[-1] == settled.sum()
-    e = found.seen.e[0].copy()
+    e = found.linearised.e[0].copy()
     e[:, settled] += lasting * np.concatenate([pushes[b] for b in blocks], axis=1)
-    moved = replace(found, seen=replace(found.seen, e=[e]))
-    return float(estimate_covariance(bank.whiten(moved.seen.rows, moved.noise), blocks)[0, 0])
+    moved = replace(found, linearised=replace(found.linearised, e=[e]))
+    return float(estimate_covariance(bank.whiten(moved.linearised.rows, moved.noise), blocks)[0, 0])
 
 
 def test_blocks_of_independent_readings_tell_what_the_readings_do(fitted):

@@ -85,7 +85,7 @@ def test_a_rival_frees_what_its_effect_can_change_from_where_it_is():
 def test_a_flight_takes_no_information_away():
     train, flight = np.random.default_rng(0).normal(size=(2, 3, 6, 50))  # of three parameters
     bank = SimpleNamespace(flatten=lambda rows, noise: np.concatenate(rows, axis=-1).reshape(3, -1))
-    own = SimpleNamespace(J=[0.1 * train, flight], at=SimpleNamespace(x=np.zeros(3)))
+    own = SimpleNamespace(J=[0.1 * train, flight], hypothesis=SimpleNamespace(x=np.zeros(3)))
     known = SimpleNamespace(noise=None)
     rival = FittedHypothesis(None, np.eye(3) * 1e6, np.arange(3), 0.0, None, np.eye(3))
     told = measure_information(bank, own, rival, known)

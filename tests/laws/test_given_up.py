@@ -49,7 +49,7 @@ def test_what_cannot_reach_the_truth_is_given_up(bank, monkeypatch):
     true = fit(start(bank, "quadratic_damping", "surge", "sway"), bank, FIRST_NOISE)
     other = start(bank, "added_mass", "surge", "sway")
     assert fit(other, bank, FIRST_NOISE).two_log_likelihood < true.two_log_likelihood - 100.0
-    first, asked = bank.linearise(other, true.seen), []
+    first, asked = bank.linearise(other, true.linearised), []
     find = FilterBank.linearise
     monkeypatch.setattr(FilterBank, "linearise", lambda *a: asked.append(a) or find(*a))
     assert fit_or_give_up(first, bank, FIRST_NOISE, true.two_log_likelihood - 100.0) is None
@@ -58,7 +58,9 @@ def test_what_cannot_reach_the_truth_is_given_up(bank, monkeypatch):
 
 def test_derivatives_to_the_same_parameters_are_taken_over(bank):
     known = bank.linearise(start(bank, "quadratic_damping", "surge", "sway"))
-    both = replace(known.at, terms=(*start(bank, "added_mass", "sway").terms, *known.at.terms))
+    both = replace(
+        known.hypothesis, terms=(*start(bank, "added_mass", "sway").terms, *known.hypothesis.terms)
+    )
     seen, whole = bank.linearise(both, known), bank.linearise(both)
     for J, known_J, whole_J in zip(seen.J, known.J, whole.J, strict=True):
         assert (J[1:] == known_J).all()

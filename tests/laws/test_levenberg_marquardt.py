@@ -48,7 +48,7 @@ def test_drag_is_fitted_while_the_derivative_of_a_dead_band_promises_too_much():
             Term(built_in()["thruster_deadband"](width=WIDTH), ("width",)),
         ),
     )
-    found = levenberg_marquardt(start, Jumping(), FIRST_NOISE).at.terms
+    found = levenberg_marquardt(start, Jumping(), FIRST_NOISE).hypothesis.terms
     assert found[0].effect["surge"] == pytest.approx(40.0, abs=0.5)
     assert found[1].effect["width"] < WIDTH + 2.0 * GRAIN
 
@@ -66,6 +66,6 @@ class Saturated(Errors):
 
 def test_a_step_that_damping_made_short_is_followed_by_others():
     start = Hypothesis(model(), (Term(built_in()["quadratic_damping"](), ("surge", "sway")),))
-    (found,) = levenberg_marquardt(start, Saturated(), FIRST_NOISE).at.terms
+    (found,) = levenberg_marquardt(start, Saturated(), FIRST_NOISE).hypothesis.terms
     assert found.effect["surge"] == pytest.approx(35.0, abs=0.5)
     assert found.effect["sway"] == pytest.approx(40.0, abs=0.5)

@@ -42,7 +42,9 @@ def term(name):
 
 def fit(cost, *names):
     """A fit that leaves `cost` of the sum of squares beside a loose file."""
-    return SimpleNamespace(seen=cost, hypothesis=SimpleNamespace(terms=[term(n) for n in names]))
+    return SimpleNamespace(
+        linearised=cost, hypothesis=SimpleNamespace(terms=[term(n) for n in names])
+    )
 
 
 def loose_file(without=0.0):
@@ -108,7 +110,7 @@ def test_two_that_hide_each_other_are_proposed_together_and_neither_alone():
         columns=SimpleNamespace(gram=lambda seen: rows @ rows.T),
         sensitivities=SimpleNamespace(base_model=base, blocks=blocks),
     )
-    current = SimpleNamespace(seen=None, hypothesis=Hypothesis(base))
+    current = SimpleNamespace(linearised=None, hypothesis=Hypothesis(base))
     both = LooseFile(workspace).propose(current)
     assert [(one.id, one.free) for one in both.terms] == [
         ("linear_damping", ("heave",)),

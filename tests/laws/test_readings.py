@@ -118,7 +118,7 @@ def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_pa
     other = replace(bank, runs=(lossy,))
     e = [other.innovations(base)[0] - bank.innovations(base)[0]]
     seen = SimpleNamespace(e=e, J=[np.empty((0, *e[0].shape))])
-    found = SimpleNamespace(seen=seen, noise=FIRST_NOISE, hypothesis=Hypothesis(base))
+    found = SimpleNamespace(linearised=seen, noise=FIRST_NOISE, hypothesis=Hypothesis(base))
     left = np.stack([one.white[0] for one in split_by_axis(found, other)])
     assert np.linalg.norm(left) < 0.2 * np.linalg.norm(other.whiten(e, FIRST_NOISE))
 

@@ -62,7 +62,7 @@ class Workspace:
 
     def fit(self, h):
         x = h.x + np.linalg.lstsq(self.own(h).T, -self.left(h), rcond=None)[0]
-        return SimpleNamespace(seen=h.at(x), hypothesis=h.at(x))
+        return SimpleNamespace(linearised=h.at(x), hypothesis=h.at(x))
 
     def drop(self, found, groups):
         return [

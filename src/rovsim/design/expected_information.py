@@ -136,7 +136,7 @@ def measure_information(
 
     Filters that suit all runs together may see less of the train runs than their own did.
     """
-    if not len(own.at.x):
+    if not len(own.hypothesis.x):
         return np.zeros_like(rival.information)
     flight = [*(0.0 * J for J in own.J[:-1]), own.J[-1]]
     return np.asarray(gram(bank.flatten(flight, prior.noise)))

@@ -154,7 +154,7 @@ def _summarise(
     chosen = np.array([names.index(name) for name in wanted], int)
     paid = penalty * sum(term.choices for term in found.hypothesis.terms)
     two_log_likelihood, taking_up = found.two_log_likelihood - paid, found.hypothesis
-    information = held = gram(bank.flatten(found.seen.J, found.noise))
+    information = held = gram(bank.flatten(found.linearised.J, found.noise))
     if widest is not None:
         seen = bank.linearise(widest)
         if seen.finite:  # else it cannot move with what nobody needs free

@@ -93,7 +93,7 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
         joint = settle(fit_jointly(start.workspace, seen, usable.moved), usable, holdout)
         answer = choose(answer, _unmask(joint), holdout)
     noise = answer.fit.noise
-    if noise.drift and answer.bank.varies_with_place(answer.fit.seen.e, noise):
+    if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return explain(replace(problem, usable=usable.where_no_water_wanders()), stage)
     return Explanation(problem, answer, start, smoothing, holdout)
 

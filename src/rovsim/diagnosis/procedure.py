@@ -96,7 +96,7 @@ def _name(explained: Explanation) -> TrainDiagnosis:
     named = doubt_names(named, stand_ins)
     proposed = law if law and law.whole else None
     if answer.fit.noise.drift:
-        drift = answer.bank.measure_drift(answer.fit.seen.e, answer.fit.noise)
+        drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
             named.append(name_drift(drift, answer.lasting))
     selected = rank_selected(base, named, usable.runs)

@@ -144,7 +144,7 @@ class Body:
         }
 
     @property
-    def goes_further(self) -> bool:
+    def has_uncommon_forces(self) -> bool:
         """Whether it has a waterplane, products of velocities or surfaces."""
         return bool(self.waterplane.any() or self.products.size or self.lifting.size)
 
@@ -161,8 +161,8 @@ def packed(body: Body) -> Constants:
         M_inv=alone(body.M_inv),
         linear=alone(body.linear),
         quadratic=alone(body.quadratic),
-        heaviness=alone(body.weight - body.buoyancy),
-        righting=alone(body.weight_moment - body.buoyancy * body.center_of_buoyancy),
+        net_weight=alone(body.weight - body.buoyancy),
+        restoring_lever=alone(body.weight_moment - body.buoyancy * body.center_of_buoyancy),
         current=alone(body.current),
         advance=alone(body.advance),
         coupled=alone(np.any(body.coupling)),
@@ -171,7 +171,7 @@ def packed(body: Body) -> Constants:
         memory_decay=alone(body.memory_decay),
         B=alone(body.B),
         directions=np.ascontiguousarray(body.directions, dtype=float),
-        further=alone(body.goes_further),
+        uncommon=alone(body.has_uncommon_forces),
         waterplane=alone(body.waterplane),
         products=alone(body.products),
         factors=np.ascontiguousarray(body.factors),

@@ -32,11 +32,11 @@ class GivenUp(Exception):
 class Fit:
     """A fitted hypothesis.
 
-    `seen` with its errors and how they change; `noise` fitted to it; `two_log_likelihood` under
-    that noise; `covariance` (k, k) of the scaled parameters.
+    `linearised` with its errors and how they change; `noise` fitted to it; `two_log_likelihood`
+    under that noise; `covariance` (k, k) of the scaled parameters.
     """
 
-    seen: Linearised
+    linearised: Linearised
     noise: Noise
     two_log_likelihood: float
     covariance: Array
@@ -49,7 +49,7 @@ class Fit:
     @property
     def hypothesis(self) -> Hypothesis:
         """The hypothesis at its most likely values."""
-        return self.seen.at
+        return self.linearised.hypothesis
 
     @property
     def std(self) -> Array:
@@ -91,9 +91,11 @@ def fit_or_give_up(
         if here + REACHABLE * predicted_reduction < least:
             raise GivenUp
 
-    prior = Prior.around(first.at.x, reach)
+    prior = Prior.around(first.hypothesis.x, reach)
     try:
-        return judge(levenberg_marquardt(first.at, bank, noise, prior, first, monitor), bank, noise)
+        return judge(
+            levenberg_marquardt(first.hypothesis, bank, noise, prior, first, monitor), bank, noise
+        )
     except GivenUp:
         return None
 
@@ -122,10 +124,10 @@ def polish(
 def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
     """A hypothesis as it stands, the noise fitted to what it leaves, beside what was known."""
     if not seen.finite:
-        unknown = np.full((len(seen.at.x), len(seen.at.x)), np.inf)
+        unknown = np.full((len(seen.hypothesis.x), len(seen.hypothesis.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)
     own, two_log_likelihood = bank.fit_noise(seen.e, noise)
     information = gram(as_rows(bank.whiten(seen.J, own)))
     if prior is not None:
-        information = information + np.diag(prior.weights(seen.at.x))
+        information = information + np.diag(prior.weights(seen.hypothesis.x))
     return Fit(seen, own, two_log_likelihood, solve(information, np.eye(len(information))))

@@ -52,7 +52,7 @@ def levenberg_marquardt(
     quadratic = problem.expand(seen)
     for _ in range(MOST_ITERATIONS):
         step, ended = _find_reducing_step(problem, quadratic, damping), False
-        if step is None and seen.at is quadratic.at and not rough:
+        if step is None and seen.hypothesis is quadratic.hypothesis and not rough:
             return seen
         if step is not None:
             damping = max(step.damping / 10.0, MIN_DAMPING)
@@ -60,12 +60,12 @@ def levenberg_marquardt(
             quadratic = problem.shift(quadratic, step)
             if step.gain_ratio_near_one and not ended:
                 continue
-        seen, ended, rough = source.linearise(quadratic.at), ended and not rough, False
+        seen, ended, rough = source.linearise(quadratic.hypothesis), ended and not rough, False
         if ended or not seen.finite:
             return seen
         quadratic = problem.expand(seen)
         monitor(seen, quadratic.predicted_reduction)
-    return source.linearise(quadratic.at)
+    return source.linearise(quadratic.hypothesis)
 
 
 class QuadraticModel(NamedTuple):
@@ -74,7 +74,7 @@ class QuadraticModel(NamedTuple):
     `rows` (k, size) are the derivatives of the errors.
     """
 
-    at: Hypothesis
+    hypothesis: Hypothesis
     H: Array
     g: Array
     cost: float
@@ -126,14 +126,16 @@ class _LeastSquares:
         """The sum of squares to second order about a hypothesis."""
         rows = as_rows(self.source.whiten(seen.J, self.noise))
         residuals = self.source.whiten(seen.e, self.noise).ravel()
-        H = gram(rows) + np.diag(self.prior.weights(seen.at.x))
-        g = rows @ residuals + self._prior_slope(seen.at.x)
-        return QuadraticModel(seen.at, H, g, self.cost(seen.at, residuals), len(residuals), rows)
+        H = gram(rows) + np.diag(self.prior.weights(seen.hypothesis.x))
+        g = rows @ residuals + self._prior_slope(seen.hypothesis.x)
+        return QuadraticModel(
+            seen.hypothesis, H, g, self.cost(seen.hypothesis, residuals), len(residuals), rows
+        )
 
     def shift(self, quadratic: QuadraticModel, step: TrialStep) -> QuadraticModel:
         """The same about where a step leads, with the derivatives from where it began."""
         g = quadratic.rows @ step.residuals + self._prior_slope(step.to.x)
-        return quadratic._replace(at=step.to, g=g, cost=step.cost)
+        return quadratic._replace(hypothesis=step.to, g=g, cost=step.cost)
 
     def _prior_slope(self, x: Array) -> Array:
         return self.prior.weights(x) * (x - self.prior.about)
@@ -156,7 +158,7 @@ def _find_reducing_step(
     """
     while damping < MAX_DAMPING:
         damped = quadratic.H + damping * np.diag(np.diag(quadratic.H))
-        goal = quadratic.at.x - solve(damped, quadratic.g)
+        goal = quadratic.hypothesis.x - solve(damped, quadratic.g)
         if not np.isfinite(goal).all():
             break
         step = _try_step(problem, quadratic, damping, goal)
@@ -174,7 +176,10 @@ def _find_reducing_step(
 
 def _move_coarse_less(quadratic: QuadraticModel, goal: Array, damping: float) -> Iterator[Array]:
     """Goals (k,) like this one, in which coarse parameters move less, and the others as is best."""
-    x, parameters = quadratic.at.x, [p for term in quadratic.at.terms for p in term.parameters]
+    x, parameters = (
+        quadratic.hypothesis.x,
+        [p for term in quadratic.hypothesis.terms for p in term.parameters],
+    )
     grains = np.array([p.resolution / p.scale for p in parameters])
     coarse = grains > 0.0
     if not coarse.any() or coarse.all():
@@ -194,8 +199,8 @@ def _try_step(
     problem: _LeastSquares, quadratic: QuadraticModel, damping: float, goal: Array
 ) -> TrialStep:
     """Where a step to a goal (k,) leads."""
-    wanted = quadratic.at.at(goal)
-    step = wanted.x - quadratic.at.x
+    wanted = quadratic.hypothesis.at(goal)
+    step = wanted.x - quadratic.hypothesis.x
     residuals = problem.errors(wanted)
     cost, length = problem.cost(wanted, residuals), float(step @ quadratic.H @ step)
     predicted = -float(2.0 * quadratic.g @ step + length)

@@ -102,15 +102,15 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
         source.whiten(seen.J, fit.noise),
         source.number(),
     )
-    fresh = bank.redesign(seen.at.model, fit.noise)
-    again = judge(fresh.linearise(seen.at), fresh, fit.noise)
+    fresh = bank.redesign(seen.hypothesis.model, fit.noise)
+    again = judge(fresh.linearise(seen.hypothesis), fresh, fit.noise)
     return replace(again, covariance=covariance)
 
 
 def fit_without(fit: Fit, runs: Sequence[ObservedRun], left_out: Sequence[ObservedRun]) -> Model:
     """The same terms at the values that replay the other runs best."""
     others = tuple(run for run in runs if all(run is not one for one in left_out))
-    return _fit(fit, Replays(others)).at.model
+    return _fit(fit, Replays(others)).hypothesis.model
 
 
 def _fit(fit: Fit, source: Replays) -> Linearised:

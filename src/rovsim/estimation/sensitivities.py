@@ -132,12 +132,12 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     random as the readings: scaled to one, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
-    back = {i: step_back(seen.at, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
+    back = {i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
     able = {i: one for i, one in back.items() if one is not None}
     if not able or not seen.finite:
         return seen.J
     faint = list(able)
-    sizes = np.array([(seen.at.x - one.x)[i] for i, one in able.items()])[:, None, None]
+    sizes = np.array([(seen.hypothesis.x - one.x)[i] for i, one in able.items()])[:, None, None]
     moved = bank.evaluate([one.model for one in able.values()])
     both = [
         0.5 * (J[faint] + (e - beside) / sizes)

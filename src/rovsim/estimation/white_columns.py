@@ -75,7 +75,7 @@ class WhiteColumns:
 
         Where axes drive each other columns are made anew with every noise, and not here.
         """
-        h = seen.at
+        h = seen.hypothesis
         if self.bank.coupled:
             return False
         known = {
@@ -114,7 +114,7 @@ class WhiteColumns:
     def _multiply(self, seen: Linearised) -> Array:
         rows = [one.astype(np.float32) for one in seen.rows]
         own = self.bank.flatten(rows, self.noise)
-        columns, among = self._whiten(seen.at)
+        columns, among = self._whiten(seen.hypothesis)
         across = own @ columns.T
         G = np.block([[gram(own), across], [across.T, among]])
         kept = [0, *range(len(own), len(G))]

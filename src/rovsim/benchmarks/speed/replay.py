@@ -62,7 +62,7 @@ def numpy_steps_per_second(model: Model) -> float:
             + 2 * np.linalg.matrix_power(bodies.cross_matrix(v), 2)
         )
         d = (c.linear[0] + c.quadratic[0] * np.abs(nu)) * nu
-        g = np.concatenate([c.heaviness[0] * R[2], np.cross(c.righting[0], R[2])])
+        g = np.concatenate([c.net_weight[0] * R[2], np.cross(c.restoring_lever[0], R[2])])
         rest = tau - coriolis(c.M_RB[0], nu) - coriolis(c.M_A[0], nu) - d + g
         turn = 0.5 * np.concatenate([[-v @ nu[3:]], w * nu[3:] + np.cross(v, nu[3:])])
         return np.concatenate([R @ nu[:3], turn, c.M_inv[0] @ rest])

@@ -37,7 +37,7 @@ def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
     h, unsure = fit.hypothesis, set()
     for seconds in LASTING:
         blocks = number_blocks(workspace.bank.runs, seconds)
-        rows = workspace.bank.whiten(fit.seen.rows, fit.noise)
+        rows = workspace.bank.whiten(fit.linearised.rows, fit.noise)
         as_blocks_see = replace(fit, covariance=estimate_covariance(rows, blocks))
         most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
         for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):

@@ -46,7 +46,7 @@ def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
 
 def _sum_held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
     """Sum of the squared innovations of all blocks, each with the others' parameters."""
-    rows = bank.whiten(one.seen.rows, noise)
+    rows = bank.whiten(one.linearised.rows, noise)
     parts = [gram(as_rows(rows[..., fold == k])) for k in np.unique(fold)]
     total = sum(parts)
     return sum(_cost_at(part, newton_step(total - part)) for part in parts)

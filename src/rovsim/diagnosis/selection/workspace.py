@@ -90,7 +90,7 @@ class SearchWorkspace:
         """
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
         known = names == set(self.columns.beside(at).beside)
-        if known or not self.columns.have_changed(current.seen):
+        if known or not self.columns.have_changed(current.linearised):
             return self
         columns = self.columns.relinearised(at)
         if not columns.beside(at).finite:
@@ -136,7 +136,7 @@ class SearchWorkspace:
         """
         key, least = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
         if key not in self._fitted and least < self._given_up.get(key, np.inf):
-            first = self.bank.linearise(start, current.seen)
+            first = self.bank.linearise(start, current.linearised)
             fitted = fit_or_give_up(first, self.bank, self.noise, least, reach)
             if fitted is None:
                 self._given_up[key] = least
@@ -167,10 +167,10 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        removed, left = [], float(self.columns.gram(current.seen)[0, 0])
+        removed, left = [], float(self.columns.gram(current.linearised)[0, 0])
         for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
             G = self.columns.gram(seen)
-            removed.append(Removed(seen.at, G, float(G[0, 0]) - left, self._rank(G)))
+            removed.append(Removed(seen.hypothesis, G, float(G[0, 0]) - left, self._rank(G)))
         return removed
 
     def gram_without(self, current: Fit, term: Term) -> Array:
@@ -189,13 +189,13 @@ class SearchWorkspace:
     def _step(self, seen: Linearised) -> Hypothesis:
         """Where the derivatives say that the errors are least."""
         if not seen.finite:
-            return seen.at
+            return seen.hypothesis
         step = newton_step(gram(self.bank.flatten(seen.rows, self.noise)))
-        return seen.at.at(seen.at.x + step)
+        return seen.hypothesis.at(seen.hypothesis.x + step)
 
     def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
         """The current hypothesis without each group of terms, the derivatives as they were."""
-        h, J = current.hypothesis, current.seen.J
+        h, J = current.hypothesis, current.linearised.J
         rests = [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
         e = self.bank.evaluate([one.model for one in rests])
         linearised = []
@@ -232,12 +232,12 @@ class SearchWorkspace:
             return []
         key = current.hypothesis.key
         if key not in self._proposed:
-            self._proposed[key] = self._rank(self.columns.gram(current.seen))
+            self._proposed[key] = self._rank(self.columns.gram(current.linearised))
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
         """Net decrease by the best candidate where all is chance, but for false alarms allowed."""
-        G = self.columns.gram(current.seen)[1:, 1:]
+        G = self.columns.gram(current.linearised)[1:, 1:]
         if not np.isfinite(G).all():
             return np.inf  # the observer cannot hold the model, and nothing can be told
         decreases = draw_chance_decreases(

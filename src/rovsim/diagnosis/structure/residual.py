@@ -109,8 +109,8 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
 
     Axes that not every reading shows are left out: their filters have another clock.
     """
-    J = bank.whiten(fit.seen.J, fit.noise)
-    white = _split_by_run(bank.whiten(fit.seen.e, fit.noise), bank.runs)
+    J = bank.whiten(fit.linearised.J, fit.noise)
+    white = _split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
     run_filters = bank.design_filters(fit.noise)
     model = fit.hypothesis.model
     unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]

@@ -67,7 +67,7 @@ def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     opened = leave_open(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
     if opened is None:
         return 0.0, np.zeros(len(fit.std))
-    told = max(float(opened.told[0, 0]), 0.0)
+    told = max(float(opened.information[0, 0]), 0.0)
     return 1.0 / (told + (GAIN_SCALE / GAIN) ** 2), opened.along[:, 0]
 
 

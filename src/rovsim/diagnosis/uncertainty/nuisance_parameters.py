@@ -22,12 +22,12 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 class LeftOpen:
     """How the fitted (k,) follow further parameters (n,), `along` (k, n), all scaled.
 
-    The runs give these the information `told` (n, n) and the likeliest values told^-1 `drawn` (n,).
+    The runs give these `information` (n, n) and a `score` (n,); information^-1 score is likeliest.
     """
 
     along: Array
-    told: Array
-    drawn: Array
+    information: Array
+    score: Array
 
 
 def leave_open(fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> LeftOpen | None:

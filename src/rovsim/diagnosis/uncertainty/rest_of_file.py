@@ -43,8 +43,8 @@ def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScal
     if opened is None:
         return include_scale(fit, runs)
     spread = list_spreads(h, freed)
-    rest = solve(opened.told + np.diag(spread**-2.0), np.eye(len(spread)))
-    drawn = rest @ opened.drawn
+    rest = solve(opened.information + np.diag(spread**-2.0), np.eye(len(spread)))
+    drawn = rest @ opened.score
     wider = opened.along @ (rest + np.outer(drawn, drawn)) @ opened.along.T
     fit = replace(fit, covariance=fit.covariance + wider)
     if GAIN_NAME not in further:

@@ -95,10 +95,10 @@ def damping(a, b, v):
 
 
 @inline_internal
-def restoring(heaviness, righting, R):
+def restoring(net_weight, restoring_lever, R):
     """Weight and buoyancy; the world's down in body axes is the last row of R."""
-    d, m = R[2], cross(righting, R[2])
-    return heaviness * d[0], heaviness * d[1], heaviness * d[2], m[0], m[1], m[2]
+    d, m = R[2], cross(restoring_lever, R[2])
+    return net_weight * d[0], net_weight * d[1], net_weight * d[2], m[0], m[1], m[2]
 
 
 @internal
@@ -128,7 +128,7 @@ def accelerate(extra, at, body, p, thrust, acting, level):
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
     tau = add6(tau, 1.0, at.drag)
-    tau = add6(tau, 1.0, restoring(body.heaviness, body.righting, at.R))
+    tau = add6(tau, 1.0, restoring(body.net_weight, body.restoring_lever, at.R))
     tau = add6(tau, 1.0, times6(body.M_A, at.nu_c_dot))
     tau = add6(tau, 1.0, extra(at, p, body, acting))
     if body.coupled != 0.0:
@@ -136,7 +136,7 @@ def accelerate(extra, at, body, p, thrust, acting, level):
     if body.advance != 0.0:
         loss = thrust_loss(acting, body.advance, body.B, body.directions, at.nu_r)
         tau = add6(tau, 1.0, loss)
-    if body.further != 0.0:
+    if body.uncommon != 0.0:
         rare = (body.waterplane, body.products, body.factors, body.surfaces, body.lifting)
         depth, count = at.position[2] - level, body.B.shape[1]
         tau = add6(tau, 1.0, further_forces(rare, depth, at.R[2], at.nu_r, acting, count))

@@ -72,15 +72,15 @@ class State(NamedTuple):
 class Constants(NamedTuple):
     """Constants of the equation of motion for m parameter sets, stacked along the first axis.
 
-    `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `heaviness` (m,) weight minus
-    buoyancy in N; `righting` (m, 3) weight at CG minus buoyancy at CB in N m; `current` (m, 3) NED;
-    `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between axes, read only
-    where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity, `memory_decay`
-    (m,) 1/s (0: nothing is remembered); `B` (m, 6, n) thruster allocation; `directions` (n, 3) of
-    positive thrust. Read only where `further` (m,) is not 0, as in `Body`: `waterplane` (m, 3),
-    `products` (m, t) and their `factors` (t, 4), `surfaces` (s, 15), `lifting` (m, s). `free`
-    (m, 6) is 1 for axes that move, 0 where they are held; `places` (n + s, 3) of thrusters, then
-    surfaces.
+    `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `net_weight` (m,) weight minus
+    buoyancy in N; `restoring_lever` (m, 3) weight at CG minus buoyancy at CB in N m; `current`
+    (m, 3) NED; `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between
+    axes, read only where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity,
+    `memory_decay` (m,) 1/s (0: nothing is remembered); `B` (m, 6, n) thruster allocation;
+    `directions` (n, 3) of positive thrust. Read only where `uncommon` (m,) is not 0, as in `Body`:
+    `waterplane` (m, 3), `products` (m, t) and their `factors` (t, 4), `surfaces` (s, 15),
+    `lifting` (m, s). `free` (m, 6) is 1 for axes that move, 0 where they are held; `places`
+    (n + s, 3) of thrusters, then surfaces.
     """
 
     M_RB: Array
@@ -88,8 +88,8 @@ class Constants(NamedTuple):
     M_inv: Array
     linear: Array
     quadratic: Array
-    heaviness: Array
-    righting: Array
+    net_weight: Array
+    restoring_lever: Array
     current: Array
     advance: Array
     coupled: Array
@@ -98,7 +98,7 @@ class Constants(NamedTuple):
     memory_decay: Array
     B: Array
     directions: Array
-    further: Array
+    uncommon: Array
     waterplane: Array
     products: Array
     factors: Array

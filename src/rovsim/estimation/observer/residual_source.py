@@ -20,7 +20,7 @@ class Linearised:
     `J` (k, 6, n) of each run are their derivatives to the k scaled parameters.
     """
 
-    at: Hypothesis
+    hypothesis: Hypothesis
     e: list[Array]
     J: list[Array]
 
@@ -69,8 +69,8 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
 
 def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
     """Derivatives of each run to parameters of the catalogue that both have, by where they go."""
-    listed = [term.effect.listed for term in known.at.terms for _ in term.free]
-    rows = {name: k for k, name in enumerate(known.at.parameter_names) if listed[k]}
+    listed = [term.effect.listed for term in known.hypothesis.terms for _ in term.free]
+    rows = {name: k for k, name in enumerate(known.hypothesis.parameter_names) if listed[k]}
     each = enumerate(at.parameter_names)
     return {i: [J[rows[name]] for J in known.J] for i, name in each if name in rows}
 

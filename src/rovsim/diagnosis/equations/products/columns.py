@@ -52,7 +52,7 @@ def project(
         wrenches: of terms, with a coefficient of 1.
     """
     model, noise = fit.hypothesis.model, fit.noise
-    white, fitted = bank.whiten(fit.seen.e, noise), bank.whiten(fit.seen.J, noise)
+    white, fitted = bank.whiten(fit.linearised.e, noise), bank.whiten(fit.linearised.J, noise)
     block = number_blocks(bank.runs) % BLOCKS
     size = _measure_size(terms, model, bank.runs, middle, wrenches)
     acts = np.flatnonzero(size > 0.0)

@@ -85,7 +85,7 @@ class LooseFile:
 
     def measure_cost(self, fit: Fit) -> float:
         """What a fit leaves of the sum of squares with all of the file free, to first order."""
-        return self._cost_at(self.workspace.columns.gram(fit.seen))
+        return self._cost_at(self.workspace.columns.gram(fit.linearised))
 
     def _cost_at(self, G: Array) -> float:
         return cost_within(G, self._rows, self._spread)
@@ -96,7 +96,7 @@ class LooseFile:
         Twice the log of Bayes' factor, to first order, of all numbers of the file as free as
         such files are off. Each number that nothing asks for counts against it.
         """
-        G, spread = self.workspace.columns.gram(fit.seen), self._spread
+        G, spread = self.workspace.columns.gram(fit.linearised), self._spread
         H = G[np.ix_(self._rows, self._rows)]
         needless = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
         return float(G[0, 0]) - self._cost_at(G) - needless
@@ -139,7 +139,7 @@ class LooseFile:
         fix the common scale, and the gain would follow it away from what the file says.
         """
         numbers = [n for n in self.numbers if n.candidate.effect.id != ThrusterGain.id]
-        own, G = [number.row for number in numbers], self.workspace.columns.gram(current.seen)
+        own, G = [number.row for number in numbers], self.workspace.columns.gram(current.linearised)
         reduction = eliminate_columns(G[np.ix_(own, own)], G[own, 0], self.workspace.penalty)
         h = current.hypothesis
         for j, x in zip(reduction.chosen, reduction.x, strict=True):
