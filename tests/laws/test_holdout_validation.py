@@ -137,6 +137,7 @@ def test_of_two_answers_the_one_that_replays_runs_it_was_not_fitted_to_is_better
     assert holdout.prefers_between_runs(right, right) is None
     nowhere = Found(Hypothesis(base, (Term(AddedMass(surge=-100.0), ()),)))
     assert holdout.prefers_between_runs(right, nowhere) is True
+    assert holdout.prefers_between_runs(nowhere, right) is False
     assert holdout.prefers_between_runs(nowhere, nowhere) is None
     assert HoldoutValidation((), runs[:1]).prefers_between_runs(right, wrong) is None
 

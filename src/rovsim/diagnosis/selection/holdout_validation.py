@@ -131,8 +131,9 @@ class HoldoutValidation:
             models = [fit_without(fit, self.whole, group) for fit in (one, other)]
             errors.append(replace(self, runs=group)._errors(models))
         own, others = np.concatenate(errors, axis=1)
-        if not (np.isfinite(own).all() or np.isfinite(others).all()):
-            return None
+        stays, other_stays = (bool(np.isfinite(e).all()) for e in (own, others))
+        if not (stays and other_stays):
+            return stays if stays != other_stays else None
         if surely_costs(others, own, WORSE_SHARE):
             return True
         return False if surely_costs(own, others, WORSE_SHARE) else None
