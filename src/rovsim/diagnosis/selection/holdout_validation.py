@@ -20,6 +20,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.selection.paired_comparison import (
     WORSE_SHARE,
     find_better,
+    find_less_lost,
     find_sure_improvement,
     ratio,
     surely_costs,
@@ -130,13 +131,7 @@ class HoldoutValidation:
         for group in groups:
             models = [fit_without(fit, self.whole, group) for fit in (one, other)]
             errors.append(replace(self, runs=group)._errors(models))
-        own, others = np.concatenate(errors, axis=1)
-        stays, other_stays = (bool(np.isfinite(e).all()) for e in (own, others))
-        if not (stays and other_stays):
-            return stays if stays != other_stays else None
-        if surely_costs(others, own, WORSE_SHARE):
-            return True
-        return False if surely_costs(own, others, WORSE_SHARE) else None
+        return find_less_lost(*np.concatenate(errors, axis=1))
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
         """Where physics is left that no name explains: only what makes a difference there.

@@ -21,6 +21,16 @@ def find_better(one: Array, other: Array) -> bool | None:
     return False if find_sure_improvement(one, other) > 0.0 else None
 
 
+def find_less_lost(one: Array, other: Array) -> bool | None:
+    """The same, where being lost in a few windows counts, however little that is sure."""
+    stays, other_stays = (bool(np.isfinite(error).all()) for error in (one, other))
+    if not (stays and other_stays):
+        return stays if stays != other_stays else None
+    if surely_costs(other, one, WORSE_SHARE):
+        return True
+    return False if surely_costs(one, other, WORSE_SHARE) else None
+
+
 def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
     """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
 
