@@ -1,6 +1,7 @@
 """What a rule depends on beside its files: its part of the settings, and the code behind it."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Mapping
 
@@ -72,7 +73,7 @@ class Dependencies:
         """Digest of a package alone. A recorded campaign stands when rovsim's physics is edited."""
         return own_digest(f"rovsim.{package}", self._described)
 
-    @property
+    @cached_property
     def _described(self) -> list[Path]:
         """Files of the vehicle and of the user's effects: an edit changes what models do."""
         campaign = self.study.campaign
