@@ -12,7 +12,8 @@ from rovsim.diagnosis.equations.products.library import LawTerm, list_body_terms
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
-from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate, unit_of
+from rovsim.diagnosis.equations.products.targets import TARGETS
+from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
 from rovsim.diagnosis.equations.products.wording import write_equation
 from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.engine.types import EXAMPLE
@@ -112,12 +113,12 @@ def test_terms_along_the_body_turn_with_the_mirror():
 
 
 def test_units_make_newtons():
-    assert unit_of(1, (0, 0, 1)) == "N s3/m3"
-    assert unit_of(5, (7, 5)) == "N m s2/(m rad)"
-    assert unit_of(11, ()) == "1/s"
-    assert unit_of(9, (26,)) == "1/s"
-    assert unit_of(10, (29,)) == "m/s"
-    assert unit_of(0, (12,)) == "N"
+    assert TARGETS[1].unit_of((0, 0, 1)) == "N s3/m3"
+    assert TARGETS[5].unit_of((7, 5)) == "N m s2/(m rad)"
+    assert TARGETS[11].unit_of(()) == "1/s"
+    assert TARGETS[9].unit_of((26,)) == "1/s"
+    assert TARGETS[10].unit_of((29,)) == "m/s"
+    assert TARGETS[0].unit_of((12,)) == "N"
     assert len(VARIABLES) == len(tabulate(states(), PLACE))
 
 

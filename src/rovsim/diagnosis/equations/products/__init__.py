@@ -1,6 +1,7 @@
 """Laws that are sums of products of what acts at the same instant.
 
-variables     of what terms may be made, and on what they act
+variables     of what terms may be made
+targets       on what they act
 library       all terms, and the wrench of each
 columns       how each would show
 search        which comes next

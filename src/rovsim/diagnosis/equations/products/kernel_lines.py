@@ -4,6 +4,7 @@ from typing import Iterator, Sequence
 
 from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
+from rovsim.diagnosis.equations.products.targets import FLOWS, TARGETS, WORLD_FORCES
 from rovsim.diagnosis.equations.products.variables import IN_CODE, VARIABLES
 from rovsim.dynamics.effects.law_codes import (
     DEEP,
@@ -15,8 +16,6 @@ from rovsim.dynamics.effects.law_codes import (
     SIZE,
     SPEED,
     SWIRL,
-    WATER,
-    WORLD,
 )
 from rovsim.estimation.observer.hypothesis import Term
 
@@ -29,19 +28,19 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
     values: dict[str, list[str]] = {}
     for name, term in zip(names, terms, strict=True):
         text = " * ".join([f"p.{name}", *(VARIABLES[k].code for k in term.factors)])
-        for head, extra in _heads_in_code(term.on):
-            values.setdefault(head, []).append(text + extra)
-    for head, parts in values.items():
-        yield f"{head} = " + " + ".join(parts)
+        for head in TARGETS[term.on].heads:
+            values.setdefault(head.code, []).append(text + head.inner_code)
+    for left, parts in values.items():
+        yield f"{left} = " + " + ".join(parts)
     body = {f: f for f in FORCE if f in values}
-    world = [v if v in values else "0.0" for v in ("Fn", "Fe", "Fd")]
+    world = [v if v in values else "0.0" for v in WORLD_FORCES]
     if any(v != "0.0" for v in world):
         yield from _turned(world)
         body |= {
             f: f"{body[f]} + force_{f.lower()}" if f in body else f"force_{f.lower()}"
             for f in FORCE[:3]
         }
-    flow = [v if v in values else "0.0" for v in ("vn", "ve")]
+    flow = [v if v in values else "0.0" for v in FLOWS]
     if any(v != "0.0" for v in flow):
         yield from _carried(flow, law)
         body |= {
@@ -51,19 +50,9 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
     yield "return " + ", ".join(body.get(f, "0.0") for f in FORCE)
 
 
-def _heads_in_code(on: int) -> list[tuple[str, str]]:
-    if on < WORLD:
-        return [(FORCE[on], "")]
-    if on < WATER:
-        return [(("Fn", "Fe", "Fd")[on - WORLD], "")]
-    if on < SWIRL:
-        return [(("vn", "ve")[on - WATER], "")]
-    return [("vn", " * -east"), ("ve", " * north")]
-
-
 def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
     named = {k % SIZE for k in used if k < DOWN}
-    if used & {SPEED, DIRECTION} or any(t.on >= WATER for t in terms):
+    if used & {SPEED, DIRECTION} or any(TARGETS[t.on].is_water for t in terms):
         named |= {0, 1, 2}
     for i in sorted(named):
         yield f"{IN_CODE[i]} = at.nu_r[{i}]"

@@ -9,11 +9,10 @@ from rovsim.diagnosis.equations.form import Form, Number, Part, stated
 from rovsim.diagnosis.equations.products.as_effect import drop_term, follow_drag, list_moved
 from rovsim.diagnosis.equations.products.kernel_lines import write_body
 from rovsim.diagnosis.equations.products.library import LawTerm
-from rovsim.diagnosis.equations.products.variables import unit_of
+from rovsim.diagnosis.equations.products.targets import TARGETS
 from rovsim.diagnosis.equations.products.wording import (
     describe,
     list_quantities,
-    name_target,
     name_terms,
     write_equation,
 )
@@ -43,7 +42,7 @@ class Products(Form):
     @property
     def parts(self) -> tuple[Part, ...]:
         """Its terms."""
-        return tuple(Part(name_target(t), list_quantities(t)) for t in self.terms)
+        return tuple(Part(TARGETS[t.on].group, list_quantities(t)) for t in self.terms)
 
     @property
     def equation(self) -> str:
@@ -63,7 +62,8 @@ class Products(Form):
             size = law.effect[f"size{k}"]
             value = law.effect[f"c{k}"] * size
             scale = float(f"{max(abs(value), 1e-6):.1g}")
-            unit, symbol = unit_of(term.on, term.factors), f"c_{k}" if len(self.terms) > 1 else "c"
+            unit = TARGETS[term.on].unit_of(term.factors)
+            symbol = f"c_{k}" if len(self.terms) > 1 else "c"
             numbers.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
         known = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):

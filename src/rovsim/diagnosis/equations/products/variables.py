@@ -1,11 +1,11 @@
-"""What a law may be made of: factors, and what a term acts on, with units and mirror symmetry.
+"""What a law may be made of: factors, with units and mirror symmetry.
 
 Their order is that of `law_codes`. Under a mirror of port and starboard, the symmetry of
 nearly every vehicle, sway, roll, yaw and what goes with them change sign.
 """
 
 from dataclasses import dataclass
-from typing import Mapping, Sequence
+from typing import Mapping
 
 import numpy as np
 from numpy import ndarray as Array
@@ -14,7 +14,6 @@ from rovsim import AXES
 from rovsim.core.axes import VELOCITY
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
-from rovsim.dynamics.effects.law_codes import SWIRL, WATER, WORLD
 
 IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # `p` are the parameters there
 ODD = (1, 3, 5)  # axes whose sign a mirror of port and starboard turns
@@ -85,8 +84,6 @@ VARIABLES: tuple[Variable, ...] = (
     Variable("d", "(d - d_0)", "deep", 1, 0, 0, None, "depth"),
     Variable("near", r"e^{-((n-n_0)^2+(e-e_0)^2)/2s^2}", "near", 0, 0, 0, None, "one place"),
 )
-# What a term acts on: a body axis, a force along the world's axes, or the water's velocity.
-ON = (*AXES, "north", "east", "down", "water north", "water east", "swirl")
 
 
 def tabulate(state: Array, place: Array) -> Array:
@@ -102,16 +99,6 @@ def tabulate(state: Array, place: Array) -> Array:
     near = np.exp(-(n**2 + e**2) / (2.0 * place[3] ** 2))
     rest = [U, 1.0 / np.sqrt(U**2 + STILL**2), n, e, d, near]
     return np.vstack([nu, np.abs(nu), np.tanh(nu / SMOOTH), down, np.tanh(down / TILT), *rest])
-
-
-def unit_of(on: int, factors: Sequence[int]) -> str:
-    """SI unit of a coefficient, so that the term is N, N m, m/s or, of a swirl, 1/s."""
-    used = [VARIABLES[k] for k in factors]
-    m, s = sum(v.meters for v in used), sum(v.seconds for v in used)
-    rad = sum(v.radians for v in used)
-    if on < WATER:
-        return write_unit({"m": -m, "s": -s, "rad": -rad}, "N m" if 3 <= on < WORLD else "N")
-    return write_unit({"m": (1 if on < SWIRL else 0) - m, "s": -1 - s, "rad": -rad})
 
 
 def write_unit(powers: Mapping[str, int], head: str = "") -> str:

@@ -1,0 +1,91 @@
+"""What a term of a law acts on: an axis of the body, of the world, the water, water that turns."""
+
+from dataclasses import dataclass
+from typing import Sequence
+
+from rovsim import AXES
+from rovsim.core.axes import FORCE, FORCE_UNITS
+from rovsim.diagnosis.equations.products.variables import VARIABLES, write_unit
+from rovsim.dynamics.effects.law_codes import EAST, NORTH
+
+WORLD_FORCES, FLOWS = ("Fn", "Fe", "Fd"), ("vn", "ve")  # in code
+
+
+@dataclass(frozen=True)
+class Head:
+    """What stands left of an equals sign, in LaTeX and in code.
+
+    `inner`: a further factor, and its sign, of the term on the right of it, likewise.
+    """
+
+    latex: str
+    code: str
+    inner_latex: str = ""
+    inner_code: str = ""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a term acts on: for names, in equations, in sentences, and in units.
+
+    `group`: an axis, `force` along the world's axes, or `water`; `acts`: a noun phrase; `newtons`:
+    N or N m, of forces; `meters`, `seconds`: powers of the unit of a flow.
+    """
+
+    name: str
+    group: str
+    heads: tuple[Head, ...]
+    acts: str
+    newtons: str = ""
+    meters: int = 0
+    seconds: int = 0
+
+    @property
+    def is_water(self) -> bool:
+        """Whether it is moving water, which acts through the drag."""
+        return self.group == "water"
+
+    def unit_of(self, factors: Sequence[int]) -> str:
+        """SI unit of a coefficient before these factors."""
+        used = [VARIABLES[k] for k in factors]
+        powers = {
+            "m": self.meters - sum(v.meters for v in used),
+            "s": self.seconds - sum(v.seconds for v in used),
+            "rad": -sum(v.radians for v in used),
+        }
+        return write_unit(powers, self.newtons)
+
+
+def _along_body() -> list[Target]:
+    kinds = ("force",) * 3 + ("moment",) * 3
+    return [
+        Target(axis, axis, (Head(letter, letter),), f"a {axis} {kind}", newtons=unit)
+        for axis, letter, kind, unit in zip(AXES, FORCE, kinds, FORCE_UNITS, strict=True)
+    ]
+
+
+def _along_world() -> list[Target]:
+    latex, towards = ("F_n", "F_e", "F_d"), ("towards north", "towards east", "downwards")
+    return [
+        Target(name, "force", (Head(symbol, code),), f"a force {where}", newtons="N")
+        for name, symbol, code, where in zip(
+            ("north", "east", "down"), latex, WORLD_FORCES, towards, strict=True
+        )
+    ]
+
+
+def _of_water() -> list[Target]:
+    vn, ve = (Head(f"v_{code[1]}", code) for code in FLOWS)
+    turning = (
+        Head(vn.latex, vn.code, "-" + VARIABLES[EAST].latex, " * -east"),
+        Head(ve.latex, ve.code, VARIABLES[NORTH].latex, " * north"),
+    )
+    return [
+        Target("water north", "water", (vn,), "water that moves north", meters=1, seconds=-1),
+        Target("water east", "water", (ve,), "water that moves east", meters=1, seconds=-1),
+        Target("swirl", "water", turning, "water that turns about a place", seconds=-1),
+    ]
+
+
+# In the order of `law_codes`.
+TARGETS = (*_along_body(), *_along_world(), *_of_water())
