@@ -11,6 +11,7 @@ from importlib import import_module
 from inspect import cleandoc
 from pathlib import Path
 
+import limits
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File
 from mkdocs.utils import get_relative_url
@@ -21,7 +22,7 @@ from rovsim.results.base import Result
 BLOCK = re.compile(r"^```math\n(.*?)\n```$", re.DOTALL | re.MULTILINE)
 INLINE = re.compile(r"\$`(.+?)`\$")
 ELSEWHERE = re.compile(r"\[([^\]]*)\]\(\.\./[^)]*\)")  # links to files beside docs/
-RESULTS = "reference/results.md"
+RESULTS, LIMITS = "reference/results.md", "reference/limits.md"
 SHIM, WORKER = "https://unpkg.com/iframe-worker/shim", "assets/iframe-worker.js"
 HERE = Path(__file__).parent
 
@@ -41,10 +42,12 @@ def on_post_page(output, page, **_):
 
 
 def on_files(files, config):
-    """The page on result files, their JSON schemas, and what the search needs."""
+    """The pages on result files, their JSON schemas and limits, and what the search needs."""
     files.append(File.generated(config, WORKER, content=(HERE / "iframe-worker.js").read_text()))
     found = sorted(_results(), key=lambda one: one.noun)
     files.append(File.generated(config, RESULTS, content=_page(found)))
+    numbers = limits.write_page(limits.find_limits())
+    files.append(File.generated(config, LIMITS, content=numbers))
     for one in found:
         schema = json.dumps(one.model_json_schema(by_alias=True), indent=1)
         files.append(File.generated(config, _schema(one), content=schema))

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -67,3 +68,10 @@ def test_files_that_docs_and_docstrings_name_are_there():
     }
     assert len(named) > 30
     assert not [one for one in named if not any(file.endswith(f"/{one[1]}") for file in there)]
+
+
+def test_every_number_that_decides_says_what_it_is():
+    page = runpy.run_path(str(Path(__file__).parents[2] / "docs" / "site" / "limits.py"))
+    limits = page["find_limits"]()
+    assert len(limits) > 200
+    assert not [f"{one.module}: {one.name}" for one in limits if not one.meaning]

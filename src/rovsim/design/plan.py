@@ -41,7 +41,7 @@ from rovsim.simulation.batch import Batch
 
 # Scenarios while searching and in the end, and models that information is averaged over.
 SEARCHED, CHECKED, AVERAGED = 8, 40, 4
-FINALISTS = 4
+FINALISTS = 4  # safe flights that are averaged over what is not known, the best first
 # Share of the time that is over when a stage begins: means over the development seeds.
 STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
 

@@ -21,7 +21,7 @@ from rovsim.evaluation.scores import Moments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 
-DRAWS = 8
+DRAWS = 8  # of noise and disturbance, along all test runs; their errors are pooled
 
 
 class NoiseFloor(NamedTuple):

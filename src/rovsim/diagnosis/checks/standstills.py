@@ -36,7 +36,7 @@ BEYOND = 3.0  # times that it misses where the vehicle stands
 # Share of what it does there that it does elsewhere; it then misses at most that share of it.
 SHOWN, FOLLOWED = 0.5, 0.75
 LONG = 0.2  # s in all for which it does
-TINY = 1e-9
+TINY = 1e-9  # m/s, rad/s: keeps ratios finite where a model misses nothing
 
 Spans = list[tuple[float, float]]
 

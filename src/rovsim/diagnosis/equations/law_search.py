@@ -21,7 +21,7 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
 HALF_LAW_MARGIN = 2.0  # times what chance allows: no fit to all runs brings so much below it
-THRUST_LAWS_TRIED = 4
+THRUST_LAWS_TRIED = 4  # those that explain most to first order
 NEAR = 0.5  # of what products explain: laws of the thrust that may reach so much are fitted
 
 

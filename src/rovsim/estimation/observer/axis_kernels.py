@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 
 POSE, BIN_MEAN, SUM = 0, 1, 2  # what is read of an axis
-MOST_DOUBLINGS = 60
-CONVERGED = 1e-13
+MOST_DOUBLINGS = 60  # of the time that is over: far more than any filter takes to settle
+CONVERGED = 1e-13  # of what there is, that a doubling still adds
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
 SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
 READ_AS_IS = 1e-4  # of the noise that adds up

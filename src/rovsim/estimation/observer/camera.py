@@ -24,7 +24,7 @@ MIN_CUTOFF_HZ, MAX_CUTOFF_SHARE = 0.5, 0.5  # the share is of the highest freque
 CUTOFFS_TRIED = 24  # cutoffs between these, a fifth apart
 LOG_CUTOFF_STEP = 0.05  # of the logarithm, for the curvature
 END_SHARE = 0.98  # of the highest cutoff tried: where the search stops at its end, it found none
-OPEN_STDS = 3.0
+OPEN_STDS = 3.0  # of the cutoff to either side, within which it is left open
 # Of the cutoff, left open in any case: behind stamps that are off by 2 ms it is found 7 % too high.
 OPEN_CUTOFF_SHARE = 0.1
 

@@ -12,7 +12,7 @@ from numba import njit
 
 from rovsim.estimation.observer.axis_kernels import FROM_PYTHON, INTERNAL
 
-MOST_STEPS = 200
+MOST_STEPS = 200  # bounds what does not converge
 COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still gains
 # Much at first: from all parts alike, a whole step puts some at their ends, and few come back.
 FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 100.0, 0.2, 5.0, 1e12

@@ -18,7 +18,7 @@ REACH = 10.0  # s by which clocks that share a start may differ
 SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
 OVERLAP = 0.5  # share of the shorter recording that must lie beside the other
 AFTER = 2.0  # s for which a motion goes on after its last command
-SPARSE = 1e-9
+SPARSE = 1e-9  # of motions of size 1: less is rounding
 FEW = 64  # lags up to which plain sums are faster than Fourier transforms
 # Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
 # most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).

@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.results.error_conditions import BLOCK
 
-BINS = 8
+BINS = 8  # of equal width between the tails
 VISITS = 4  # stretches that must have visited a bin before it is judged
 SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
 FLAT = 1e-6  # N, m, rad, s, or of them a second: less is rounding

@@ -25,7 +25,7 @@ from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Co
 from rovsim.results.error_conditions import ConditionShare
 
 LEVEL = 0.005  # chance of a single false finding in a whole search over an adequate model
-FLIPS = 3999
+FLIPS = 3999  # of signs: these tell chances down to 1/4000, a twentieth of LEVEL
 SMALLEST = 0.03  # share of the squared error below which a condition is not worth a sentence
 NEGLIGIBLE = 0.03  # explained error relative to the measured acceleration, likewise (both RMS)
 AS_GOOD = 0.9  # of the best share: conditions the data do not tell apart from it

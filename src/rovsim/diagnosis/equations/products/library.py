@@ -35,7 +35,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 SPACING, WIDTH = 1.0, 0.6  # m: places tried, and how wide each is; the fit moves both
-MOST_PLACES = 60
+MOST_PLACES = 60  # those where the vehicle was most often
 
 
 @dataclass(frozen=True)
