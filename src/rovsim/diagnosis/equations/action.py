@@ -36,7 +36,7 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
 def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
     """Whether something is left on the axis of a law, `margin` times what chance allows."""
     left = find_structure(fit, bank)
-    return any(one.axis == axis and one.surprise > margin for one in left)
+    return any(one.axis == axis and one.times_limit > margin for one in left)
 
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:

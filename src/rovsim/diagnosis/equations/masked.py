@@ -41,7 +41,7 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     score = workspace.score(fit)
     for judged in fit_products(fits, fit, (), kinds, columns).values():
         if fits.is_worth(judged, fit, score):
-            return [replace(suspect, surprise=(judged.score - score) / max(fits.chance, 1.0))]
+            return [replace(suspect, times_limit=(judged.score - score) / max(fits.chance, 1.0))]
     return []
 
 
@@ -60,4 +60,4 @@ def _find_suspect(selection: SearchResult) -> Structure | None:
         for one in list_dependences(residual, tables)
         if one.statistic > (FAINT if one.taken > RESEMBLES else SUSPECT)
     ]
-    return max(near, key=lambda one: one.surprise, default=None)
+    return max(near, key=lambda one: one.times_limit, default=None)

@@ -34,14 +34,14 @@ NOTICED = 1.0  # standard deviations: less of a push nobody sees, and to take it
 class Structure:
     """Something the remainder varies with.
 
-    `share` of the remaining disturbance's power, `surprise` = its chi-square above the limit;
-    `moment`: it is a single push, for which no effect can stand in.
+    `share` of the remaining disturbance's power; `times_limit`: its statistic, over what chance
+    allows; `moment`: it is a single push, for which no effect can stand in.
     """
 
     axis: str
     what: str
     share: float
-    surprise: float
+    times_limit: float
     moment: bool = False
 
 

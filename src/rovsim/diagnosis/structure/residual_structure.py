@@ -23,4 +23,4 @@ def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:
         structures += find_lines(residual)
         structures += find_sudden(residual)
         structures += find_kicks(residual)
-    return sorted(structures, key=lambda one: -one.surprise)
+    return sorted(structures, key=lambda one: -one.times_limit)
