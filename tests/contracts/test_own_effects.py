@@ -175,6 +175,21 @@ BAD = {  # what is replaced, by what: what the message says
     ('id = "hose"', 'id = "hose"; telling = ("farce",)'): "'telling' is .*: force",
     ('id = "hose"', 'id = "hose"; channels = ("voltage")'): "'channels' is 'voltage'",
     ("        return -p.force", "        import math\n        return -p.force"): "does not compile",
+    (
+        'equation, neglects, source = "X = -c"',
+        'equation, neglects, source = " "',
+    ): "'equation' is empty",
+    ('id = "hose"', 'id = "hose"; starts = ({"force": "1"},)'): "'starts' has force at '1'",
+    ('id = "hose"', 'id = "hose"; cause = 3'): "'cause' is 3.*a sentence",
+    ('id = "hose"', 'id = "hose"; rank = "1"'): "'rank' is '1'.*a number",
+    ("scale=1.0", "scale=float('inf')"): "finite scale",
+    ("class Hose", "raise SystemExit(3)\nclass Hose"): "line 4: SystemExit: 3",
+    ("        return", "        assert at.nu[0] < 9.0\n        return"): r"asserts \(line 12\)",
+    ("        return", "        print(at.nu[0])\n        return"): "'wrench' prints",
+    ("-p.force", "1j * p.force"): "'wrench' returns .*six numbers",
+    ("-p.force", "at.channels.volts"): r"Unknown attribute 'channels' \(line",
+    ("-p.force", "1.0 - p.force"): "hose.py, effect hose: 'wrench' returns 1.0.*default values",
+    ("-p.force", "p.force * at.nu[6 + int(at.t > 9.0)]"): "out of",
 }
 
 
@@ -195,17 +210,21 @@ def test_a_mistake_is_one_message(change, tmp_path, capsys):
 
 
 OTHER_KINDS = {  # kind, its method: what the message says
-    ("Coefficients", "def enter(self, body): body.lineer[0] += 1"): "line 11: 'enter' fails",
-    ("Coefficients", "def enter(self, body): body.linear = 1"): "'enter' returns .*as they are",
+    ("Coefficients", "def enter(self, body): body.lineer[0] += 1"): "line 12: 'enter' fails",
+    ("Coefficients", "def enter(self, body): body.linear = 1"): "'body.linear'.*as they are",
+    ("Coefficients", "def enter(self, body): body.M_A[0] = math.nan"): "'body.M_A'.*finite",
+    ("Coefficients", "def enter(self, body): body.M_A[0, 0] = -99"): "inertia is positive",
     ("StochasticCurrent", "def draw(self, ticks, dt, random): return 1"): "'draw' returns 1",
     ("CommandTiming", "def effective_time(self, time): return -time"): "increasing",
     ("DemandTransform", "def mixer_demand(self, demand): return demand[0]"): r"array \(6,\)",
     ("CommandTransform", "def thruster_command(self, command): pass"): "returns None",
     ("ThrustScaling", "def scaled_force(self, force, t): return force"): "TypeError",
+    ("CommandTransform", "def thruster_command(self, command): command *= 2"): "line 12.*read-only",
     ("ThrustCurveShape", "def reshaped_force(self, force, full): return force / 0"): "NaN or inf",
     ("ThrusterDynamics", "def respond(self, force, h, state): return force"): "state to go on",
     ("FrameMisalignment", "def transforms(self): return 0.1"): "two Rigid",
     ("MeasurementFilter", "def time_constants(self): return 0.1"): "tuple of seconds",
+    ("MeasurementFilter", "def time_constants(self): return (0.0,)"): "seconds above 0",
     (
         "Wrench",
         "@staticmethod\n    def wrench(at, p): return six(at.actuators.force[8])",
@@ -218,8 +237,29 @@ OTHER_KINDS = {  # kind, its method: what the message says
         "Wrench",
         "@staticmethod\n    def wrench(at, p): return six(at.actuators.inflow[8][0])",
     ): "8 pl",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.actuators.inflow[0][3])",
+    ): "three numbers",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.actuators.force[900])",
+    ): "8 forces",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(helped(at, 9))",
+    ): "no such actuator.*8 forces",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(at.t > 9.0 and at.actuators.force[9])",
+    ): "out of bounds.*8 forces",
+    (
+        "Wrench",
+        "@staticmethod\n    def wrench(at, p): return six(p.force * written(at))",
+    ): "writes into at.actuators",
 }
 OTHER_KIND = """
+import math
 from rovsim.dynamics.effects import base
 from rovsim.dynamics.engine.compiled import inlined
 
@@ -234,6 +274,15 @@ class Hose(base.KIND):
 @inlined
 def six(x):
     return x, 0.0, 0.0, 0.0, 0.0, 0.0
+
+@inlined
+def helped(at, k):
+    return at.actuators.force[k] if at.nu[0] > 0.1 else 0.0
+
+@inlined
+def written(at):
+    at.actuators.force[0] = 9.0
+    return 0.0
 """
 
 

@@ -23,6 +23,7 @@ def refused(found: str, where: object, expected: str) -> BadInput:
 def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     """What is wrong with what a complete class declares, and what was expected; best one by one."""
     yield from _find_shapes(cls)
+    yield from _find_kinds(cls)
     for parameter in cls.parameters:
         yield from _find_in_parameter(parameter, [p.name for p in cls.parameters])
     if not any(p.fitted for p in cls.parameters):
@@ -32,6 +33,7 @@ def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
         if not set(start) <= names:
             told = ", ".join(sorted(set(start) - names))
             yield f"'starts' names {told}", f"its parameters: {', '.join(sorted(names))}"
+    yield from _find_out_of_range(cls)
     if not set(cls.telling) <= names:
         yield f"'telling' is {cls.telling}", f"some of its parameters: {', '.join(sorted(names))}"
 
@@ -54,6 +56,26 @@ def _find_shapes(cls: type[Effect]) -> Iterator[tuple[str, str]]:
             yield f"'channels' is {cls.channels!r}", "a tuple of names: ('voltage',)"
 
 
+def _find_out_of_range(cls: type[Effect]) -> Iterator[tuple[str, str]]:
+    """Values of starts that no such effect can have."""
+    for p in cls.parameters:
+        for value in [start[p.name] for start in cls.starts if p.name in start]:
+            if not (isinstance(value, Real) and np.isfinite(value) and p.low <= value <= p.high):
+                expected = f"a number from {p.low:g} to {p.high:g}"
+                yield f"'starts' has {p.name} at {value!r}", expected
+
+
+def _find_kinds(cls: type[Effect]) -> Iterator[tuple[str, str]]:
+    """Single declarations of another kind."""
+    if not cls.equation.strip():
+        yield "'equation' is empty", "LaTeX that says what it does"
+    for name in ("cause", "revealed_by"):
+        if not isinstance(getattr(cls, name), str):
+            yield f"'{name}' is {getattr(cls, name)!r}", "a sentence"
+    if not isinstance(cls.rank, Real):
+        yield f"'rank' is {cls.rank!r}", "a number"
+
+
 def _holds(value: Any, kind: type) -> bool:
     return isinstance(value, tuple) and all(isinstance(one, kind) for one in value)
 
@@ -71,7 +93,8 @@ def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, st
         return
     if not (_holds(p.tried, Real) and all(p.low <= value <= p.high for value in p.tried)):
         yield f"parameter '{p.name}' tries {p.tried!r}", "a tuple of values in its range"
-    inside = np.isnan(p.default) or p.low <= p.default <= p.high
-    if not (_is_name(p.name) and inside and p.scale > 0.0) or names.count(p.name) > 1:
-        expected = "a name of its own, low <= default <= high, and a scale above 0"
+    inside = np.isnan(p.default) or (np.isfinite(p.default) and p.low <= p.default <= p.high)
+    scaled = 0.0 < p.scale < np.inf
+    if not (_is_name(p.name) and inside and scaled) or names.count(p.name) > 1:
+        expected = "a name of its own, low <= default <= high, and a finite scale above 0"
         yield f"parameter '{p.name}' is {p}", expected

@@ -3,7 +3,9 @@
 Each kind of effect has its trials here: what its methods are given, and what they must return.
 """
 
+import sys
 import traceback
+from dataclasses import fields
 from functools import partial
 from typing import Any, Callable, Iterator, NamedTuple, Protocol
 
@@ -29,13 +31,14 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.effects.declarations import refused
-from rovsim.dynamics.effects.kernels import compiled_alone
+from rovsim.dynamics.effects.kernel_trials import Actuating, largest_push
 
-INSTANTS = 5  # at which methods are tried, and states in which kernels are
-BEYOND = 64  # numbers before and after those of the actuators, of which nothing may depend
+INSTANTS = 5  # at which methods are tried
 TIME = np.arange(INSTANTS) / 10.0  # s
 DURATION = 60.0  # s of a recording
 FULL = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
+BODY = "constants of the body as they are: finite numbers of the same shape"
+GROWING = ("products", "factors")  # of a body, to which an effect may add rows
 
 
 class Tried(Actuated, Protocol):
@@ -64,7 +67,7 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
     Raises:
         BadInput: a method fails, or returns something else than its kind does.
     """
-    where = f"effect {cls.id}"
+    where = _place_of(cls)
     if cls.requires == "thrusters" and not vehicle.thruster_count:
         return
     for start in ({}, *cls.starts):
@@ -78,6 +81,12 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
                 raise refused(found, where + _line_of(error, cls), trial.expected) from None
             if not fits:
                 raise refused(f"'{trial.method}' returns {_told(made)}", where, trial.expected)
+
+
+def _place_of(cls: type[Effect]) -> str:
+    """The file of an effect, and its id."""
+    file = getattr(sys.modules.get(cls.__module__), "__file__", None)
+    return f"{file}, effect {cls.id}" if file else f"effect {cls.id}"
 
 
 def _line_of(error: Exception, cls: type[Effect]) -> str:
@@ -99,15 +108,34 @@ def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
     for own in vehicle.effects():
         if isinstance(own, Coefficients):
             own.enter(body)
-    shapes = (body.M_RB.shape, body.M_A.shape, body.linear.shape, body.quadratic.shape)
+    shapes = _shapes(body)
 
     def enter() -> Any:
         e.enter(body)
-        return tuple(np.shape(one) for one in (body.M_RB, body.M_A, body.linear, body.quadratic))
+        wrong = [name for name, shape in _shapes(body).items() if shape != shapes[name]]
+        return ", ".join(f"body.{name}" for name in wrong) or "a body as it was"
 
+    yield Trial("enter", enter, BODY, lambda made: made == "a body as it was")
     yield Trial(
-        "enter", enter, f"matrices of the body as they are: {shapes}", lambda s: s == shapes
+        "enter",
+        lambda: body.least_inertia,
+        "a body whose inertia is positive (this is its smallest eigenvalue)",
+        lambda least: least > 0.0,
     )
+
+
+def _shapes(body: Body) -> dict[str, tuple[int, ...] | None]:
+    """Shape of each constant of a body but its products of velocities; None: no finite numbers."""
+    named = {one.name: getattr(body, one.name) for one in fields(body)}
+    alike = {name: value for name, value in named.items() if name not in GROWING}
+    return {name: np.shape(v) if _is_finite(v) else None for name, v in alike.items()}
+
+
+def _is_finite(value: Any) -> bool:
+    try:
+        return bool(np.isfinite(np.asarray(value, float)).all())
+    except (TypeError, ValueError):
+        return False
 
 
 def _try_current(e: StochasticCurrent, vehicle: Tried) -> Iterator[Trial]:
@@ -117,7 +145,7 @@ def _try_current(e: StochasticCurrent, vehicle: Tried) -> Iterator[Trial]:
 def _try_timing(e: CommandTiming, vehicle: Tried) -> Iterator[Trial]:
     yield Trial(
         "effective_time",
-        partial(e.effective_time, TIME.copy()),
+        partial(e.effective_time, _given(TIME.copy())),
         f"{INSTANTS} increasing instants for as many",
         lambda made: _is_array(made, TIME.shape) and bool((np.diff(made) > 0.0).all()),
     )
@@ -140,7 +168,7 @@ def _try_command(e: CommandTransform, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _try_curve(e: ThrustCurveShape, vehicle: Tried) -> Iterator[Trial]:
-    force, full = _forces(vehicle), np.tile(FULL, vehicle.thruster_count)
+    force, full = _forces(vehicle), _given(np.tile(FULL, vehicle.thruster_count))
     yield _array("reshaped_force", partial(e.reshaped_force, force, full), force.shape)
 
 
@@ -175,58 +203,29 @@ def _try_frames(e: FrameMisalignment, vehicle: Tried) -> Iterator[Trial]:
 
 def _try_filter(e: MeasurementFilter, vehicle: Tried) -> Iterator[Trial]:
     def fits(made: Any) -> bool:
-        return isinstance(made, tuple) and all(T >= 0.0 and np.isfinite(T) for T in made)
+        return isinstance(made, tuple) and all(T > 0.0 and np.isfinite(T) for T in made)
 
-    yield Trial("time_constants", e.time_constants, "a tuple of seconds", fits)
+    expected = "a tuple of seconds above 0, and an empty one where nothing is smoothed"
+    yield Trial("time_constants", e.time_constants, expected, fits)
 
 
 def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
-    """Compiled code reads beyond an array without a word: what lies there must not matter."""
-    if not e.reads():
-        return
-    forces, commands = vehicle.thruster_count, len(vehicle.command_columns)
-    places = forces + len(vehicle.surface_names)
-    kernel, p = compiled_alone(type(e)), type(e).named_parameters()(*map(float, e.values))
-
-    def push() -> None:
-        for k in range(INSTANTS):
-            acting = np.random.default_rng(k).uniform(-1.0, 1.0, (5, max(places, commands)))
-            made = [
-                kernel(_reading(type(e), acting, (forces, commands, places), beyond), p)
-                for beyond in (np.nan, -1e9, 1e9)
-            ]
-            if not all(np.array_equal(made[0], one, equal_nan=True) for one in made):
-                raise IndexError("no such actuator")
-
-    expected = (
-        f"indices within the actuators of this vehicle: {forces} forces, {commands} commands, "
-        f"inflow at {places} places"
+    there = Actuating(
+        vehicle.thruster_count, len(vehicle.command_columns), len(vehicle.surface_names)
     )
-    yield Trial("wrench", push, expected, lambda _: True)
+    call = partial(largest_push, e, there)
+    yield Trial("wrench", call, there.told, lambda _: True)
+    if not e.given():
+        yield Trial("wrench", call, "0 with its default values: then nothing acts", _is_none)
 
 
-def _reading(cls: type[Wrench], acting: Array, have: tuple[int, int, int], beyond: float) -> Any:
-    """An instant as a kernel reads it; `acting` (5, k) forces, commands and inflow as they are."""
-    from rovsim.dynamics.engine.reading import Actuators, example_reading
-
-    forces, commands, places = have
-    actuators = Actuators(
-        _surrounded(acting[0, :forces], beyond),
-        _surrounded(acting[1, :commands], beyond),
-        _surrounded(np.ascontiguousarray(acting[2:, :places].T), beyond),
-    )
-    return example_reading(cls.example_channels())._replace(actuators=actuators)
-
-
-def _surrounded(values: Array, beyond: float) -> Array:
-    """The same values in a memory that holds something else before and after them."""
-    memory = np.full((BEYOND + len(values) + BEYOND, *values.shape[1:]), beyond)
-    memory[BEYOND : BEYOND + len(values)] = values
-    return memory[BEYOND : BEYOND + len(values)]
+def _is_none(push: float) -> bool:
+    """Whether a largest push is none; one that is no number is told where it is simulated."""
+    return not push > 0.0
 
 
 def _array(
-    method: str, call: Callable[[], Any], shape: tuple[int, ...], expected: str = "an array"
+    method: str, call: Callable[[], Any], shape: tuple[int, ...], expected: str = "a new array"
 ) -> Trial:
     return Trial(method, call, f"{expected} {shape}", lambda made: _is_array(made, shape))
 
@@ -245,12 +244,18 @@ def _told(made: Any) -> str:
 
 def _moving(columns: int) -> Array:
     """Demands or commands (INSTANTS, columns) from -1 to 1."""
-    return np.tile(np.linspace(-1.0, 1.0, INSTANTS)[:, None], columns)
+    return _given(np.tile(np.linspace(-1.0, 1.0, INSTANTS)[:, None], columns))
 
 
 def _forces(vehicle: Tried) -> Array:
     """Forces (INSTANTS, n) N that a vehicle's thrusters may have."""
-    return FULL[1][0] * _moving(vehicle.thruster_count)
+    return _given(FULL[1][0] * _moving(vehicle.thruster_count))
+
+
+def _given(values: Array) -> Array:
+    """What a method may not change: in a simulation it is the log itself."""
+    values.setflags(write=False)
+    return values
 
 
 TRIALS: dict[type[Effect], Callable[[Any, Tried], Iterator[Trial]]] = {

@@ -14,7 +14,7 @@ from typing import Any, Mapping
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
 from rovsim.dynamics.effects.declarations import TEXTS, find_faults, refused
-from rovsim.dynamics.effects.kernels import compiled_alone
+from rovsim.dynamics.effects.kernels import compiled_alone, line_that_raises, says
 from rovsim.dynamics.effects.trials import TRIALS
 
 
@@ -41,7 +41,7 @@ def _run(path: Path, text: str) -> ModuleType:
         exec(compile(text, str(path), "exec"), vars(module))
     except SyntaxError as error:
         raise refused(f"{error.msg}", f"{path}, line {error.lineno}", "valid Python") from None
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         lines = [
             f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)
         ]
@@ -99,7 +99,7 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
 
 def _check_kernel(cls: type[Wrench], where: str) -> None:
     """Compile the kernel alone: its errors are then short, and not those of the whole engine."""
-    from numba import types
+    from numba import typeof, types
     from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
     from rovsim.dynamics.engine.reading import example_reading
@@ -108,10 +108,12 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     wrench = inspect.getattr_static(cls, "wrench")
     if not isinstance(wrench, staticmethod):
         raise refused("'wrench' has no @staticmethod", where, "@staticmethod def wrench(at, p)")
+    _refuse_in_loop(cls, where)
     p = cls.named_parameters()(*(0.0 for _ in cls.parameters))
     kernel = compiled_alone(cls)
+    at = example_reading(cls.example_channels()) if cls.reads() else EXAMPLE
     try:
-        kernel(example_reading(cls.example_channels()) if cls.reads() else EXAMPLE, p)
+        kernel.compile((typeof(at), typeof(p)))
     except (NumbaError, UnsupportedBytecodeError, TypeError) as error:
         raise refused(
             f"'wrench' does not compile: {_reason(str(error))}",
@@ -119,9 +121,23 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
             "arithmetic on the numbers of `at` and `p`, functions of math, and if",
         ) from None
     made = kernel.nopython_signatures[0].return_type
-    numbers = [isinstance(part, types.Number) for part in getattr(made, "types", ())]
+    real = (types.Float, types.Integer)
+    numbers = [isinstance(part, real) for part in getattr(made, "types", ())]
     if len(numbers) != 6 or not all(numbers):
         raise refused(f"'wrench' returns {made}", where, "six numbers: X, Y, Z, K, M, N")
+
+
+def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
+    """Refuse what compiles and cannot be used where it is called a hundred times a second."""
+    line = line_that_raises(cls.wrench)
+    if line is not None:
+        raise refused(
+            f"'wrench' raises an error or asserts (line {line})",
+            where,
+            "a wrench at every state: nobody hears of an error inside the simulation",
+        )
+    if says(cls.wrench, "print"):
+        raise refused("'wrench' prints", where, "a wrench alone: it is called at every step")
 
 
 def _reason(text: str) -> str:
@@ -131,4 +147,5 @@ def _reason(text: str) -> str:
         line for line in plain if line and not line.startswith(("Failed in", "- ", ">>>", "Th"))
     ]
     line = re.search(r", line (\d+)", text)
-    return (told[0].rstrip(":.") if told else plain[0]) + (f" (line {line[1]})" if line else "")
+    found = (told[0].rstrip(":.") if told else plain[0]).partition(" of type ")[0]
+    return found + (f" (line {line[1]})" if line else "")
