@@ -130,6 +130,22 @@ def test_every_vehicle_is_written_or_refused_in_words(name, vehicle):
 
 
 @EVERY
+def test_a_battery_is_left_out_in_words(name):
+    world = nominal(load_vehicle("bluerov2_heavy_t200"))
+    _, left = represent(world, target(name))
+    why = {one.name: one.why for one in left}
+    assert why["thrusters"] == "thrust is that at 16 V, whatever the battery has"
+    one = next(one for one in left if one.name == "thrusters")
+    command = np.linspace(-1.0, 1.0, 21)[:, None] * np.ones(8)
+    full, flat = np.full(21, 16.0), np.full(21, 12.0)
+    before, after = (m.thrust_path.thrusters for m in (one.before, one.after))
+    np.testing.assert_allclose(
+        after.static_force(command, flat), before.static_force(command, full)
+    )
+    assert np.abs(before.static_force(command, flat) - after.static_force(command)).max() > 5.0
+
+
+@EVERY
 def test_the_page_and_the_reader_know_it(name):
     page = (Path(__file__).parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
     assert f"`{name}`" in page

@@ -25,7 +25,7 @@ from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import ThrustAsymmetry, ThrusterDeadband, ThrusterGain
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.cross_flow import CrossFlow
-from rovsim.dynamics.vehicle.curves import ForceCurve, Table, Tables
+from rovsim.dynamics.vehicle.curves import ForceCurve
 
 E = TypeVar("E", bound=Effect)
 
@@ -118,7 +118,7 @@ class Equation:
     @property
     def curves(self) -> list[ForceCurve]:
         """The force curve of each thruster (n); tables by voltage are those of the nominal one."""
-        return [_at_nominal_voltage(c) for c in self.model.thrust_path.thrusters.curves]
+        return [curve.at_nominal_voltage for curve in self.model.thrust_path.thrusters.curves]
 
     @property
     def exponent(self) -> float:
@@ -162,17 +162,3 @@ class Equation:
 
     def _those(self, kind: type[E]) -> list[E]:
         return [e for e in self.model.effects if isinstance(e, kind)]
-
-
-def _at_nominal_voltage(curve: ForceCurve) -> ForceCurve:
-    """The same where it does not ask for the voltage, else the table at the nominal one."""
-    tables = curve.tables
-    if tables is None:
-        return curve
-    commands = sorted({c for table in tables.volts.values() for c in table.command})
-    return ForceCurve(table=_table(tables, np.array(commands)))
-
-
-def _table(tables: Tables, command: Array) -> Table:
-    force = tables.force(command, None)
-    return Table(command=tuple(command.tolist()), force=tuple(force.tolist()))

@@ -84,11 +84,29 @@ class Fixed(Thrusters):
         return super().resolved(force)
 
 
-def fixed(thrusters: Thrusters) -> tuple[Effect, str]:
-    """Thrusters of a target in which none turns."""
-    if thrusters.turning.any():
-        return Fixed(thrusters.layout), "thrusters do not turn: they push along the angle zero"
-    return whole(thrusters)
+def unpowered(thrusters: Thrusters) -> tuple[Thrusters, str]:
+    """Thrusters of a target that knows no battery: they push as at the nominal voltage."""
+    tables = [curve.tables for curve in thrusters.curves if curve.tables is not None]
+    several = [one for one in tables if len(one.volts) > 1]
+    if not several:
+        return thrusters, ""
+    layout = thrusters.layout
+    own = [
+        unit.model_copy(update={"force_curve": curve.at_nominal_voltage})
+        for unit, curve in zip(layout.units, thrusters.curves, strict=True)
+    ]
+    volts = ", ".join(f"{v:g}" for v in sorted({one.usual for one in several}))
+    held = Thrusters(layout.model_copy(update={"units": tuple(own)}))
+    return held, f"thrust is that at {volts} V, whatever the battery has"
+
+
+def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
+    """Thrusters of a target that knows no battery, and in which none turns."""
+    held, why = unpowered(thrusters)
+    if not thrusters.turning.any():
+        return held, why
+    still = "thrusters do not turn: they push along the angle zero"
+    return Fixed(held.layout), f"{still}; {why}" if why else still
 
 
 def leave_out(model: Model, hold: Hold) -> Iterator[Left]:

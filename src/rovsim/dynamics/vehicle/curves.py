@@ -57,12 +57,24 @@ class Tables(Section):
     volts: dict[PositiveFloat, Table] = Field(min_length=1)
     nominal: PositiveFloat | None = None
 
+    @property
+    def usual(self) -> float:
+        """The voltage where none was logged, V."""
+        return self.nominal or max(self.volts)
+
+    @property
+    def at_usual(self) -> Table:
+        """The table there."""
+        command = sorted({c for table in self.volts.values() for c in table.command})
+        force = self.force(np.array(command), None)
+        return Table(command=tuple(command), force=tuple(force.tolist()))
+
     def force(self, command: Array, voltage: Array | None) -> Array:
         """Force in N of commands (m, ...) at battery voltages (m,), nominal if None."""
         known = sorted(self.volts)
         forces = np.stack([self.volts[v].force(command) for v in known])
         if voltage is None:
-            voltage = np.full(len(command), self.nominal or known[-1])
+            voltage = np.full(len(command), self.usual)
         place = np.interp(voltage, known, np.arange(len(known)))
         below = np.minimum(place.astype(int), max(len(known) - 2, 0))
         above = np.minimum(below + 1, len(known) - 1)
@@ -87,6 +99,11 @@ class ForceCurve(Section):
         if sum(given is not None for _, given in self) != 1:
             raise ValueError(f"one of {', '.join(type(self).model_fields)}")
         return self
+
+    @property
+    def at_nominal_voltage(self) -> "ForceCurve":
+        """The same where it does not ask for the voltage, else the table at the nominal one."""
+        return self if self.tables is None else ForceCurve(table=self.tables.at_usual)
 
     def force(self, command: Array, voltage: Array | None = None) -> Array:
         """Force in N of commands (m, ...) in [-1, 1]; `voltage` (m,) V of the battery if known."""

@@ -13,12 +13,22 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.application.export.equation import Equation
-from rovsim.application.export.holding import DAMPING, INERTIA, RIGID, STATIC, Left, nothing, whole
+from rovsim.application.export.holding import (
+    DAMPING,
+    INERTIA,
+    RIGID,
+    STATIC,
+    Left,
+    nothing,
+    unpowered,
+    whole,
+)
 from rovsim.core.errors import one_line
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.cross_flow import parse_product
 from rovsim.dynamics.vehicle.curves import ForceCurve
+from rovsim.dynamics.vehicle.thrusters import Thrusters
 
 TITLE = "MATLAB, as in Fossen's MSS"
 SUFFIX = ".m"
@@ -75,6 +85,8 @@ end
 
 def hold(effect: Effect) -> tuple[Effect, str]:
     """What the function holds of an effect."""
+    if isinstance(effect, Thrusters):
+        return unpowered(effect)
     return whole(effect) if effect.id in WHOLE else nothing(effect)
 
 
