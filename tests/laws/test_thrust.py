@@ -133,8 +133,8 @@ def test_play_may_grow_and_be_computed_in_pieces():
 
 @pytest.mark.parametrize("count", [0, 1, 2, 8, 12])
 def test_each_thruster_of_a_vehicle_has_a_gain(count):
-    gain = ThrusterGain.on(SimpleNamespace(thruster_count=count))
-    names = [f"t{i + 1}" for i in range(count)]
+    names = tuple(f"t{i + 1}" for i in range(count))
+    gain = ThrusterGain.on(SimpleNamespace(thruster_names=names))
     assert [p.name for p in gain.parameters] == [*names, "all"]
     own = 1.0 + np.arange(count)
     force = gain(**dict(zip(names, own, strict=True)), all=0.5).scaled_force(
@@ -143,6 +143,13 @@ def test_each_thruster_of_a_vehicle_has_a_gain(count):
     np.testing.assert_array_equal(force, np.tile(0.5 * own, (3, 1)))
     with pytest.raises(BadInput, match=f"unknown parameter 't{count + 1}'"):
         gain(**{f"t{count + 1}": 0.5})
+
+
+def test_a_thruster_has_its_number_and_not_its_name():
+    gain = ThrusterGain.on(SimpleNamespace(thruster_names=("port", "all", "t1")))
+    with pytest.raises(BadInput, match=r"'port' is no parameter.*Write t1"):
+        gain(port=0.5)
+    assert gain(t1=0.5, all=0.8).given() == {"t1": 0.5, "all": 0.8}
 
 
 def test_gain_asymmetry_sag_and_deadband():

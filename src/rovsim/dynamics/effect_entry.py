@@ -1,5 +1,6 @@
 """An effect as files name it: its name, and its parameters with what is known of them."""
 
+from math import inf
 from typing import Annotated, Any, Iterable
 
 from pydantic import BeforeValidator, Field
@@ -52,9 +53,11 @@ def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
     """The effect that an entry describes.
 
     Raises:
-        BadInput: an unknown effect or parameter, a value out of range, another unit.
+        BadInput: an unknown effect or parameter, a value out of range or between those that it may
+            have, another unit.
     """
     found = catalogue.find(entry.effect)(**entry.values)
+    _refuse_between(found, entry)
     units = {p.name: p.unit for p in found.parameters}
     for name, known in entry.parameters.items():
         if known.unit not in (None, units[name]):
@@ -66,6 +69,21 @@ def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
             )
     std = {name: v.std for name, v in entry.parameters.items() if v.std is not None}
     return found.with_std(std)
+
+
+def _refuse_between(effect: Effect, entry: EffectEntry) -> None:
+    """Refuse what is no number of something, or of something that is not there."""
+    for p in effect.parameters:
+        value = entry.values.get(p.name, 0.0)
+        if p.discrete and not (value.is_integer() and value <= p.highest):
+            raise BadInput(
+                f"{p.name} is {value:g}",
+                where=f"effect {entry.effect}",
+                expected=f"a whole number from {p.low:g} to {p.highest:g}",
+                remedy="Thrusters count from 1 in the vehicle file's order; 0 is none of them."
+                if p.most < inf
+                else "Correct that value.",
+            )
 
 
 def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple[Effect, ...]:

@@ -96,7 +96,8 @@ class Effects:
 
         with ui.row().classes("slider"):
             ui.label(called).classes("name")
-            slider = Slider(min=low, max=high, step=(high - low) / STEPS, value=value)
+            step = 1.0 if parameter.discrete else (high - low) / STEPS
+            slider = Slider(min=low, max=high, step=step, value=value)
             slider.props(f'aria-label="{effect}, {called}"')
             number = ui.number(value=rounded(value), suffix=shown).classes("value")
             number.props(f'dense borderless aria-label="{effect}, {called}, number"')

@@ -133,6 +133,8 @@ class Draft:
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:
     """Lowest and highest value of a slider that begins at `value`."""
+    if parameter.discrete and np.isfinite(whole := (parameter.low, parameter.highest)).all():
+        return whole
     span = max(SPAN * parameter.scale, abs(value))
     low, high = max(parameter.low, value - span), min(parameter.high, value + span)
     return (float(low), float(high)) if np.isfinite([low, high]).all() else (-1.0, 1.0)

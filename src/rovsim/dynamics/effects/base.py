@@ -39,7 +39,7 @@ Requirement = Literal["nothing", "commands", "demands", "thrusters", "surfaces",
 
 
 class Actuated(Protocol):
-    """What effects ask of a vehicle: its weight, how many thrusters it has, and its surfaces."""
+    """What effects ask of a vehicle: its weight, its thrusters and its surfaces."""
 
     @property
     def dry_mass(self) -> float:
@@ -48,6 +48,10 @@ class Actuated(Protocol):
     @property
     def thruster_count(self) -> int:
         """Number of thrusters."""
+
+    @property
+    def thruster_names(self) -> tuple[str, ...]:
+        """Names of the thrusters, in the vehicle file's order."""
 
     @property
     def surface_names(self) -> tuple[str, ...]:

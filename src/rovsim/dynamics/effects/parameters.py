@@ -20,7 +20,8 @@ class Parameter:
     change worth looking for: a fit works in multiples of it. `resolution`: changes much smaller
     than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
     only when asked for; but `shape`, once its effect is known to act, where the data determine it.
-    `discrete`: it has a few values, one of which is right: they are tried.
+    `discrete`: it has a few values, one of which is right: they are tried. They are whole numbers,
+    and none above `most` means anything; a search that adds two of them may pass it.
     `tried`: values of a threshold, with which commands or states are compared: what changes with it
     does so in jumps, and no derivative leads there.
     `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
@@ -37,8 +38,14 @@ class Parameter:
     fitted: bool = field(default=True, kw_only=True)
     shape: bool = field(default=False, kw_only=True)
     discrete: bool = field(default=False, kw_only=True)
+    most: float = field(default=np.inf, kw_only=True)
     tried: tuple[float, ...] = field(default=(), kw_only=True)
     reciprocal: bool = field(default=False, kw_only=True)
+
+    @property
+    def highest(self) -> float:
+        """The largest value that means something."""
+        return min(self.high, self.most)
 
     @property
     def neutral_value(self) -> float:

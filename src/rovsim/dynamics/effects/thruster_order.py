@@ -1,5 +1,6 @@
 """Outputs that are plugged in wrong."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import combinations
 from typing import Sequence
@@ -65,4 +66,5 @@ def _among(count: int) -> type[ThrusterOrder]:
     """All pairs of so many thrusters."""
     pairs = combinations(range(1, count + 1), 2)
     starts = tuple({"first": float(i), "second": float(j)} for i, j in pairs)
-    return ThrusterOrder.adapted(starts=starts or ThrusterOrder.starts)
+    parameters = tuple(replace(p, most=float(count)) for p in ThrusterOrder.parameters)
+    return ThrusterOrder.adapted(starts=starts or ThrusterOrder.starts, parameters=parameters)

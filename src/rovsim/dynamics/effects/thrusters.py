@@ -1,12 +1,13 @@
 """What happens between a command that has arrived and a thruster's force."""
 
 from functools import cache
-from typing import Iterable, Sequence
+from typing import ClassVar, Iterable, Sequence
 
 import numpy as np
 import scipy
 from numpy import ndarray as Array
 
+from rovsim.core.errors import BadInput
 from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import (
@@ -91,12 +92,24 @@ class ThrusterGain(ThrustScaling):
     )
     signature = Signature({"all": 0.7}, "surge", "surge thrust")
     parameters = _gains(USUAL_COUNT)
+    called: ClassVar[tuple[str, ...]] = ()  # names of the thrusters in the vehicle file
+
+    def __init__(self, **values: float) -> None:
+        gains = dict(zip(self.called, name_gains(len(self.called)), strict=True))
+        for name in set(values) & set(gains) - {p.name for p in self.parameters}:
+            raise BadInput(
+                f"'{name}' is no parameter, but the name of a thruster",
+                where=f"effect {self.id}",
+                expected=f"one of {', '.join(gains.values())}, all",
+                remedy=f"Write {gains[name]}: gains count the thrusters of the vehicle file.",
+            )
+        super().__init__(**values)
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
         """A gain for each thruster that there is."""
-        count = vehicle.thruster_count
-        return cls if count == USUAL_COUNT else _gain_of(count)
+        names = vehicle.thruster_names
+        return cls if names == name_gains(USUAL_COUNT) else _gain_of(names)
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Forces times each thruster's gain and the common one."""
@@ -106,9 +119,9 @@ class ThrusterGain(ThrustScaling):
 
 
 @cache
-def _gain_of(count: int) -> type[ThrusterGain]:
-    """With a parameter for each of so many thrusters."""
-    return ThrusterGain.adapted(parameters=_gains(count))
+def _gain_of(names: tuple[str, ...]) -> type[ThrusterGain]:
+    """With a parameter for each of the thrusters that a vehicle file calls so."""
+    return ThrusterGain.adapted(parameters=_gains(len(names)), called=names)
 
 
 class ThrustAsymmetry(ThrustScaling):
