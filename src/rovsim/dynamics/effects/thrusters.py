@@ -226,7 +226,10 @@ class AdvanceLoss(Coefficients):
         ("d_i", "direction of thruster i"),
         ("v_r", "velocity of CO through the water"),
     )
-    neglects = "the velocity of the thruster relative to CO"
+    neglects = (
+        "the velocity of the thruster relative to CO, and of one that turns that its two "
+        "components lose together"
+    )
     source = "Fossen 2021, sec. 9.4 (linear in the advance speed)"
     cause = (
         "A propeller that moves along its own jet finds the water moving already; the published "
