@@ -105,6 +105,18 @@ def test_position_velocity_and_rates_at_their_own_rates(tmp_path):
     assert any("no full poses" in remark and "rates" in remark for remark in report.remarks)
 
 
+def test_a_delay_that_is_not_used_is_a_doubt(tmp_path):
+    dvl = {f"{name}_m_s": (SLOW, k - SLOW) for k, name in enumerate("uvw")}
+    late = {"sensors": {"delay_s": {"velocity": 0.1, "euler": 0.2}}}
+    both = {"euler": sparse({**ANGLES, **dvl}), "euler, velocity": csv_lines(Swim.ned())}
+    for idle, lines in both.items():
+        recording, anomalies = read(tmp_path / idle, lines, late)
+        told = f"The delay of {idle} (mocap.sensors.delay_s) is not used"
+        assert told in " ".join(assess(recording, anomalies).doubts)
+    plain, anomalies = read(tmp_path / "plain", csv_lines(Swim.ned()))
+    assert not any("delay" in doubt for doubt in assess(plain, anomalies).doubts)
+
+
 def test_full_poses_keep_their_place_and_the_rest_goes_beside_them(tmp_path):
     lines = csv_lines(Swim.ned())
     plain, _ = read(tmp_path / "plain", lines)

@@ -16,6 +16,7 @@ from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.remarks import doubt, remark
+from rovsim.measurement.signals.chosen_channels import doubt_delays
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.measurement.signals.resample import Linear
@@ -80,7 +81,12 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         channels=_describe_channels(recording),
     )
     others = (*remark(report), *anomalies.notes)
-    doubts = (*doubt(report), *doubt_means(recording), *doubt_velocities(recording))
+    doubts = (
+        *doubt(report),
+        *doubt_means(recording),
+        *doubt_velocities(recording),
+        *doubt_delays(recording),
+    )
     return report.model_copy(update={"remarks": others}).doubted(*doubts)
 
 

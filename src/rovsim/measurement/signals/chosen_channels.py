@@ -1,7 +1,7 @@
 """Which channels tell how a vehicle turned and moved, the finest first."""
 
 from dataclasses import dataclass
-from typing import Mapping
+from typing import Iterator, Mapping
 
 import numpy as np
 
@@ -44,6 +44,19 @@ def choose_channels(recording: Recording) -> ChosenChannels:
         if len(channel.time) > 1
     }
     return ChosenChannels(_choose_turning(known), _choose_moving(known))
+
+
+def doubt_delays(recording: Recording) -> Iterator[str]:
+    """What keeps a delay that a campaign gives from being used, in a sentence."""
+    given = [kind for kind, delay in recording.sensors.delay_s.model_dump().items() if delay]
+    idle = [kind for kind in given if recording.posed or kind not in recording.channels]
+    if idle:
+        known = ", ".join(recording.channels) or "none"
+        why = "full poses are taken at their times" if recording.posed else f"read are {known}"
+        yield (
+            f"The delay of {', '.join(idle)} (mocap.sensors.delay_s) is not used, for {why}: "
+            "correct the times in the file, or the name of the channel."
+        )
 
 
 def _choose_turning(known: Mapping[str, Channel]) -> dict[str, Channel]:
