@@ -98,6 +98,9 @@ MISTAKES = {  # what is replaced, by what: what the message says
     ('CAPTION = "What', 'PLACE = "1"; CAPTION = "What'): "PLACE is '1'",
     ("*, ladder", "ladder"): "by place",
     ("def draw", "draw = 1 +"): "line 5",
+    ("def draw(*, ladder):\n    pass", "draw = dict"): "CAPTION and SECTION without a 'draw'",
+    ('SECTION = "ladder"', "SECTION: str"): "SECTION is no plain constant",
+    ("What it shows", "\ufeffWhat\0"): "null bytes",
 }
 
 

@@ -21,11 +21,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping
 
 from rovsim.core.errors import BadInput, unlisted
+from rovsim.core.files import read_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 GUIDE = "The docstring of rovsim.reporting.figures says what a figure declares."
+DRAW = "def draw(*, …)"
 SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 
 
@@ -81,8 +83,13 @@ def read_kind(path: Path) -> FigureKind | None:
         match node:
             case ast.FunctionDef(name="draw"):
                 draw = node.args
-            case ast.Assign(targets=[ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name)]):
+            case (
+                ast.Assign(targets=[ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name)])
+                | ast.AnnAssign(target=ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name))
+            ):
                 told[name] = _constant(node.value, path, name)
+    if draw is None and len(told) > 1:
+        raise _refused(path, f"{' and '.join(sorted({*told} - {'PLACE'}))} without a 'draw'", DRAW)
     if draw is None:
         return None
     _check(path, told, draw)
@@ -99,16 +106,16 @@ def read_kind(path: Path) -> FigureKind | None:
 
 def _parse(path: Path) -> ast.Module:
     try:
-        return ast.parse(path.read_text(encoding="utf-8"))
+        return ast.parse(read_text(path))
     except SyntaxError as error:
         raise _refused(path, f"line {error.lineno}: {error.msg}", "valid Python") from None
 
 
-def _constant(node: ast.expr, path: Path, name: str) -> Any:
+def _constant(node: ast.expr | None, path: Path, name: str) -> Any:
     """What a declaration says, without running it."""
     try:
-        return ast.literal_eval(node)
-    except ValueError:
+        return ast.literal_eval(node or "")
+    except (ValueError, SyntaxError):
         raise _refused(path, f"{name} is no plain constant", "a text or number as it is") from None
 
 
@@ -122,7 +129,7 @@ def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
     if not isinstance(told["PLACE"], (int, float)):
         raise _refused(path, f"PLACE is {told['PLACE']!r}", "a number")
     if takes.args or takes.posonlyargs:
-        raise _refused(path, "'draw' takes what it asks for by place", "def draw(*, …)")
+        raise _refused(path, "'draw' takes what it asks for by place", DRAW)
 
 
 def refuse_unknown(figure: FigureKind, known: Iterable[str]) -> None:
