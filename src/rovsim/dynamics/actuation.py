@@ -190,8 +190,9 @@ class ThrustPath:
     ) -> Thrust:
         """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
 
-        Before the first line its command holds, after the last one too. The mean is exact for held
-        commands wherever a line falls inside a step. `cuts`: of these steps, if they are kept.
+        Before the first line its command holds, after the last one too. The static mean is exact
+        for held commands wherever a line falls inside a step; a lag takes it for the whole step.
+        `cuts`: of these steps, if they are kept.
         """
         start, duration = commands.recording(edges)
         arrival = start + self.effective_time(commands.time - start)  # clocks agree at the start
