@@ -296,6 +296,12 @@ def test_every_kind_is_tried_before_it_is_used(wrong):
         known.on(vehicle)
 
 
+def test_what_rounding_leaves_is_no_push():
+    water = COMPLETE.replace("-p.force,", "(at.nu[0] + 0.1 * (1.0 - p.force)) - at.nu[0] - 0.1,")
+    Path("hose.py").write_text(water)
+    assert "hose" in load_catalogue([Path("hose.py")]).on(load_vehicle("otter"))
+
+
 def test_there_are_trials_of_every_kind():
     kinds = {cls for cls in vars(base).values() if inspect.isclass(cls) and issubclass(cls, Effect)}
     assert set(TRIALS) == kinds - {Effect}

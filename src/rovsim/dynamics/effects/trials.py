@@ -36,6 +36,7 @@ from rovsim.dynamics.effects.kernel_trials import Actuating, largest_push
 INSTANTS = 5  # at which methods are tried
 TIME = np.arange(INSTANTS) / 10.0  # s
 DURATION = 60.0  # s of a recording
+NOTHING = 1e-9  # N, N m: what two equal forces of opposite sign leave
 FULL = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
 BODY = "constants of the body as they are: finite numbers of the same shape"
 GROWING = ("products", "factors")  # of a body, to which an effect may add rows
@@ -221,7 +222,7 @@ def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
 
 def _is_none(push: float) -> bool:
     """Whether a largest push is none; one that is no number is told where it is simulated."""
-    return not push > 0.0
+    return not push > NOTHING
 
 
 def _array(
