@@ -226,3 +226,27 @@ def test_nothing_is_said_of_vehicles_that_cannot_push_sideways(tmp_path, vehicle
         turned = np.diag([-1.0, -1.0, 1.0])
         backwards = replace(recording, position=recording.position @ turned)
         assert find_doubts(backwards, load_campaign_vehicle(load_campaign(out)))
+
+
+def parted(recording):
+    """The same recording, all but its first quarter 150 s later, with its commands; and when."""
+    begin = float(np.quantile(recording.time, 0.25))
+
+    def moved(time):
+        return np.where(time > begin, time + 150.0, time)
+
+    commands = replace(recording.commands, time=moved(recording.commands.time))
+    return replace(recording, time=moved(recording.time), commands=commands), begin
+
+
+def test_nothing_is_said_of_a_span_that_begins_late_in_a_long_file(sound):
+    campaign = load_campaign(sound)
+    recording, begin = parted(read_recording(campaign, campaign.runs[0].id)[0])
+    used = replace(recording, found=recording.found & (recording.time > begin))
+    assert find_doubts(used, load_campaign_vehicle(campaign)) == ()
+
+
+def test_nothing_is_said_of_motion_with_a_pause_longer_than_what_is_looked_at(sound):
+    campaign = load_campaign(sound)
+    recording, _ = parted(read_recording(campaign, campaign.runs[0].id)[0])
+    assert find_doubts(recording, load_campaign_vehicle(campaign)) == ()

@@ -41,6 +41,11 @@ class CrossCorrelation:
     strength: float
     unseen: bool = False
 
+    @property
+    def overlaps(self) -> bool:
+        """Whether enough of both lie beside each other at any lag: else nothing can be said."""
+        return bool(self.correlation.any())
+
     def along(self, axes: Array) -> Array:
         """Mean correlation (l,) over the excited axes, the file's body axes being `axes` (3, 3).
 

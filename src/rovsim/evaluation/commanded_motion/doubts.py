@@ -60,7 +60,7 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     if not np.isfinite(measured.nu).any():
         return
     found = cross_correlate(measured, *caused)
-    if not found.excited.any():
+    if not found.excited.any() or not found.overlaps:
         return
     own, lag = found.best(np.eye(3))
     best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
@@ -99,9 +99,11 @@ def _first(pair: tuple[float, Array]) -> float:
 def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
     """Times and the body velocities that the commands would cause; None where there are few."""
     commands = recording.commands
-    if len(commands.time) < 2 or np.ptp(recording.time) < SHORTEST:
+    # what `use` leaves out is not found, and may last longer than what is looked at
+    seen = recording.time[recording.found] if recording.found.any() else recording.time
+    if len(commands.time) < 2 or np.ptp(seen) < SHORTEST:
         return None
-    begin = max(float(commands.time[0]), float(recording.time[0]))
+    begin = max(float(commands.time[0]), float(seen[0]))
     return cause(vehicle, commands, begin, LONGEST)
 
 
