@@ -86,6 +86,29 @@ def test_neither_of_compare_and_diagnose_loses_the_other_ones_report(
         main(["compare", *words, "-q"])
         assert (tmp_path / "both" / "report_diagnose.html").read_bytes() == diagnosed
     assert 'id="compare"' in (tmp_path / "both" / "report.html").read_text()
+    main(["diagnose", *words, "-q"])
+    assert not (tmp_path / "both" / "report_diagnose.html").exists()  # the new one replaced it
+
+
+@pytest.mark.usefixtures("few_figures")
+@pytest.mark.parametrize("command", ["compare", "diagnose"])
+def test_a_second_campaign_of_one_name_leaves_nothing_of_the_first_and_says_so(
+    command, campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(campaign, tmp_path / "other")
+    described = tmp_path / "other" / "campaign.yaml"
+    described.write_text(described.read_text().replace("id: 3dof-1", "id: renamed"))
+    main([command, f"campaign={campaign}", "-q"])
+    what = "diagnosis" if command == "diagnose" else command
+    (figures,) = tmp_path.glob(f"results/*/{what}/figures")
+    (figures / "mine.png").write_bytes(b"of the user")
+    main([command, "campaign=other"])
+    assert f"held the results of another campaign, {campaign}" in unfolded(capsys.readouterr().out)
+    assert "mine" in {path.stem for path in figures.iterdir()}
+    assert not list(figures.glob("*3dof-1*"))
+    main([command, "campaign=other"])
+    assert "another campaign" not in unfolded(capsys.readouterr().out)
 
 
 @pytest.mark.usefixtures("few_figures")

@@ -17,9 +17,9 @@ def say(settings: CommandSettings, text: str, content: object) -> None:
         print(text)
 
 
-def join_files(text: str, files: str, kept: str) -> str:
-    """A text, the files that were written, and what became of one that was there."""
-    return "\n".join([text, "", files, *fold(kept)])
+def join_files(text: str, files: str, *became: str) -> str:
+    """A text, the files that were written, and what became of those that were there."""
+    return "\n".join([text, "", files, *(line for one in became if one for line in fold(one))])
 
 
 def choose_folder(settings: CommandSettings, default: str) -> Path:

@@ -3,5 +3,5 @@
 picture  figures inside the page
 report   the page
 folder   a command's figures and its page
-kept     the page of another command in that folder
+kept     pages that were in that folder before
 """

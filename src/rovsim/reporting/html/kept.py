@@ -1,10 +1,16 @@
-"""Reports of another command in the folder that the next one is written to."""
+"""Reports already in the folder that one is written to: kept if another command's, or outdated."""
 
 import os
+import re
+from base64 import b64encode
+from dataclasses import dataclass
+from html import unescape
 from pathlib import Path
+from typing import Iterable
 
 # What only the report of that command shows; one of a study shows both.
 SECTIONS = {"compare": 'id="compare"', "diagnose": 'id="verdict"'}
+FOLDER = re.compile(r'<meta name="campaign" content="([^"]*)">')
 
 
 def keep_other(page: Path, command: str) -> str:
@@ -15,9 +21,70 @@ def keep_other(page: Path, command: str) -> str:
     found = _find_kind(page)
     if found in ("", command):
         return ""
-    kept = page.with_name(f"{page.stem}_{found}{page.suffix}")
+    kept = _kept(page, found)
     os.replace(page, kept)
     return f"{page} was the report of {found}: it is {kept} now."
+
+
+@dataclass(frozen=True)
+class Outdated:
+    """What the next report of a command makes outdated.
+
+    Attributes:
+        figures: PNG files beside the earlier reports of this command that these show.
+        pages: those of them that do not have the name of the new one.
+        told: a sentence where they were of another campaign; empty where not.
+    """
+
+    figures: tuple[Path, ...] = ()
+    pages: tuple[Path, ...] = ()
+    told: str = ""
+
+    def remove(self, drawn: Iterable[Path]) -> None:
+        """Remove what the new report, with these figures, did not replace."""
+        new = {path.stem for path in drawn}
+        for path in self.figures:
+            if path.stem not in new:
+                path.unlink(missing_ok=True)
+                path.with_suffix(".pdf").unlink(missing_ok=True)
+        for page in self.pages:
+            page.unlink(missing_ok=True)
+
+
+def find_outdated(page: Path, command: str, campaign: str | None) -> Outdated:
+    """What a report `page` that `command` is about to write makes outdated; changes nothing.
+
+    To be asked before the first of its figures is drawn. A figure that an earlier report shows
+    belongs to it, whatever it is called; one that was drawn anew since does not.
+    """
+    kept = _kept(page, command)
+    earlier = [one for one in (page, kept) if _find_kind(one) == command]
+    texts = [one.read_text(encoding="utf-8", errors="replace") for one in earlier]
+    figures = [
+        path
+        for path in sorted((page.parent / "figures").glob("*.png"))
+        if texts and any(b64encode(path.read_bytes()).decode() in text for text in texts)
+    ]
+    told = next(filter(None, (_tell_other(page.parent, text, campaign) for text in texts)), "")
+    return Outdated(tuple(figures), (kept,) if kept in earlier else (), told)
+
+
+def _tell_other(out: Path, text: str, campaign: str | None) -> str:
+    """What is replaced, if it is of another campaign that is still there."""
+    found = FOLDER.search(text)
+    other = Path(unescape(found[1])) if found else Path()
+    if not found or campaign is None or not other.exists():
+        return ""
+    if other.resolve() == Path(campaign).expanduser().resolve():
+        return ""
+    return (
+        f"{out} held the results of another campaign, {other}: these have replaced them. To keep "
+        "both, give another out=, or each its own 'name' in campaign.yaml."
+    )
+
+
+def _kept(page: Path, command: str) -> Path:
+    return page.with_name(f"{page.stem}_{command}{page.suffix}")
 
 
 def _find_kind(page: Path) -> str:

@@ -69,6 +69,7 @@ def render(report: Report) -> str:
         .get_template("report.html")
         .render(
             campaign=report.campaign,
+            folder=_folder(report.provenance),
             subtitle=_subtitle(data),
             made=report.made,
             verdict=explain(data.diagnosis, report.catalogue) if data.diagnosis else None,
@@ -99,6 +100,13 @@ def _subtitle(data: ReportData) -> str:
     if data.comparison is None:
         return "Which physics the simulator lacks, and how sure that is"
     return "How far the simulator is from the measurement, and what brings it closer"
+
+
+def _folder(provenance: Mapping[str, object]) -> str:
+    """Where the campaign lies, absolute, so that the next report tells whether it is of another."""
+    settings = provenance.get("settings")
+    given = settings.get("campaign") if isinstance(settings, Mapping) else None
+    return str(Path(given).expanduser().absolute()) if isinstance(given, str) else ""
 
 
 def _environment() -> Environment:

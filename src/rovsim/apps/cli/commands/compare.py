@@ -19,7 +19,7 @@ from rovsim.apps.cli.output import join_files, say
 from rovsim.core.files import appearing_together
 from rovsim.core.second_process import second_process
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html.kept import keep_other
+from rovsim.reporting.html.kept import find_outdated, keep_other
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
 
@@ -38,13 +38,15 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         found = compare(data, models, settings)
         assert found.comparison is not None
         assert found.where is not None
+        outdated = find_outdated(out / "report.html", "compare", settings.campaign)
         kept = keep_other(out / "report.html", "compare")
         origin = provenance(settings, catalogue, data.campaign)
         with appearing_together(out, last="comparison.json") as folder:
             _write(folder, found)
             from rovsim.reporting.html.folder import present
 
-            present(folder, data.campaign.name, found, origin, catalogue, other=other)
+            drawn = present(folder, data.campaign.name, found, origin, catalogue, other=other)
+    outdated.remove(drawn)
     if found.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     errors = {step.model: step.windows_2s for step in found.steps}
@@ -52,7 +54,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     tested = bool(data.runs.of("test"))
     text = tell_comparison(errors, found.where, tested, found.coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    told = join_files(text + tell_doubts(data.quality), files, kept)
+    told = join_files(text + tell_doubts(data.quality), files, kept, outdated.told)
     say(settings, told, found.comparison.to_json())
 
 

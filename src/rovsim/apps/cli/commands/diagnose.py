@@ -27,7 +27,7 @@ from rovsim.core.progress import counted, reported
 from rovsim.core.second_process import call, second_process
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.html.kept import keep_other
+from rovsim.reporting.html.kept import find_outdated, keep_other
 from rovsim.reporting.html.picture import Drawn
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.diagnosis import Diagnosis
@@ -56,6 +56,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     tracking = settings.tracking if installed("tracking") else None
     others = (DRAWING, *(LOGGING if tracking else ()))
     with second_process(*others, first=None if is_compiled() else COMPILING) as other:
+        outdated = find_outdated(out / "report.html", "diagnose", settings.campaign)
         drawing = _Drawing(other, out)
 
         def draw_early(where: ErrorConditions) -> None:
@@ -72,7 +73,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             diagnosis=found.diagnosis,
         )
         drawing.begin(known)
-        _tell(settings, out, found.diagnosis, data.quality, catalogue)
+        _tell(settings, out, found.diagnosis, data.quality, catalogue, outdated.told)
         drawn = drawing.finish()
         shown = ShownDiagnosis(
             out=out,
@@ -86,6 +87,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         last = other.submit(shown.show, drawn, tracking)
         with reported("writing the page and logging" if tracking else "writing the page"):
             unlogged = last.result()
+        outdated.remove(path for one in drawn for path in one.files)
     if unlogged:
         warn(f"the diagnosis is complete, but MLflow does not have it: {unlogged}")
 
@@ -116,6 +118,7 @@ def _tell(
     found: Diagnosis,
     quality: Mapping[str, Quality],
     catalogue: Catalogue,
+    replaced: str,
 ) -> None:
     """Say what was found, what speaks against the recordings, and where it is written."""
     from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts, tell_roles
@@ -126,4 +129,4 @@ def _tell(
     text += tell_doubts(quality)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
     kept = keep_other(out / "report.html", "diagnose")
-    say(settings, join_files(text, files, kept), found.to_json())
+    say(settings, join_files(text, files, kept, replaced), found.to_json())
