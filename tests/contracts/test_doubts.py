@@ -17,7 +17,10 @@ from rovsim.application.pipeline.reading import (
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, from_euler, to_euler
+from rovsim.core.shipped import conf_names
 from rovsim.core.yaml_files import read_yaml, write_yaml
+from rovsim.dynamics.vehicle import load_vehicle
+from rovsim.dynamics.vehicle.units import doubt_units
 from rovsim.evaluation.commanded_motion.clocks import tell_following
 from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
@@ -250,3 +253,36 @@ def test_nothing_is_said_of_motion_with_a_pause_longer_than_what_is_looked_at(so
     campaign = load_campaign(sound)
     recording, _ = parted(read_recording(campaign, campaign.runs[0].id)[0])
     assert find_doubts(recording, load_campaign_vehicle(campaign)) == ()
+
+
+def in_other_units(vehicle, place, value):
+    """A vehicle file's content with another value at a dotted place."""
+    content = load_vehicle(vehicle).model_dump(mode="json", by_alias=True, exclude_unset=True)
+    *above, key = place.split(".")
+    section = content
+    for part in above:
+        section = section[int(part) if part.isdigit() else part]
+    section[key] = value
+    return content
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "told"),
+    [
+        ("fluid.density", 1.0, "fluid.density: 1 is that of no water. In kg/m3?"),
+        ("fluid.gravity", 981.0, "fluid.gravity: 981"),
+        ("rigid_body.mass", 13500.0, "a mass of 13500 kg, and its displaced_volume holds 13.4 kg"),
+        ("rigid_body.displaced_volume", 13.4, "holds 13400 kg of water. In kg, and in m3?"),
+        ("rigid_body.inertia.Ixx", 2600.0, "rigid_body.inertia.Ixx: 2600 with a mass of 13.5"),
+        ("rigid_body.center_of_buoyancy", [0.0, 0.0, -10.0], "center_of_buoyancy: 0, 0, -10"),
+        ("thrusters.units.1.position", [156.4, -110.4, 85.0], "thruster t2, position: 156.4"),
+    ],
+)
+def test_a_vehicle_file_in_other_units_is_told(campaign, place, value, told):
+    write_yaml(campaign / "mine.yaml", in_other_units("bluerov2_heavy", place, value))
+    assert told in described(campaign, lambda content: content.update(vehicle="mine.yaml"))
+
+
+@pytest.mark.parametrize("vehicle", conf_names("vehicle"))
+def test_nothing_is_said_of_the_units_of_vehicles_that_come_with_it(vehicle):
+    assert doubt_units(load_vehicle(vehicle)) == ()

@@ -1,6 +1,7 @@
 """Raw exports in, recordings out; then what speaks for and against them."""
 
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
+from rovsim.dynamics.vehicle.units import doubt_units
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.held_out import doubt_test_run
@@ -28,9 +29,10 @@ def read_recording(campaign: Campaign, run: str) -> tuple[Recording, Anomalies]:
 def judge_recording(
     campaign: Campaign, recording: Recording, anomalies: Anomalies, outliers: Outliers
 ) -> Quality:
-    """How good a recording is; of one that can be used also whether it follows its commands."""
+    """How good a recording is; of one that can be used also what speaks against its campaign."""
     quality = report_quality(recording, anomalies, outliers)
     if quality.unusable is not None:
         return quality
+    vehicle = load_campaign_vehicle(campaign)
     repeats = doubt_test_run(campaign, campaign.run(recording.run.id))
-    return quality.doubted(*find_doubts(recording, load_campaign_vehicle(campaign)), *repeats)
+    return quality.doubted(*doubt_units(vehicle), *find_doubts(recording, vehicle), *repeats)

@@ -7,6 +7,7 @@ cross_flow      forces of products of velocities, named as by SNAME
 surfaces        rudders and fins
 file            the whole file
 check           whether its parts fit together
+units           what seems to be in another unit
 load            a vehicle by its name or from a file
 """
 

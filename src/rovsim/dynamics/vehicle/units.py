@@ -1,0 +1,77 @@
+"""Numbers of a vehicle file whose size no vehicle has: another unit, most likely.
+
+Nothing is refused: a file may describe what was never built. Lengths are compared with that of the
+vehicle, the edge of a cube of water of its mass; published ones have radii of gyration of 0.2 to 2
+times it, and thrusters at most 5 times it away.
+"""
+
+from typing import Iterator
+
+import numpy as np
+
+from rovsim.dynamics.vehicle.file import Vehicle
+
+GRAVITY = (1.0, 30.0)  # m/s2: from the Moon's to Jupiter's
+DENSITY = (500.0, 2000.0)  # kg/m3, of a liquid in which a vehicle swims
+CARRIED = 5.0  # times, or below 1/5: mass over that of the displaced water
+GYRATION = (0.03, 10.0)  # times the vehicle's length
+FAR = 30.0  # times the vehicle's length
+
+
+def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
+    """Sentences about numbers that seem to be in another unit; none where all may be right."""
+    found = [*_water(vehicle), *_weight(vehicle), *_inertia(vehicle), *_places(vehicle)]
+    return tuple(f"Vehicle file, {one}" for one in found)
+
+
+def _water(vehicle: Vehicle) -> Iterator[str]:
+    density, gravity = vehicle.fluid.density, vehicle.fluid.gravity
+    if not DENSITY[0] <= density <= DENSITY[1]:
+        yield f"fluid.density: {density:g} is that of no water. In kg/m3?"
+    if not GRAVITY[0] <= gravity <= GRAVITY[1]:
+        yield f"fluid.gravity: {gravity:g}, and on Earth it is 9.8. In m/s2?"
+
+
+def _weight(vehicle: Vehicle) -> Iterator[str]:
+    dry = vehicle.rigid_body
+    if vehicle.floats or dry.displaced_volume is None:
+        return
+    if not DENSITY[0] <= vehicle.density <= DENSITY[1]:
+        return  # that is said
+    water = vehicle.density * dry.displaced_volume
+    if not 1.0 / CARRIED <= dry.mass / water <= CARRIED:
+        yield (
+            f"rigid_body: a mass of {dry.mass:g} kg, and its displaced_volume holds {water:g} kg "
+            "of water. In kg, and in m3?"
+        )
+
+
+def _inertia(vehicle: Vehicle) -> Iterator[str]:
+    dry, size = vehicle.rigid_body, _length(vehicle)
+    for axis, name in {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}.items():
+        moment = getattr(dry.inertia, name)
+        if moment is None or axis not in vehicle.degrees_of_freedom:
+            continue
+        radius = float(np.sqrt(moment / dry.mass))
+        if not GYRATION[0] * size <= radius <= GYRATION[1] * size:
+            yield (
+                f"rigid_body.inertia.{name}: {moment:g} with a mass of {dry.mass:g} is a radius of "
+                f"gyration of {radius:.2g} m. In kg m2, and the mass in kg?"
+            )
+
+
+def _places(vehicle: Vehicle) -> Iterator[str]:
+    dry = vehicle.rigid_body
+    named = {
+        "rigid_body.center_of_gravity": dry.center_of_gravity,
+        "rigid_body.center_of_buoyancy": dry.center_of_buoyancy,
+        **{f"thruster {unit.name}, position": unit.position for unit in vehicle.thrusters.units},
+    }
+    for name, place in named.items():
+        if place is not None and np.linalg.norm(place) > FAR * _length(vehicle):
+            yield f"{name}: {', '.join(f'{x:g}' for x in place)}. In m from CO?"
+
+
+def _length(vehicle: Vehicle) -> float:
+    """Edge of a cube of water of the vehicle's mass, m."""
+    return float(np.cbrt(vehicle.dry_mass / 1000.0))
