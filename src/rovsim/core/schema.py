@@ -1,6 +1,7 @@
 """Typed sections read from YAML: an unknown key is an error that names the nearest known one."""
 
 import os
+import re
 import reprlib
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
@@ -35,6 +36,17 @@ PathText = Annotated[str, AfterValidator(_path)]
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 
 S = TypeVar("S", bound=Section)
+
+# What pydantic misses, in words of somebody who knows YAML and no Python.
+WORDS = {
+    **dict.fromkeys(("list_type", "tuple_type"), "a list, as [first, second]"),
+    **dict.fromkeys(("float_type", "float_parsing"), "a number"),
+    **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "a whole number"),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "true or false"),
+    "finite_number": "a finite number",
+    "string_type": "text (a number in quotes is one)",
+}
+BOUNDS = ("greater than ", "less than ")
 
 
 def checked(kind: type[S], content: Any, where: Path | str) -> S:
@@ -72,6 +84,8 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
         key = str(first["loc"][-1])
         known = _known_keys(kind, first["loc"][:-1])
         return unlisted(key, known, found=f"unknown key '{place}'", where=where)
+    if first["type"] == "missing" and isinstance(first["loc"][-1], int):
+        return _too_few(found, first, place, where)
     if first["type"] == "missing":
         return BadInput(
             f"'{place}' is missing",
@@ -82,14 +96,55 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
     return BadInput(
         f"'{place}' is {reprlib.repr(first.get('input'))}",
         where=where,
-        expected=_sentence(first["msg"]),
-        remedy="Correct that value.",
+        expected=_expected(first, kind),
+        remedy=_remedy(first),
+    )
+
+
+def _too_few(found: list[Any], first: Any, place: str, where: Any) -> BadInput:
+    """A row of numbers that has fewer than it should."""
+    row = first["loc"][:-1]
+    missing = [one for one in found if one["type"] == "missing" and one["loc"][:-1] == row]
+    return BadInput(
+        f"'{place.rpartition('.')[0]}' is {reprlib.repr(first.get('input'))}",
+        where=where,
+        expected=f"{first['loc'][-1] + len(missing)} values",
+        remedy="Add what is missing.",
     )
 
 
 def _is_type(part: int | str) -> bool:
     """Whether a part of a place names a member of a union, which does not stand in the file."""
     return isinstance(part, str) and (part == "str" or "[" in part)
+
+
+def _expected(error: Any, kind: type[Section]) -> str:
+    """What should stand there."""
+    if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
+        keys = _known_keys(kind, error["loc"])
+        return f"keys and values ({', '.join(keys)})" if keys else "keys and values"
+    limits = error.get("ctx", {})
+    if error["type"] == "too_short":
+        return _several(limits["min_length"], "at least")
+    if error["type"] == "too_long":
+        return _several(limits["max_length"], "at most")
+    told = _sentence(error["msg"])
+    return WORDS.get(error["type"], f"a number {told}" if told.startswith(BOUNDS) else told)
+
+
+def _several(count: int, bound: str) -> str:
+    return f"{bound} {count} value{'' if count == 1 else 's'}"
+
+
+def _remedy(error: Any) -> str:
+    """The option that was probably meant, where there are some."""
+    given = error.get("input")
+    if error["type"] != "literal_error" or not isinstance(given, str):
+        return "Correct that value."
+    options = re.findall(r"'([^']*)'", error["msg"])
+    typed = given.casefold()
+    meant = [one for one in options if typed and (typed.startswith(one) or one.startswith(typed))]
+    return f"Did you mean '{meant[0]}'?" if len(meant) == 1 else "Correct that value."
 
 
 def _sentence(message: str) -> str:

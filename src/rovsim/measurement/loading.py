@@ -7,13 +7,15 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim import AXES
-from rovsim.core.errors import BadInput
+from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CampaignFile, Mocap, Run
 from rovsim.measurement.recording.readers import FileAxes, command_readers, mocap_readers
 from rovsim.measurement.unanswered import check_answered
+
+BAG = "rosbag2"  # the format whose channels are topics
 
 
 def load_campaign(path: Path) -> Campaign:
@@ -27,7 +29,7 @@ def load_campaign(path: Path) -> Campaign:
     check_answered(plain, file)
     content = checked(CampaignFile, plain, file)
     check_ids(content.runs, file)
-    _check_axes(content.mocap, file)
+    _check_mocap(content.mocap, file)
     _check_commands(content, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
     campaign = Campaign(file=file, **fields)
@@ -67,11 +69,18 @@ def check_ids(runs: Sequence[Run], where: Path | str) -> None:
         seen[key] = run.id
 
 
-def _check_axes(mocap: Mocap, file: Path) -> None:
-    """Refuse the axes of one motion capture software where another wrote the file."""
+def _check_mocap(mocap: Mocap, file: Path) -> None:
+    """Refuse the axes, or the topics, of one kind of file where another was recorded."""
     readers, plain = mocap_readers(), FileAxes()
     own = readers[mocap.format].axes if mocap.format in readers else plain
     known = {*plain.every, *own.every}
+    if mocap.topics is not None and mocap.format in readers and mocap.format != BAG:
+        raise BadInput(
+            f"'mocap.topics' with 'mocap.format: {mocap.format}'",
+            where=file,
+            expected="topics of a ROS 2 bag; no other format has any",
+            remedy="Leave it out, or correct 'format'.",
+        )
     turned = [axes for axes in (mocap.world_axes, mocap.body_axes) if axes not in known]
     if not turned:
         return
@@ -111,6 +120,13 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             where=file,
             expected="further columns of a csv; no other format has any",
             remedy="Leave it out; the battery's voltage is read from a log by itself.",
+        )
+    if log is not None and (strange := [one for one in log.angles if one not in log.names]):
+        raise unlisted(
+            strange[0],
+            log.names,
+            found=f"'commands.angles' names '{strange[0]}', which is none of 'commands.columns'",
+            where=file,
         )
     if log is not None and log.per_axis and len(log.axis_numbers) != len(log.columns):
         raise BadInput(
