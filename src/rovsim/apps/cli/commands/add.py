@@ -16,6 +16,7 @@ from rovsim.application.settings import CommandSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
+from rovsim.core.model_names import NOMINAL
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.words.totals import warn_totals
 
@@ -42,6 +43,7 @@ class Settings(CommandSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Write the new model, and say what is in it."""
     base, model = settings.to, settings.model
+    _require_ending(model)
     if settings.diagnosis is None or not isinstance(model, str) or not Path(model).suffix:
         raise BadInput(
             "no diagnosis or no model file was named",
@@ -73,3 +75,15 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     }
     lines = [line for one in f"{model}: {text}".splitlines() for line in fold(one)]
     say(settings, "\n".join(lines), content)
+
+
+def _require_ending(model: str | list[str] | None) -> None:
+    """Refuse a file to be written whose name could be that of a built-in model, or of a folder."""
+    if isinstance(model, str) and model != NOMINAL and not Path(model).suffix:
+        file = Path(model) / "NEW.yaml" if Path(model).is_dir() else f"{model}.yaml"
+        raise BadInput(
+            "is a folder" if Path(model).is_dir() else "has no ending",
+            where=f"model={model}",
+            expected="the name of the model file that is written, as model=NEW.yaml",
+            remedy=f"Did you mean model={file}?",
+        )
