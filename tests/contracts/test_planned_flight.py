@@ -77,5 +77,6 @@ def test_units_of_what_it_tells_are_written_as_everywhere():
         keeps=Keeps(nearest_wall_m=None, speed_m_s=1.0, turn_rate_rad_s=1.0, tilt_rad=0.1),
     )
     said = tell_experiment(found)
-    assert "linear_damping.yaw: ± 0.10 N m s²/rad² (now ± 0.50 N m s²/rad²)" in said
-    assert "lift.factor: ± – (now ± 0.50)" in said
+    assert "linear_damping.yaw: ± 0.20 N m s²/rad² (now ± 0.98 N m s²/rad²)" in said
+    assert "lift.factor: ± – (now ± 0.98)" in said
+    assert "± is the 95 % interval." in said

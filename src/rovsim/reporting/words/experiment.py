@@ -2,6 +2,7 @@
 
 from typing import Sequence
 
+from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.reporting.units import unit
 from rovsim.reporting.wording import significant
@@ -20,6 +21,8 @@ def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
     lines += [_odds(name, one) for name, one in found.expects.odds.items()]
     names = with_thruster_names(list(found.expects.std), thrusters)
     lines += map(_std, names, found.expects.std.values())
+    if found.expects.std:
+        lines += ["", "± is the 95 % interval."]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
     lines += [f"  {name:<11}{tell_share(one)}" for name, one in found.baselines.items()]
     warnings = [line for one in found.warnings for line in ("", f"Warning: {one}")]
@@ -45,8 +48,10 @@ def size_of_odds(odds: float) -> str:
 
 
 def _std(name: str, one: Surer) -> str:
+    """How sure a value is now and then: ± is the 95 % interval, as in a verdict."""
     now, then = (
-        f"± {significant(or_nan(x), 2)} {unit(one.unit)}".strip() for x in (one.now, one.then)
+        f"± {significant(Z_95 * or_nan(x), 2)} {unit(one.unit)}".strip()
+        for x in (one.now, one.then)
     )
     return f"  {name}: {then} (now {now})"
 
