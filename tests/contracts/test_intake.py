@@ -161,6 +161,11 @@ def test_recordings_elsewhere_stay_there(tmp_path):
         ("run.npz", b"PK\x03\x04" + bytes(22) + b"\5\0\0\0t.npy" + bytes(9), "numpy.savetxt"),
         ("run.lvm", b"LabVIEW Measurement\t\nSeparator\tTab\n", "***End_of_Header***"),
         ("bare.csv", b"0.0,1500,1500\n0.1,1510,1500\n", "no line of column names"),
+        (
+            "clock.csv",
+            b"10:14:07.25,1500,1500\n10:14:07.35,1510,1500\n",
+            "no line of column names above the values 10:14:07.25, 1500",
+        ),
         ("table.csv", b"time_s,colour\n0,red\n1,blue\n", "no measured channel"),
         (
             "timeless.csv",

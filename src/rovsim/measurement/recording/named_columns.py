@@ -6,6 +6,7 @@ from typing import Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.recording.cells import is_number
+from rovsim.measurement.recording.dates import resembles_date
 
 TIME = "time_s"
 # What people, loggers and pandas call a column of times; one without a name may be such.
@@ -45,9 +46,9 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
 
 def no_time(path: Path, names: list[str]) -> BadInput:
     """The error of a file without a column of times: which one may be it, by its name."""
-    if all(is_number(name) for name in names):
+    if all(is_number(name) or resembles_date(name) for name in names):
         return BadInput(
-            f"no line of column names above the numbers {', '.join(names[:4])}, …",
+            f"no line of column names above the values {', '.join(names[:4])}, …",
             where=path,
             expected=f"names in the first line, among them {TIME}",
             remedy="Put one above them: time_s,x_m,y_m,z_m,qw,qx,qy,qz or time_s,t1,t2,… for what "
