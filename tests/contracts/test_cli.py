@@ -132,7 +132,6 @@ def failing(capsys, *words):
         (["compare"], "no campaign was given"),
         (["compare", "campaign=/nowhere"], "/nowhere"),
         (["compare", "campaigm=x"], "campaigm"),
-        (["compare", "campaign=a", "campaign=b"], "given twice, as campaign=a and as campaign=b"),
         (["add", "diagnosis=x.json", "model=new"], "Did you mean model=new.yaml"),
         (["compare", "oops"], "has no '='"),
         (["compare", "filter=savgoll", "campaign=x"], "Did you mean 'savgol'"),

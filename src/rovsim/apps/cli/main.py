@@ -64,9 +64,7 @@ def _main(words: list[str]) -> None:
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
     named = [word for word in words if command in FILES and is_file(word)]
-    given = [word for word in words if word not in named]
-    overrides = [override(word) for word in given]
-    _require_once(given)
+    overrides = [override(word) for word in words if word not in named]
     if named:
         overrides.append(f"{FILES[command]}=[{','.join(map(quoted, named))}]")
     _run(command, overrides, sweep)
@@ -111,24 +109,6 @@ def _doc(name: str) -> str:
 
     source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
-
-
-def _require_once(words: Sequence[str]) -> None:
-    """Refuse a key with two values: Hydra would take the last, and say nothing.
-
-    Raises:
-        BadInput: names both.
-    """
-    seen: dict[str, str] = {}
-    for word in words:
-        key = word.lstrip("+").partition("=")[0]
-        if seen.setdefault(key, word) != word:
-            raise BadInput(
-                f"'{key}' is given twice, as {seen[key]} and as {word}",
-                where="command line",
-                expected="one value of each key",
-                remedy="Leave one of them out.",
-            )
 
 
 def is_file(word: str) -> bool:
