@@ -149,3 +149,24 @@ def test_one_file_by_two_names_is_refused(tmp_path):
     specs = [str(path), str(tmp_path / "." / ".." / tmp_path.name / "lag.yaml")]
     with pytest.raises(BadInput, match=r"two models are called 'lag'.*Leave one of them out"):
         load_models(specs, load_vehicle("bluerov2_heavy"), built_in())
+
+
+@pytest.mark.parametrize(
+    ("schema", "told"),
+    [
+        ("rovsim.diagnosis/1", "`rovsim add diagnosis="),
+        ("rovsim.comparison/1", "`rovsim add` and `rovsim train` write one"),
+    ],
+)
+def test_another_result_is_no_model_and_says_what_makes_one_of_it(tmp_path, schema, told):
+    write_yaml(tmp_path / "found.yaml", {"schema": schema, "verdict": "adequate"})
+    with pytest.raises(BadInput) as refusal:
+        read_model(tmp_path / "found.yaml", built_in())
+    assert f"is no model, but says 'schema: {schema}'" in str(refusal.value)
+    assert told in str(refusal.value)
+
+
+def test_a_recording_in_place_of_a_model_is_not_asked_for_its_indentation(tmp_path):
+    (tmp_path / "run.tsv").write_text("0.0\t1.0\n" * 40_000)
+    with pytest.raises(BadInput, match="Is it a recording"):
+        read_model(tmp_path / "run.tsv", built_in())

@@ -42,7 +42,12 @@ def read_yaml(path: Path) -> Any:
     """
     text = read_text(path)
     if len(text) > LARGEST:
-        raise _refused(path, f"{len(text)} characters", f"at most {LARGEST}")
+        raise BadInput(
+            f"{len(text)} characters, and no file of this kind is that long",
+            where=path,
+            expected=f"a plain YAML file of at most {LARGEST} characters",
+            remedy="Is it a recording, or another file than was meant?",
+        )
     if _depth(text) > DEEPEST:
         raise _refused(path, "nested too deeply")
     try:
@@ -64,9 +69,9 @@ def _depth(text: str) -> int:
     return max(accumulate(steps), default=0)
 
 
-def _refused(where: object, found: str, expected: str = "a plain YAML file") -> BadInput:
+def _refused(where: object, found: str) -> BadInput:
     remedy = "Check the indentation and the quotes there."
-    return BadInput(found, where=where, expected=expected, remedy=remedy)
+    return BadInput(found, where=where, expected="a plain YAML file", remedy=remedy)
 
 
 @lru_cache(maxsize=32)

@@ -121,6 +121,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     Raises:
         BadInput: something in it is unknown or out of range.
     """
+    _require_model(content, path)
     file = checked(ModelFile, content, path)
     if isinstance(file.vehicle, str):
         vehicle = load_vehicle(file.vehicle, named_in=path)
@@ -137,6 +138,21 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     if file.uncertainty is None or residual is not None:
         return model
     return with_uncertainty(model, file.uncertainty, known, path)
+
+
+def _require_model(content: Any, path: Path) -> None:
+    """Refuse what says of itself that it is something else: one key that is wrong tells less."""
+    told = content.get("schema") if isinstance(content, dict) else None
+    if not isinstance(told, str) or told == SCHEMA:
+        return
+    raise BadInput(
+        f"is no model, but says 'schema: {told}'",
+        where=path,
+        expected=f"a model file ('schema: {SCHEMA}')",
+        remedy=f"`rovsim add diagnosis={path} model=NEW.yaml` writes one with what was found."
+        if told.startswith("rovsim.diagnosis/")
+        else "`rovsim add` and `rovsim train` write one.",
+    )
 
 
 def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
