@@ -48,7 +48,7 @@ def test_every_command_of_the_documents_is_understood(line, monkeypatch):
         understood.append(select(settings, command.Settings))
 
     monkeypatch.setattr(dispatch, "run_command", run)
-    monkeypatch.setattr("rovsim.apps.cli.main._sweep", understood.append)
+    monkeypatch.setattr("rovsim.apps.cli.sweep.run_sweep", understood.append)
     main(shlex.split(line)[1:])
     assert understood
 

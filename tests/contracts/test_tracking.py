@@ -12,8 +12,17 @@ from mlflow.tracking import MlflowClient
 from rovsim.application.configuration import compose
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import ranking, tell_ranking, track
-from rovsim.apps.cli.sweep import check_launcher, check_sweep, choose_out, name_run
+from rovsim.apps.cli.main import override
+from rovsim.apps.cli.sweep import (
+    check_campaigns,
+    check_launcher,
+    check_sweep,
+    choose_out,
+    choose_sweep_folder,
+    name_run,
+)
 from rovsim.core.errors import BadInput
+from said import unfolded
 
 
 def tracked(name):
@@ -35,6 +44,11 @@ def tracked(name):
 def test_a_sweep_is_checked_before_its_first_run(word, said):
     with pytest.raises(BadInput, match=said):
         check_sweep(["command=train", word, "seed=1,2"])
+
+
+def test_campaigns_of_a_sweep_are_looked_at_first():
+    with pytest.raises(BadInput, match="nowhere: no such file or folder"):
+        check_campaigns(["command=train", "seed=1,2", "campaign='nowhere'"])
 
 
 def test_a_sweep_over_slurm_asks_for_one_first(monkeypatch, tmp_path):
@@ -147,3 +161,41 @@ def test_a_sweep_overwrites_nothing(tmp_path):
     words = ["tank", "-m", "tank=tiny", "tank.duration=3", "tank.seed=1,2", "out=mine"]
     subprocess.run([sys.executable, "-m", "rovsim", *words], cwd=tmp_path, check=True)
     assert {p.parent.name for p in (tmp_path / "mine").rglob("campaign.yaml")} == {"0", "1"}
+
+
+def test_a_run_that_fails_is_named_and_the_others_go_on(tmp_path):
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "0").write_text("in the way of the first run")
+    words = ["tank", "-m", "tank=tiny", "tank.duration=3", "tank.seed=1,2", "out=mine"]
+    command = [sys.executable, "-m", "rovsim", *words]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    said = unfolded(done.stderr)
+    assert (
+        f"run 0 of the sweep (tank=tiny tank.duration=3 tank.seed=1 out='mine'): {mine}/0" in said
+    )
+    assert "1 of the runs failed (0)" in said
+    assert (mine / "1" / "campaign.yaml").is_file()
+    (noted,) = (tmp_path / "results" / "multirun").rglob("failed.txt")
+    assert "tank.seed=1" in noted.read_text()
+
+
+def test_sweeps_that_begin_in_the_same_second_have_folders_of_their_own(tmp_path):
+    wanted = tmp_path / "multirun" / "now"
+    found = [choose_sweep_folder(wanted, given=False).name for _ in range(3)]
+    assert found == ["now", "now_2", "now_3"]
+    assert choose_sweep_folder(wanted, given=True) == wanted
+
+
+def test_a_sweep_over_campaigns_takes_those_that_are_there(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("first", "a, b=c é"):
+        Path(name).mkdir()
+    several = override("campaign=first,a, b=c é", sweep=True)
+    assert several == "campaign='first','a, b=c é'"
+    assert override("campaign=a, b=c é", sweep=True) == "campaign='a, b=c é'"
+    assert override("campaign=first,third", sweep=True) == "campaign='first,third'"
+    assert override("model=nominal,first", sweep=True) == "model='nominal','first'"
+    assert override("campaign=first,a, b=c é") == "campaign='first,a, b=c é'"

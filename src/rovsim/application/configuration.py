@@ -1,5 +1,6 @@
 """The configuration: Hydra composes it from conf/, once; the library gets plain typed values."""
 
+from pathlib import Path
 from typing import Any, Sequence
 
 from rovsim.application.settings import Settings
@@ -27,6 +28,20 @@ def compose(overrides: Sequence[str]) -> Settings:
         raise
     except Exception as error:  # Hydra's own, and what odd words make it stumble over
         raise _refused(overrides, str(error)) from None
+
+
+def sweep_folder(overrides: Sequence[str]) -> Path:
+    """Where a sweep writes that begins now, by overrides of its first run that `compose` takes."""
+    from hydra import compose as hydra_compose
+    from hydra import initialize_config_dir
+
+    from rovsim.application.conf_search import first_folder
+
+    words = [_allow_unlisted(word) for word in overrides]
+    with initialize_config_dir(first_folder(), version_base="1.3"):
+        return Path(
+            hydra_compose("config", overrides=words, return_hydra_config=True).hydra.sweep.dir
+        )
 
 
 def _allow_unlisted(word: str) -> str:

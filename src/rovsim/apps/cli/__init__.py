@@ -7,6 +7,6 @@ dispatch    from composed settings to a command
 commands    the commands
 opening     the campaign of a command, and where it writes
 output      what it says, and where it may write
-sweep       one job of a Hydra multirun
+sweep       a Hydra multirun, and one job of it
 completion  what the shell's Tab key asks
 """

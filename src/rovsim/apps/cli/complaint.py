@@ -5,6 +5,8 @@ from typing import NoReturn
 
 from rovsim.core.columns import fold
 
+NAMELESS = "a file of $ROVSIM_CACHE or $TMPDIR"  # those of results are named by `core.files`
+
 
 def complain(message: str) -> NoReturn:
     """Say what is wrong with the input, and end with exit code 2."""
@@ -16,3 +18,8 @@ def warn(message: str) -> None:
     """Say what went wrong beside the result, and go on."""
     lines = [line for one in f"rovsim: {message}".splitlines() for line in fold(one)]
     print("\n".join(lines), file=sys.stderr)
+
+
+def describe_os_error(error: OSError) -> str:
+    """A full disk, a file that may not be read, a name too long: which file, and why."""
+    return f"{error.filename or NAMELESS}: {error.strerror or error}"

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim import __version__
-from rovsim.apps.cli.complaint import complain
+from rovsim.apps.cli.complaint import complain, describe_os_error
 from rovsim.core.collector import end_at_once
 from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, RovsimError, unlisted
+from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
 from rovsim.core.termination import CODE, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
@@ -19,8 +20,9 @@ PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to
 FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
+BUILT_IN = (NOMINAL, ZERO_ACCELERATION)
 COMMANDS = Path(__file__).with_name("commands")
-NAMELESS = "a file of $ROVSIM_CACHE or $TMPDIR"  # those of results are named by `core.files`
+SWEPT = ("campaign", "model", "effects_file", "fly")  # of these: paths, of which -m takes several
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -32,10 +34,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             _main(words)
     except RovsimError as error:
         complain(str(error))
-    except OSError as error:  # a full disk, a file that may not be read, a name too long
+    except OSError as error:
         if isinstance(error, BrokenPipeError):
             sys.exit(141)
-        complain(f"{error.filename or NAMELESS}: {error.strerror or error}")
+        complain(describe_os_error(error))
     except KeyboardInterrupt as end:
         said, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
         print(f"rovsim: {said}; what was finished is kept.", file=sys.stderr)
@@ -64,7 +66,7 @@ def _main(words: list[str]) -> None:
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
     named = [word for word in words if command in FILES and is_file(word)]
-    overrides = [override(word) for word in words if word not in named]
+    overrides = [override(word, sweep) for word in words if word not in named]
     if named:
         overrides.append(f"{FILES[command]}=[{','.join(map(quoted, named))}]")
     _run(command, overrides, sweep)
@@ -77,11 +79,11 @@ def _run(command: str, overrides: list[str], sweep: bool) -> None:
 
     whole = [f"command={command}", *overrides]
     if sweep:
-        from rovsim.apps.cli.sweep import check_sweep
+        from rovsim.apps.cli.sweep import check_sweep, run_sweep
 
         check_sweep(whole)
         require_taken(command, overrides)
-        _sweep(whole)
+        run_sweep(whole)
         return
     settings = compose(whole)
     require_taken(command, overrides)
@@ -116,8 +118,10 @@ def is_file(word: str) -> bool:
     return re.match(r"[\w.]+=", word) is None or os.path.exists(word)
 
 
-def override(word: str) -> str:
+def override(word: str, sweep: bool = False) -> str:
     """One word of the command line as a Hydra override; plain values are quoted.
+
+    In a sweep, files and folders that are there, with commas between them, are one value each.
 
     Raises:
         BadInput: an option that is not known, or a word without `=`.
@@ -136,6 +140,10 @@ def override(word: str) -> str:
         return word
     if value.startswith("[") and value.endswith("]"):
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
+    if sweep and key in SWEPT and not os.path.exists(value):
+        several = listed(value)
+        if all(os.path.exists(one) or one in BUILT_IN for one in several):
+            return f"{key}={','.join(map(quoted, several)) or 'null'}"
     return f"{key}={quoted(value)}"
 
 
@@ -158,15 +166,3 @@ def quoted(value: str) -> str:
         return "null"
     literal = value.replace("'", "\\'").replace("${", "\\${")
     return f"'{literal}'"
-
-
-def _sweep(overrides: list[str]) -> None:
-    """Let Hydra run a command once for every combination of the given values."""
-    import hydra
-
-    from rovsim.application.conf_search import first_folder
-    from rovsim.apps.cli.sweep import check_launcher, job
-
-    check_launcher(overrides)
-    sys.argv = ["rovsim", "--multirun", *overrides]
-    hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()

@@ -1,23 +1,98 @@
-"""One job of a Hydra multirun; importable, so that every launcher can send it to a worker."""
+"""A Hydra multirun, and one job of it; importable, so that every launcher can send it to a worker.
 
+A run that fails leaves `failed.txt` in its folder, and the others go on: where they run, and in
+what order, is the launcher's, and of what they return Hydra hands nothing on.
+"""
+
+import os
+import sys
+from itertools import count
 from pathlib import Path
 from shutil import which
 from typing import Any, Sequence
 
-from rovsim.application.configuration import compose, settings_of
+from rovsim.application.configuration import compose, settings_of, sweep_folder
 from rovsim.application.settings import Settings
-from rovsim.apps.cli.complaint import complain
+from rovsim.apps.cli.complaint import describe_os_error, warn
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import BadInput, RovsimError
+from rovsim.core.files import write_text
 from rovsim.core.model_names import name_learned
+from rovsim.measurement.loading import load_campaign
 
 SLURM = "hydra/launcher=submitit_slurm"
+FOLDER = "hydra.sweep.dir"
+FAILED = "failed.txt"
 # What a run's name has without this, or what is the same in all of them.
 NAMED = ("command", "campaign", "residual", "control", "out", "output")
 
 
+def run_sweep(overrides: Sequence[str]) -> None:
+    """Let Hydra run a command once for every combination of the given values.
+
+    Raises:
+        BadInput: there is no launcher, a campaign cannot be read, or some of the runs failed; all
+            others are done.
+    """
+    import hydra
+
+    from rovsim.application.conf_search import first_folder
+
+    check_launcher(overrides)
+    check_campaigns(overrides)
+    words = [word for word in overrides if not word.startswith(f"{FOLDER}=")]
+    folder = choose_sweep_folder(sweep_folder(first_values(overrides)), given=words != [*overrides])
+    for old in folder.rglob(FAILED):
+        old.unlink()
+    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # errors come here, as they are
+    literal = str(folder).replace("\\", "\\\\").replace("'", "\\'")
+    sys.argv = ["rovsim", "--multirun", *words, f"{FOLDER}='{literal}'"]
+    hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()
+    refuse_failed(folder)
+
+
+def choose_sweep_folder(folder: Path, given: bool) -> Path:
+    """The folder of a sweep, made: one that is `given` as it is, else one that no other has.
+
+    Two sweeps that begin in the same second would write over each other's runs.
+    """
+    if given:
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    for number in count(1):
+        one = folder if number == 1 else folder.with_name(f"{folder.name}_{number}")
+        try:
+            one.mkdir()
+        except FileExistsError:
+            continue
+        return one
+    raise AssertionError  # it counts on
+
+
+def refuse_failed(folder: Path) -> None:
+    """Say which runs of a sweep failed.
+
+    Raises:
+        BadInput: some did.
+    """
+    failed = sorted(folder.rglob(FAILED), key=lambda path: (len(path.parent.name), path))
+    if failed:
+        numbers = ", ".join(path.parent.name for path in failed)
+        raise BadInput(
+            f"{len(failed)} of the runs failed ({numbers})",
+            where=folder,
+            expected="runs that all end",
+            remedy=f"The others are kept. Why it failed stands in the {FAILED} of each: mend that, "
+            "and sweep over its values alone.",
+        )
+
+
 def job(composed: Any) -> None:
-    """Run the command of one combination; its results go to the job's own folder."""
+    """Run the command of one combination; its results go to the job's own folder.
+
+    What it cannot do is said, and noted for the end of the sweep, which goes on.
+    """
     from hydra.core.hydra_config import HydraConfig
 
     hydra = HydraConfig.get()
@@ -25,8 +100,20 @@ def job(composed: Any) -> None:
         settings = name_run(settings_of(composed), hydra.overrides.task)
         out = choose_out(settings.out, hydra.runtime.output_dir, hydra.sweep.subdir)
         run_command(settings.model_copy(update={"out": out}))
-    except RovsimError as error:
-        complain(str(error))
+    except (RovsimError, OSError) as error:
+        if isinstance(error, BrokenPipeError):
+            raise
+        told = describe_os_error(error) if isinstance(error, OSError) else str(error)
+        words = " ".join(hydra.overrides.task[1:])  # without the command
+        said = f"run {hydra.job.num} of the sweep ({words}): {told}"
+        warn(said)
+        write_text(Path(hydra.runtime.output_dir, FAILED), f"{said}\n")
+
+
+def first_values(overrides: Sequence[str]) -> list[str]:
+    """Overrides of a sweep's first run."""
+    listed = [(word, _list_values(word)) for word in overrides]
+    return [f"{word.partition('=')[0]}={v[0]}" if v else word for word, v in listed]
 
 
 def check_sweep(overrides: Sequence[str]) -> None:
@@ -35,14 +122,34 @@ def check_sweep(overrides: Sequence[str]) -> None:
     Raises:
         BadInput: one of the values cannot be used.
     """
-    first: list[str] = []
-    others: list[tuple[int, str]] = []
-    for word in overrides:
-        key, values = word.partition("=")[0], _list_values(word)
-        others += [(len(first), f"{key}={value}") for value in values[1:]]
-        first.append(f"{key}={values[0]}" if values else word)
-    for run in (first, *([*first[:k], word, *first[k + 1 :]] for k, word in others)):
+    for run in _vary_one(overrides):
         compose(run).learner  # noqa: B018 - its settings are checked when they are asked for
+
+
+def check_campaigns(overrides: Sequence[str]) -> None:
+    """Look at the campaigns of a sweep; each of its runs would fail alike.
+
+    Raises:
+        BadInput: one of them cannot be read.
+    """
+    for run in _vary_one(overrides, only="campaign"):
+        if (campaign := compose(run).campaign) is not None:
+            load_campaign(Path(campaign))
+
+
+def _vary_one(overrides: Sequence[str], only: str = "") -> list[list[str]]:
+    """Overrides of the first run, and of each further value with all others at their first.
+
+    `only`: a key; the values of others stay at their first.
+    """
+    first = first_values(overrides)
+    others = [
+        (k, f"{key}={value}")
+        for k, word in enumerate(overrides)
+        if (key := word.partition("=")[0]) == only or not only
+        for value in _list_values(word)[1:]
+    ]
+    return [first, *([*first[:k], word, *first[k + 1 :]] for k, word in others)]
 
 
 def check_launcher(overrides: Sequence[str]) -> None:

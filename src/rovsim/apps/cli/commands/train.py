@@ -4,8 +4,8 @@ rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6
 
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, figures
 of the errors, and an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5
-control=3dof,6dof; each combination has a folder of its own, in OUT if that is given. Needs the
-extras rovsim[learn,tracking].
+control=3dof,6dof campaign=A,B; each combination has a folder of its own, in OUT if that is given.
+Needs the extras rovsim[learn,tracking].
 """
 
 from pathlib import Path
