@@ -207,6 +207,25 @@ def test_a_campaign_without_a_test_run_is_told_so(content):
     assert "No test run" not in terminal.tell_comparison({"nominal": 0.1}, none, tested=True)
 
 
+@pytest.mark.parametrize(
+    ("without", "corrected", "told"),
+    [
+        (0.10, 0.08, "the residual lowers the error by 20\u202f%."),
+        (
+            0.0428,
+            0.0717,
+            "the residual raises the error by 68\u202f%: the model is better without it.",
+        ),
+        (None, 0.1, ""),
+        (0.1, None, ""),
+    ],
+)
+def test_a_residual_that_does_not_help_is_told_so(without, corrected, told):
+    said = " ".join(terminal.tell_residual(without, corrected).split(" ")).replace("\n", " ")
+    assert said.strip().endswith(told)
+    assert bool(said.strip()) == bool(told)
+
+
 def test_sections_without_content_are_left_out(content):
     found = rendered(diagnosis=content["diagnosis"], ladder=content["ladder"])
     assert re.findall(r"<h2>(.*?)</h2>", found) == ["Verdict", "Ladder"]

@@ -1,4 +1,4 @@
-"""What `compare` and `diagnose` say on the terminal."""
+"""What `compare`, `train` and `diagnose` say on the terminal."""
 
 from typing import Mapping, Sequence
 
@@ -10,6 +10,7 @@ from rovsim.reporting.wording import (
     LEAST,
     fit,
     listed,
+    percent,
     several,
     significant,
     title,
@@ -50,6 +51,17 @@ def tell_comparison(
     said = band_sentences(coverage) if coverage else []
     bands = [line for one in said for line in ("", *fold(one))]
     return "\n".join([*table, *bands, *_findings(where)])
+
+
+def tell_residual(without: float | None, corrected: float | None) -> str:
+    """Whether a residual helps on the test runs, from the errors; empty where these are unknown."""
+    if without is None or corrected is None:
+        return ""
+    share = corrected / without - 1.0
+    told = f"On the test runs the residual {'lowers' if share < 0.0 else 'raises'} the error by "
+    told += percent(abs(share))
+    told += "." if share < 0.0 else ": the model is better without it."
+    return "\n".join(["", "", *fold(told)])
 
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:

@@ -29,7 +29,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
 from rovsim.evaluation.scored import Scored
 from rovsim.reporting.report_data import ReportData
-from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
+from rovsim.reporting.words.terminal import tell_comparison, tell_doubts, tell_residual
 from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
@@ -80,7 +80,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         )
     told = {said[model]: error for model, error in errors.items()}
     text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
-    text += tell_doubts(data.quality)
+    text += tell_residual(errors[base.name], errors[corrected.name]) + tell_doubts(data.quality)
     kept = tell_ranking(settings.tracking, data.campaign.name)
     say(settings, f"{text}\n\n{file}\n\n{kept}", {"model": str(file), "errors": errors})
 
