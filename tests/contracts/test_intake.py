@@ -13,9 +13,10 @@ from ruamel.yaml import YAML
 
 import bags
 from damage import damaged
-from recordings import FORMATS, Swim, command_lines, write_lines, write_poses
+from recordings import FORMATS, Swim, command_lines, pose_lines, write_lines, write_poses
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import RovsimError
+from rovsim.core.yaml_files import read_yaml
 from rovsim.intake.compose import propose
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.names import run_ids, run_key
@@ -481,6 +482,47 @@ def test_several_runs_in_one_file_are_refused(tmp_path, capsys):
     said = refused(capsys, tmp_path)
     assert "2 runs in one file: its times begin anew where 'run' changes (dive-1, dive-2)" in said
     assert "Split it by 'run'" in said
+
+
+def write_day(folder: Path, pauses: list[float], seconds: float = 12.0) -> None:
+    """One file of poses and one log, of swims with these pauses between them."""
+    poses, log, begin = [], [], 0.0
+    for pause in [0.0, *pauses]:
+        begin += pause
+        head, *rows = pose_lines("csv", Swim.ned(frames=int(100 * seconds)))
+        named, *pulses = command_lines(seconds)
+        poses += [shifted(row, begin) for row in rows]
+        log += [shifted(row, begin) for row in pulses]
+        begin += seconds
+    write_lines(folder / "day.csv", [head, *poses])
+    write_lines(folder / "day_commands.csv", [named, *log])
+
+
+def shifted(row: str, by: float) -> str:
+    """A line of a csv, that much later."""
+    time, _, rest = row.partition(",")
+    return f"{float(time) + by:.4f},{rest}"
+
+
+def test_long_pauses_part_the_runs_of_a_file(tmp_path):
+    write_day(tmp_path, [100.0, 5.0, 60.0])
+    main(["init", str(tmp_path), "-q"])
+    runs = read_yaml(tmp_path / "campaign.yaml")["runs"]
+    assert [run["id"] for run in runs] == ["day-1", "day-2", "day-3"]
+    assert [run["split"] for run in runs] == ["train", "train", "test"]
+    assert np.array([run["use"] for run in runs])[:, 0] == pytest.approx(
+        np.array([[0.0, 11.99], [112.0, 140.99], [201.0, 212.99]]), abs=2e-3
+    )
+    assert "nothing was recorded for 60 s before it" in told(tmp_path)
+
+
+@pytest.mark.parametrize("pauses", [[], [5.0]])
+def test_a_run_with_short_pauses_stays_one(tmp_path, pauses):
+    write_day(tmp_path, pauses)
+    main(["init", str(tmp_path), "-q"])
+    (run,) = read_yaml(tmp_path / "campaign.yaml")["runs"]
+    assert run["id"] == "day"
+    assert "use" not in run
 
 
 def test_lines_that_share_a_time_are_counted(tmp_path):

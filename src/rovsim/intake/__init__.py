@@ -14,6 +14,7 @@ axes           which way the axes of world and body point
 checks         what looks wrong: clocks, mirrored axes, thrusters in another order, gaps
 facts          all of that together
 draft          a proposal in the making: content, comments and questions by place
+spans          runs that stand one after the other in one file
 runs           the runs of a proposal: names, control, split and files
 sections       the other sections: what is known, what is guessed, what is asked
 proposal       what is known, and what is left to ask

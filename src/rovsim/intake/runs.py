@@ -3,12 +3,14 @@
 from typing import Sequence
 
 import numpy as np
+from numpy import ndarray as Array
 
 from rovsim.intake.draft import Draft
 from rovsim.intake.facts import Facts
 from rovsim.intake.names import said_control
 from rovsim.intake.pairing import Pair
 from rovsim.intake.places import Places
+from rovsim.intake.spans import Entry, list_entries
 from rovsim.intake.survey.timing import Timing
 
 # rad/s that the commands alone would cause in yaw: beyond, the pilot turned the vehicle. Roll and
@@ -20,25 +22,37 @@ NOTHING = (
 )
 
 
+PART = "guess: a run of its own, for nothing was recorded for {:.0f} s before it"
+FIRST = "guess: several runs are in this file, one after the other; 'use' says where each is"
+
+
 def runs(facts: Facts, places: Places, draft: Draft) -> None:
     """All runs."""
-    controls = [_control(facts, k) for k in range(len(facts.pairs))]
+    entries = list_entries(facts)
+    controls = [_control(facts, one) for one in entries]
     splits = split([control for control, _ in controls])
     draft.content["runs"] = []
-    for k, one in enumerate(facts.pairs):
-        draft.say(f"runs.{k}", *described(one), *facts.motions[k].notes)
-        draft.content["runs"].append(
-            {
-                "id": facts.ids[k],
-                "control": controls[k][0],
-                "split": splits[k],
-                "mocap": _measured(facts, k, places),
-                "commands": _log(facts, k, places, draft),
-            }
-        )
-        draft.say(f"runs.{k}", controls[k][1])
+    for n, one in enumerate(entries):
+        draft.say(f"runs.{n}", *_remarks(facts, one))
+        content = {
+            "id": one.id,
+            "control": controls[n][0],
+            "split": splits[n],
+            "mocap": _measured(facts, one.file, places),
+            "commands": _log(facts, one, f"runs.{n}", places, draft),
+        }
+        draft.content["runs"].append(content | ({"use": [[*one.use]]} if one.use else {}))
+        draft.say(f"runs.{n}", controls[n][1])
     held = "the last run of each control is a test run: nothing is ever fitted to it"
     draft.say("runs", f"guess: {held if 'test' in splits else 'no test run, for there is one run'}")
+
+
+def _remarks(facts: Facts, one: Entry) -> list[str]:
+    """What the files of a run hold, and why it is one."""
+    if one.pause:
+        return [PART.format(one.pause)]
+    own = [*described(facts.pairs[one.file]), *facts.motions[one.file].notes]
+    return [*own, FIRST] if one.use else own
 
 
 def described(one: Pair) -> list[str]:
@@ -68,29 +82,36 @@ def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
     return files if len(files) > 1 else files[0]
 
 
-def _log(facts: Facts, k: int, places: Places, draft: Draft) -> str:
-    one = facts.pairs[k]
+def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> str:
+    one = facts.pairs[run.file]
     if one.log is not None:
         return places.of(one.log.path)
     if not one.options:
-        draft.say(f"runs.{k}", NOTHING)
+        draft.say(place, NOTHING)
         return "none"
     answers = {places.of(log.path): "" for log in one.options} | {"none": "nothing was commanded"}
-    asks = f"Which file holds the commands of {facts.ids[k]} ({one.said})?"
-    return draft.ask(f"runs.{k}.commands", asks, answers)
+    asks = f"Which file holds the commands of {run.id} ({one.said})?"
+    return draft.ask(f"{place}.commands", asks, answers)
 
 
-def _control(facts: Facts, k: int) -> tuple[str, str]:
+def _control(facts: Facts, run: Entry) -> tuple[str, str]:
     """Control of a run, and why where it is a guess."""
-    if said := said_control(facts.pairs[k].motion.path.stem):
+    one, fit = facts.pairs[run.file], facts.choice.fit
+    if said := said_control(one.motion.path.stem):
         return said, ""
-    log, fit = facts.pairs[k].shown, facts.choice.fit
-    caused = log.caused(fit) if log and fit else None
+    caused = one.shown.caused(fit) if one.shown and fit else None
     if caused is None:
         return "6dof", "guess: 6dof, for nothing says that it was never turned"
-    spread = float(caused[1].std(axis=0)[5])
+    spread = float(_during(run, *caused).std(axis=0)[5])
     name = "6dof" if spread > TURNING else "3dof"
     return name, f"guess: {name}, by how much its commands turn it ({spread:.2f} rad/s in yaw)"
+
+
+def _during(run: Entry, time: Array, nu: Array) -> Array:
+    """Velocities (m, 6) that the commands cause during a run; all where the clocks differ."""
+    begin, end = run.use or (-np.inf, np.inf)
+    during = (time >= begin) & (time <= end)
+    return nu[during] if during.any() else nu
 
 
 def split(controls: Sequence[str]) -> list[str]:

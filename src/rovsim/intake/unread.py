@@ -7,6 +7,7 @@ from typing import Sequence
 from rovsim.intake.draft import Draft
 from rovsim.intake.facts import Facts
 from rovsim.intake.pairing import Pair
+from rovsim.intake.spans import list_entries
 from rovsim.intake.survey.contents import Contents
 
 MOST = 20  # names of columns or files in a sentence
@@ -24,11 +25,12 @@ def list_unread(facts: Facts, draft: Draft) -> list[str]:
 def tell_unread(facts: Facts, draft: Draft) -> None:
     """The same as comments above the runs of these files."""
     known = {one.named: one for one in _every(facts)}
+    first = {one.file: n for n, one in reversed([*enumerate(list_entries(facts))])}
     for k, (motion, pair) in enumerate(zip(facts.motions, facts.pairs, strict=True)):
         paths = dict.fromkeys([*(file.named for file in motion.files), *_log(pair)])
         for one in (known[path] for path in paths):
             if left := _left(one, facts, draft):
-                draft.say(f"runs.{k}", f"{one.named.name}: not used: {_named(left)}")
+                draft.say(f"runs.{first[k]}", f"{one.named.name}: not used: {_named(left)}")
 
 
 def _every(facts: Facts) -> list[Contents]:
