@@ -12,6 +12,7 @@ from mlflow.tracking import MlflowClient
 from rovsim.application.configuration import compose
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import ranking, tell_ranking, track
+from rovsim.application.tracking.study import StudyFiles, track_study
 from rovsim.apps.cli.main import override
 from rovsim.apps.cli.sweep import (
     check_campaigns,
@@ -23,6 +24,7 @@ from rovsim.apps.cli.sweep import (
 )
 from rovsim.core.errors import BadInput
 from said import unfolded
+from synthetic_study import study
 
 
 def tracked(name):
@@ -199,3 +201,41 @@ def test_a_sweep_over_campaigns_takes_those_that_are_there(tmp_path, monkeypatch
     assert override("campaign=first,third", sweep=True) == "campaign='first,third'"
     assert override("model=nominal,first", sweep=True) == "model='nominal','first'"
     assert override("campaign=first,a, b=c é") == "campaign='first,a, b=c é'"
+
+
+MODEL = """vehicle: bluerov2_heavy
+residual: {kind: knn, control: 6dof, file: residual.npz, features: [velocity, wrench],
+  scaling: standard, settings: {max_points: null, k: 30, weights: distance}}
+provenance: {base: nominal, seed: 4}
+"""
+
+
+def test_every_run_of_a_study_has_figures_and_trained_models_what_they_were_trained_with(tmp_path):
+    made = study()
+    for name in ("comparison", "ladder", "diagnosis"):
+        made[name].write(tmp_path / f"{name}.json")
+    learned = tmp_path / "knn_6dof" / "model.yaml"
+    learned.parent.mkdir()
+    learned.write_text(MODEL)
+    kept = [tmp_path / name for name in ("ladder.png", "where.png")]
+    for path in (*kept, learned.with_name("residual.npz")):
+        path.write_bytes(b"made up")
+    names = {name: tmp_path / f"{name}.json" for name in ("comparison", "ladder", "diagnosis")}
+    uri = f"sqlite:///{tmp_path / 'mlflow.db'}"
+    settings = TrackingSettings(uri=uri, artifacts=str(tmp_path / "kept"))
+    runs = track_study(settings, "tank", StudyFiles(models=[learned], kept=kept, **names), {})
+    client = MlflowClient(tracking_uri=uri)
+
+    def files(number):
+        return {one.path for one in client.list_artifacts(number)}
+
+    steps = {name: n for name, n in runs.pop("diagnosis").items() if name != "diagnosis"}
+    assert steps
+    assert all(files(number) == {"diagnosis.json", "ladder.png"} for number in steps.values())
+    assert files(runs["study"]) == {"ladder.png", "where.png"}
+    assert files(runs["nominal"]) == {"ladder.png"}
+    assert files(runs["knn_6dof"]) == {"model.yaml", "residual.npz", "ladder.png"}
+    logged = client.get_run(runs["knn_6dof"]).data.params
+    trained = compose(["residual=knn", "seed=4"])
+    assert logged.keys() == (trained.residual | {"seed": trained.seed}).keys()
+    assert (logged["kind"], logged["k"], logged["seed"]) == ("knn", "30", "4")

@@ -9,6 +9,8 @@ from rovsim.core.mappings import leaves
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Step
 
+OF_STEPS = ("diagnosis", "ladder")  # files, without their endings, that say what a step is
+
 
 def track_diagnosis(
     settings: TrackingSettings,
@@ -27,9 +29,11 @@ def track_diagnosis(
         base: name of the model that was diagnosed.
         found: the diagnosis.
         params: settings of the diagnosis, nested plain values.
-        files: kept as artifacts.
+        files: kept as artifacts; the diagnosis itself and the figure of the ladder also with every
+            step.
         parent: id of the run this diagnosis belongs to.
     """
+    files = list(files)
     selected = "+".join(one.effect for one in found.selected) or "none"
     tags = {"model": base, "verdict": found.verdict, "selected": selected}
     whole = track(
@@ -52,7 +56,7 @@ def track_diagnosis(
             tags={"model": step.model, "residual": "none", "control": "none"},
             params={},
             scores={},
-            files=[],
+            files=[path for path in files if path.stem in OF_STEPS],
             metrics=step_metrics(step),
         )
         for step in found.ladder.steps

@@ -13,6 +13,8 @@ from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder
 
+OF_MODELS = ("ladder", "error_by_axis", "error_growth")  # figures that show each of them
+
 
 @dataclass(frozen=True)
 class StudyFiles:
@@ -39,6 +41,8 @@ def track_study(
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
     steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
     written = {path.parent.name: path for path in files.models}
+    figures = [path for path in files.kept if path.stem in OF_MODELS]
+    of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
     parent = track(
         settings,
         experiment=campaign,
@@ -49,7 +53,7 @@ def track_study(
         files=files.kept,
     )
     diagnosed = track_diagnosis(
-        settings, campaign, NOMINAL, diagnosis, diagnosing, [files.diagnosis], parent
+        settings, campaign, NOMINAL, diagnosis, diagnosing, of_steps, parent
     )
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
     for name, entry in Comparison.read(files.comparison).models.items():
@@ -60,20 +64,27 @@ def track_study(
             parent=parent,
             scores=entry.runs,
             metrics={"windows_2s": steps[name]} if name in steps else {},
-            **_described(name, written.get(name)),
+            **_described(name, written.get(name), figures),
         )
     return runs
 
 
-def _described(name: str, path: Path | None) -> dict[str, Any]:
+def _described(name: str, path: Path | None, figures: Sequence[Path]) -> dict[str, Any]:
     """Tags, hyperparameters and files of one model."""
     content = read_yaml(path) if path else {}
-    residual = content.get("residual") or {}
-    base = content["provenance"]["base"] if residual else name
+    residual, story = content.get("residual") or {}, content.get("provenance") or {}
+    base = story["base"] if residual else name
     tags = {"model": base, "residual": residual.get("kind", "none")}
     arrays = [path.with_name(residual["file"])] if path and residual else []
     return {
         "tags": tags | {"control": residual.get("control", "none")},
-        "params": residual.get("settings", {}),
-        "files": [*([path] if path else []), *arrays],
+        "params": _hyperparameters(residual, story["seed"]) if residual else {},
+        "files": [*([path] if path else []), *arrays, *figures],
     }
+
+
+def _hyperparameters(residual: Mapping[str, Any], seed: int) -> dict[str, Any]:
+    """Those of a trained residual, under the keys by which `rovsim train` logs them."""
+    features = {"blocks": [*residual["features"]], "scaling": residual["scaling"]}
+    asked = {"kind": residual["kind"], **residual["settings"], "features": features}
+    return asked | {"seed": seed}
