@@ -7,14 +7,14 @@ Cases that this code has answered are left out; in the end `rovsim blind` scores
 
 import sys
 
-from rovsim.application.configuration import compose
+from rovsim.application.study.snakemake_config import SnakemakeConfig
 from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.errors import RovsimError
 
 try:
-    given = config.get("overrides", [])
-    words = given.split() if isinstance(given, str) else list(given)
-    settings = compose(words)
+    told = SnakemakeConfig(config, keys=("overrides",))
+    told.check()
+    words, settings = told.overrides, told.settings
     benchmark = Benchmark.of(settings.blind, settings.out)
     jobs = benchmark.pending()
 except RovsimError as error:

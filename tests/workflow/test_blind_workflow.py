@@ -15,11 +15,13 @@ ROOT = Path(__file__).parents[2]
 WORDS = ["blind.suite=quick", "blind.seeds=development", "blind.methods=[stlsq]"]
 
 
-def snakemake(folder: Path, overrides: str, *words: str) -> subprocess.CompletedProcess[str]:
+def snakemake(
+    folder: Path, overrides: str, *words: str, told: tuple[str, ...] = ()
+) -> subprocess.CompletedProcess[str]:
     """One call of the workflow."""
     command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "workflow/blind.smk")]
     return subprocess.run(
-        [*command, "--cores", "1", *words, "--config", f"overrides={overrides}"],
+        [*command, "--cores", "1", *words, "--config", f"overrides={overrides}", *told],
         cwd=folder,
         capture_output=True,
         text=True,
@@ -47,3 +49,9 @@ def test_a_suite_that_is_not_there_is_one_message(tmp_path):
     assert done.returncode == 2
     assert "blind.suite" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_a_key_that_the_benchmark_does_not_know_is_one_message(tmp_path):
+    done = snakemake(tmp_path, "blind.suite=quick", "-n", told=("campaign=mine",))
+    assert done.returncode == 2
+    assert "unknown key 'campaign'" in done.stderr

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from rovsim.application.configuration import compose
 from rovsim.application.settings import Settings
@@ -15,15 +15,16 @@ KEYS = ("campaign", "overrides", "effects_file")  # keys of `snakemake --config`
 
 @dataclass(frozen=True)
 class SnakemakeConfig:
-    """`told`: the `config` of Snakemake."""
+    """`told`: the `config` of Snakemake; `keys`: those that a workflow knows."""
 
     told: Mapping[str, Any]
+    keys: Sequence[str] = KEYS
 
     @cached_property
     def overrides(self) -> list[str]:
         """Of conf/, one word each."""
-        given = self.told.get("overrides", [])
-        return given.split() if isinstance(given, str) else list(given)
+        given = self.told.get("overrides") or []
+        return split_words(given) if isinstance(given, str) else [str(word) for word in given]
 
     @cached_property
     def settings(self) -> Settings:
@@ -53,6 +54,23 @@ class SnakemakeConfig:
             BadInput: there is none of this name.
         """
         for key in self.told:
-            if key not in KEYS:
+            if key not in self.keys:
                 found = f"unknown key '{key}'"
-                raise unlisted(key, KEYS, found=found, where="snakemake --config")
+                raise unlisted(key, self.keys, found=found, where="snakemake --config")
+
+
+def split_words(text: str) -> list[str]:
+    """Words of a text with spaces between them; what quotes or brackets hold is not parted."""
+    words, quote, depth = [""], "", 0
+    for letter in text:
+        if letter.isspace() and not quote and depth <= 0:
+            words.append("")
+            continue
+        words[-1] += letter
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "'\"":
+            quote = letter
+        else:
+            depth += (letter in "[{(") - (letter in ")}]")
+    return [word for word in words if word]

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Mapping
+from typing import Any, Mapping, get_args
 
 from rovsim.application.settings import Settings
 from rovsim.application.study.snakemake_config import SnakemakeConfig
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.learned.settings import Control
 from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
@@ -97,7 +98,8 @@ class Study:
         """Look at all that can be wrong with what was given, before anything is planned.
 
         Raises:
-            BadInput: a campaign that cannot be used, no train or no test run, an unknown residual.
+            BadInput: a campaign that cannot be used, no train or no test run, an unknown residual
+                or control.
         """
         self.snakemake.check()
         for split in ("train", "test"):
@@ -111,4 +113,13 @@ class Study:
         for kind in self.settings.study.residuals:
             learner(kind, "study.residuals")
         for name in self.settings.study.on_effects:
-            learner(name.rpartition("_")[0], "study.on_effects")
+            kind, _, control = name.rpartition("_")
+            known = get_args(Control)
+            if control not in known:
+                raise BadInput(
+                    f"'{name}'",
+                    where="study.on_effects",
+                    expected=f"a residual and a control ({', '.join(known)}), as in knn_6dof",
+                    remedy="Correct that value.",
+                )
+            learner(kind, "study.on_effects")

@@ -1,0 +1,38 @@
+"""What Snakemake is told: words of an override string, and names that there are not."""
+
+import pytest
+
+from rovsim.application.study.snakemake_config import SnakemakeConfig, split_words
+from rovsim.application.study.study import Study
+from rovsim.core.errors import BadInput
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("tank=lag  residual.k=9 ", ["tank=lag", "residual.k=9"]),
+        ("a=[{b: c, d: {e: 1}}] f=2", ["a=[{b: c, d: {e: 1}}]", "f=2"]),
+        ("out='my tank' a=\"b c\"", ["out='my tank'", 'a="b c"']),
+        ("a=']' b=1", ["a=']'", "b=1"]),
+        ("", []),
+    ],
+)
+def test_overrides_are_parted_outside_of_quotes_and_brackets(text, words):
+    assert split_words(text) == words
+
+
+def test_overrides_may_hold_what_the_command_line_may():
+    hidden = "[{effect: net_buoyancy, parameters: {force: 5}}]"
+    told = SnakemakeConfig({"overrides": f"tank=tiny tank.effects={hidden} out='my tank'"})
+    (effect,) = told.settings.tank.effects
+    assert effect.effect == "net_buoyancy"
+    assert told.settings.out == "my tank"
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [("[knn]", "'knn'.*as in knn_6dof"), ("[knn_7dof]", "'knn_7dof'"), ("[kn_6dof]", "'kn'")],
+)
+def test_residuals_on_effects_are_named_with_their_control(names, said):
+    with pytest.raises(BadInput, match=f"study.on_effects: .*{said}"):
+        Study({"overrides": f"tank=tiny study.on_effects={names}"}).check()
