@@ -1,7 +1,9 @@
-"""What Snakemake is told: words of an override string, and names that there are not."""
+"""What Snakemake is told: words of an override string, and names that there are not; its folder."""
 
 import pytest
+from filelock import FileLock
 
+from rovsim.application.study.lock import hold
 from rovsim.application.study.snakemake_config import SnakemakeConfig, split_words
 from rovsim.application.study.study import Study
 from rovsim.core.errors import BadInput
@@ -36,3 +38,14 @@ def test_overrides_may_hold_what_the_command_line_may():
 def test_residuals_on_effects_are_named_with_their_control(names, said):
     with pytest.raises(BadInput, match=f"study.on_effects: .*{said}"):
         Study({"overrides": f"tank=tiny study.on_effects={names}"}).check()
+
+
+def test_a_folder_that_another_study_holds_or_nobody_can_write_to_is_one_message(tmp_path):
+    with (
+        FileLock(tmp_path / ".study.lock"),
+        pytest.raises(BadInput, match="another study writes here"),
+    ):
+        hold(tmp_path)
+    (tmp_path / "file").touch()
+    with pytest.raises(BadInput, match="results: cannot be written"):
+        hold(tmp_path / "file" / "results")

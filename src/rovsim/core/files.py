@@ -35,7 +35,7 @@ def appearing(path: Path) -> Iterator[Path]:
     except OSError as error:
         if error.errno not in FULL:
             raise
-        raise _unwritable(path, error) from None
+        raise unwritable(path, error) from None
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -78,7 +78,7 @@ def appearing_together(folder: Path, last: str) -> Iterator[Path]:
         inside = [path.relative_to(made) for path in made.rglob("*") if path.is_file()]
         inside.sort(key=lambda path: (path == Path(last), path))
         for place in {folder / path.parent for path in inside}:
-            _make(place)  # before the first file moves: what fails, fails here
+            make_folder(place)  # before the first file moves: what fails, fails here
         for path in inside:
             os.replace(made / path, folder / path)
 
@@ -102,17 +102,21 @@ def _beside(path: Path, a_folder: bool = False) -> Path:
             return Path(tempfile.mkdtemp(dir=path.parent, prefix=mine))
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=mine, suffix=path.suffix)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise unwritable(path, error) from None
     os.close(handle)
     return Path(name)
 
 
-def _make(folder: Path) -> None:
-    """A folder, if it is not there."""
+def make_folder(folder: Path) -> None:
+    """Make a folder, if it is not there.
+
+    Raises:
+        BadInput: it cannot be made.
+    """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise _unwritable(folder, error) from None
+        raise unwritable(folder, error) from None
 
 
 def _remove(path: Path) -> None:
@@ -133,7 +137,8 @@ def _lives(process: str) -> bool:
     return True
 
 
-def _unwritable(path: Path, error: OSError) -> BadInput:
+def unwritable(path: Path, error: OSError) -> BadInput:
+    """The error of a place that no file can be written to."""
     return BadInput(
         f"cannot be written ({error.strerror})",
         where=path,

@@ -5,6 +5,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from rovsim.core.errors import BadInput
+from rovsim.core.files import make_folder, unwritable
 
 HELD: dict[Path, FileLock] = {}  # until the process ends
 
@@ -15,9 +16,9 @@ def hold(folder: Path) -> None:
     Snakemake's own lock is a file that outlives a process that was killed.
 
     Raises:
-        BadInput: another process writes there.
+        BadInput: another process writes there, or nobody can.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     HELD[folder] = FileLock(folder / ".study.lock", blocking=False)
     try:
         HELD[folder].acquire()
@@ -28,3 +29,5 @@ def hold(folder: Path) -> None:
             expected="one study of a campaign at a time",
             remedy="Wait until it ends, or stop it: what it finished is kept.",
         ) from None
+    except OSError as error:
+        raise unwritable(folder, error) from None

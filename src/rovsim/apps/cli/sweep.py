@@ -16,7 +16,7 @@ from rovsim.application.settings import Settings
 from rovsim.apps.cli.complaint import describe_os_error, warn
 from rovsim.apps.cli.dispatch import run_command
 from rovsim.core.errors import BadInput, RovsimError
-from rovsim.core.files import write_text
+from rovsim.core.files import make_folder, write_text
 from rovsim.core.model_names import name_learned
 from rovsim.measurement.loading import load_campaign
 
@@ -55,11 +55,14 @@ def choose_sweep_folder(folder: Path, given: bool) -> Path:
     """The folder of a sweep, made: one that is `given` as it is, else one that no other has.
 
     Two sweeps that begin in the same second would write over each other's runs.
+
+    Raises:
+        BadInput: it cannot be made.
     """
     if given:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(folder.parent)
     for number in count(1):
         one = folder if number == 1 else folder.with_name(f"{folder.name}_{number}")
         try:
