@@ -173,6 +173,7 @@ def test_same_seed_same_numbers(trained):
     X, Y = pairs(trained.settings)
     again = train(X, Y, trained.settings, seed=3)
     assert again.data.tobytes() == trained.data.tobytes()
+    assert again.info == trained.info
 
 
 def test_training_leaves_the_global_random_numbers_alone(trained):

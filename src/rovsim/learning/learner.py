@@ -30,7 +30,8 @@ class Trained:
     """A residual fresh from training.
 
     `data`: exported for the kernels. `arrays`: what the library's own model is rebuilt from.
-    `info`: numbers to report (points, seconds, hyperparameters, final loss).
+    `info`: numbers to report (points, hyperparameters, final loss). No times: equal inputs make
+    equal files.
     """
 
     settings: LearnerSettings

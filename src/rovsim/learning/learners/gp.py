@@ -1,6 +1,5 @@
 """Exact Gaussian process (GPyTorch): a smooth residual, sure of itself only where data is."""
 
-from time import perf_counter
 from typing import Any, Literal, Mapping, Sequence
 
 import numpy as np
@@ -44,7 +43,7 @@ class GpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
     """Tune on some rows, condition on more. See `rovsim.learning.learner.train`."""
-    start, Y = perf_counter(), gaussian.huberize(X, Y, settings)
+    Y = gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
@@ -63,7 +62,6 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
     data = gaussian.export(settings, arrays, Z, weights, variances)
     info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
-    info["seconds"] = round(perf_counter() - start, 3)
     return Trained(settings, data, arrays, info)
 
 

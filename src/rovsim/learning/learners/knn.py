@@ -1,6 +1,5 @@
 """k nearest neighbours (scikit-learn): the mean residual of the most similar moments seen."""
 
-from time import perf_counter
 from typing import Literal, Mapping
 
 import numpy as np
@@ -37,7 +36,6 @@ class KnnSettings(LearnerSettings):
 
 def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress) -> Trained:
     """Keep the training rows. See `rovsim.learning.learner.train`."""
-    start = perf_counter()
     scaling = fit_scaling(settings.features.scaling, X)
     rows = spread_rows(len(X), settings.max_points, seed)
     if len(rows) < (settings.k or 1):
@@ -53,7 +51,7 @@ def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress
     arrays = {"points": Z, "targets": Y, "shift": scaling.shift, "scale": scaling.scale}
     data = export_neighbours(settings.features, scaling, Z, Y, k, settings.weights)
     progress(1, 1)
-    info = {"points": len(rows), "k": k, "seconds": round(perf_counter() - start, 3)}
+    info = {"points": len(rows), "k": k}
     return Trained(settings, data, arrays, info)
 
 

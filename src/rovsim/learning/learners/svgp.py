@@ -1,6 +1,5 @@
 """Sparse variational Gaussian process (GPyTorch; Hensman et al. 2015): all rows, few points."""
 
-from time import perf_counter
 from typing import Any, Literal, Mapping
 
 import numpy as np
@@ -36,7 +35,7 @@ class SvgpSettings(gaussian.GaussianSettings):
 
 def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progress) -> Trained:
     """Maximise the evidence bound by minibatches. See `rovsim.learning.learner.train`."""
-    start, Y = perf_counter(), gaussian.huberize(X, Y, settings)
+    Y = gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
     Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
@@ -50,7 +49,6 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
     data = gaussian.export(settings, arrays, arrays["inducing"], weights, variances)
     info = {"points": len(arrays["inducing"]), "rows": len(rows), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
-    info["seconds"] = round(perf_counter() - start, 3)
     return Trained(settings, data, arrays, info)
 
 
