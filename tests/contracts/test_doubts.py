@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from recordings import campaign_content, write_campaign, write_run
 from rovsim.application.pipeline.reading import (
     judge_recording,
     load_campaign_vehicle,
@@ -170,10 +171,30 @@ def test_a_time_zone_is_told_without_a_remainder_of_nothing(campaign):
     recording, _ = read_recording(load_campaign(campaign), "6dof-1")
     caused = cause(vehicle, recording.commands, 0.0, 120.0)
     lag = cross_correlate(velocities(recording), *caused).best(np.eye(3))[1]
-    for rest, told in ((0.0, "Add +7200 s to the times of the commands."), (5.0, "the +5.0 s")):
+    for rest, told in (
+        (0.0, "Add +7200 s to the times of the commands (`comm"),
+        (5.0, "the +5.0 s"),
+    ):
         late = 7200.0 + rest - lag
         found = cross_correlate(velocities(recording), caused[0] - late, caused[1], late)
         assert told in tell_following(found, np.eye(3))
+
+
+@pytest.mark.parametrize("by", [40.0, 1.7e9])
+def test_commands_of_another_clock_are_shifted_by_what_the_run_says(tmp_path, by):
+    folder = write_run(tmp_path)
+    expected, _ = read_recording(load_campaign(folder), "one")
+    head, *rows = (folder / "commands.csv").read_text().splitlines()
+    times, rest = zip(*(row.split(",", 1) for row in rows), strict=True)
+    later = [f"{float(t) + by:.4f},{others}" for t, others in zip(times, rest, strict=True)]
+    (folder / "commands.csv").write_text("\n".join([head, *later]))
+    with pytest.raises(BadInput, match="commands_shift_s"):
+        read_recording(load_campaign(folder), "one")
+    content = campaign_content()
+    content["runs"][0]["commands_shift_s"] = -by
+    shifted, _ = read_recording(load_campaign(write_campaign(folder, content)), "one")
+    np.testing.assert_allclose(shifted.commands.time, expected.commands.time, atol=1e-6)
+    np.testing.assert_array_equal(shifted.commands.value, expected.commands.value)
 
 
 def test_times_of_commands_in_ms_are_refused(campaign):

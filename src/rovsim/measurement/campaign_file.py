@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from rovsim import AXES
 from rovsim.core.names import Name, as_list, is_name
 from rovsim.core.rotations import BodyAxes, WorldAxes
-from rovsim.core.schema import Axis, PathText, Section
+from rovsim.core.schema import Axis, Number, PathText, Section
 from rovsim.measurement.sensors import Sensors
 
 
@@ -141,7 +141,8 @@ class Run(Section):
     `mocap` is one file, or several that hold different sensors on one clock.
     `commands` is `none` where nothing was commanded (free decay, towing, drifting). `use`: spans
     [from, to] in s, on the clock of the recording, outside of which it is left out (held by hand,
-    on the floor); None: all of it.
+    on the floor); None: all of it. `commands_shift_s`: s that are added to the times of the
+    commands, which then are on the clock of the recording.
     """
 
     id: FileName
@@ -150,6 +151,7 @@ class Run(Section):
     mocap: Annotated[list[FilePath], Field(min_length=1), AfterValidator(_distinct)] | FilePath
     commands: FilePath
     use: Annotated[list[Span], Field(min_length=1)] | None = None
+    commands_shift_s: Number = 0.0
 
     @property
     def sensor_files(self) -> list[str]:

@@ -15,6 +15,7 @@ CLEARER, AWAY = 0.03, 1.0  # correlation by which it must be higher, s beyond th
 QUARTER = 900.0  # s: time zones differ by whole quarters of an hour
 LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
 DAY = 86400.0  # s: no time zones are further apart
+THERE = "to the times of the commands (`commands_shift_s` in the run)"
 FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
 
 
@@ -75,7 +76,7 @@ def _by_start(lag: float, start: float) -> str:
     less = f", less {zone / 3600.0:+g} h for its time zone" if zone else ""
     return (
         "the times of the commands count from 1970, those of the motion from its start: add "
-        f"{zone - start:+.3f} s to the times of the commands. That is the start in the header of "
+        f"{zone - start:+.3f} s {THERE}. That is the start in the header of "
         f"the motion{less}; an `input_delay` that a diagnosis then finds is what is left of it."
     )
 
@@ -88,10 +89,10 @@ def _tell(score: float, lag: float, start: float | None) -> str:
     if zone and abs(lag) < DAY and abs(lag - zone) < LOOSE:
         left = f"{lag - zone:+.1f}"
         rest = f" first, and look at the {left} s that remain" if float(left) else ""
-        told = f"a time zone? Add {zone:+.0f} s to the times of the commands{rest}"
+        told = f"a time zone? Add {zone:+.0f} s {THERE}{rest}"
     else:
         told = (
-            f"add {lag:+.1f} s to the times of the commands. That holds the answer of the "
+            f"add {lag:+.1f} s {THERE}. That holds the answer of the "
             "thrusters too, some 0.2 s: an `input_delay` that a diagnosis then finds, of either "
             "sign, is what is left of the clock; add it as well"
         )

@@ -93,7 +93,8 @@ def _read_commands(
     reader = reader_of(log.format, command_readers(), f"{campaign.file}, commands.format")
     path = campaign.commands_path(run)
     export = reader.read(path, log)
-    return *tidy_commands(export, path), export.notes
+    commands, counts = tidy_commands(export, path)
+    return _shifted(commands, run.commands_shift_s), counts, export.notes
 
 
 def _no_commands(log: CommandLog | None) -> Commands:
@@ -113,8 +114,13 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
         return export, commands
     moved = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
     export = replace(export, time=export.time - start, channels=moved)
-    beside = {k: replace(x, time=x.time - start) for k, x in commands.auxiliary.items()}
-    return export, replace(commands, time=commands.time - start, auxiliary=beside)
+    return export, _shifted(commands, -start)
+
+
+def _shifted(commands: Commands, by: float) -> Commands:
+    """The same commands, `by` s later."""
+    beside = {k: replace(x, time=x.time + by) for k, x in commands.auxiliary.items()}
+    return replace(commands, time=commands.time + by, auxiliary=beside)
 
 
 def _use(export: Export, run: Run) -> tuple[Export, int]:
@@ -207,5 +213,5 @@ def _check_clocks(measured: Array, commands: Array, path: Path) -> None:
             span,
             where=path,
             expected="commands on the clock of the motion capture",
-            remedy="Shift the command times to that clock.",
+            remedy="Say in the run which seconds to add to their times: 'commands_shift_s'.",
         )
