@@ -4,7 +4,10 @@ import subprocess
 
 import pytest
 
+from rovsim.application.configuration import compose
+from rovsim.application.provenance import provenance
 from rovsim.core.making import describe_commit, describe_machine, tell_making
+from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
 
@@ -54,3 +57,11 @@ def test_provenance_has_a_row_for_each_section():
         ("settings.search", "draws 9; trials 3"),
         ("settings.signals.filter", "order 3"),
     ]
+
+
+def test_where_a_result_is_written_is_no_part_of_it():
+    one, other = (
+        provenance(compose([f"out={name}", "port=8502"]), built_in(), None) for name in ("a", "b")
+    )
+    assert one == other
+    assert one["settings"]["replay"]

@@ -22,7 +22,7 @@ SOURCE = Path(rovsim.__file__).parent
 MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
 OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
 LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning.learners")
-UNRELATED = ("command", "tracking", "timing", "blind", "bench", "output", "port", "open")
+UNRELATED = ("command", "tracking", "timing", "blind", "bench", "out", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
 
