@@ -1,8 +1,12 @@
 """The speed benchmark: all ways predict the same, and the page shows what was found."""
 
+from importlib import import_module
+
 import numpy as np
 import pytest
 
+from rovsim.application.configuration import compose
+from rovsim.apps.cli.dispatch import run_command
 from rovsim.benchmarks.speed.accuracy import measure_left
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import Effort, Stopwatch, time_neighbours, time_processes
@@ -35,6 +39,33 @@ def found():
         time_neighbours(stopwatch, 150, 0.05)
         time_processes(stopwatch, 150, 0.05)
     return stopwatch.found
+
+
+def test_what_was_timed_is_told_before_the_next_way_is(monkeypatch):
+    monkeypatch.delattr("os.setpriority")
+    told = []
+    stopwatch = Stopwatch(pairs(), FEW, lambda timed, scheduling: told.append([*timed]))
+    for name in ("one", "other"):
+        stopwatch.time(name, lambda x: x, 1, 0.01)
+    assert told == [["one@1"], ["one@1", "other@1"]]
+
+
+def test_an_interrupted_benchmark_keeps_what_was_timed(tmp_path, monkeypatch):
+    def interrupted(drawn, effort, seconds, tell):
+        stopwatch = Stopwatch(drawn, FEW, tell)
+        stopwatch.time("one", lambda x: x, 1, 0.01)
+        raise KeyboardInterrupt
+
+    monkeypatch.delattr("os.setpriority")
+    bench = import_module("rovsim.apps.cli.commands.bench")
+    monkeypatch.setattr(bench, "inference", interrupted)
+    monkeypatch.setattr(bench, "replay_speeds", lambda *_: {"single_steps_per_s": 2e6})
+    words = ["command=bench", "tank=tiny", "bench.duration=5", f"out='{tmp_path}'"]
+    with pytest.raises(KeyboardInterrupt):
+        run_command(compose(words))
+    (kept,) = tmp_path.iterdir()
+    assert kept.name == "bench.unfinished.json"
+    assert [*Bench.read(kept).inference] == ["one@1"]
 
 
 def test_all_ways_predict_the_same(found):

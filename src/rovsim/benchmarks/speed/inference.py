@@ -19,6 +19,9 @@ from rovsim.results.timing import Latency
 
 BUSY = 100  # us: about what the slowest of our own paths to be counted takes
 CHECKED = 500  # queries whose predictions are compared
+Tell = Callable[
+    [dict[str, Latency], str], None
+]  # what was timed, and how the process was scheduled
 GP = {"kernel": "shared"}  # the settings of `conf/residual/gp.yaml` but for this
 
 
@@ -34,8 +37,8 @@ class Effort:
 class Stopwatch:
     """Times ways to predict and keeps what it found."""
 
-    def __init__(self, pairs: Pairs, effort: Effort) -> None:
-        self.pairs, self.effort, self.scheduling = pairs, effort, ""
+    def __init__(self, pairs: Pairs, effort: Effort, tell: Tell = lambda *_: None) -> None:
+        self.pairs, self.effort, self.scheduling, self.tell = pairs, effort, "", tell
         self.found: dict[str, Latency] = {}
 
     def time(self, name: str, call: Callable, points: int, seconds: float) -> Latency:
@@ -56,6 +59,7 @@ class Stopwatch:
         self.found[f"{name}@{points}"] = stats
         times = f"{stats.median_us:12.1f} us median {stats.p999_us:12.1f} us p99.9"
         print(f"{name}@{points}".ljust(36), times, flush=True)
+        self.tell(self.found, self.scheduling)
         return stats
 
     def beside(
@@ -100,9 +104,14 @@ def busy(x: Array) -> Array:
     return x
 
 
-def inference(pairs: Pairs, effort: Effort, sweep: float) -> tuple[dict[str, Latency], str]:
-    """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s."""
-    stopwatch = Stopwatch(pairs, effort)
+def inference(
+    pairs: Pairs, effort: Effort, sweep: float, tell: Tell = lambda *_: None
+) -> tuple[dict[str, Latency], str]:
+    """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s.
+
+    `tell` is given what is known after each way that was timed.
+    """
+    stopwatch = Stopwatch(pairs, effort, tell)
     stopwatch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
     for points in (2_000, 20_000):
         time_neighbours(stopwatch, points, effort.seconds)

@@ -4,7 +4,8 @@ rovsim bench [out=results] [bench.calls=100000] [bench.seconds=60] [bench.sweep_
 
 Writes results/bench.json, and its table and plots into the page bench.page, if it is there. The
 data are residual features of the default campaign, flown for bench.duration s a run. Needs the
-extra rovsim[benchmark].
+extra rovsim[benchmark]. Interrupted, it leaves bench.unfinished.json with what was timed by then:
+times of two calls are not mixed, so that the next begins anew.
 """
 
 from pathlib import Path
@@ -27,11 +28,12 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model, nominal
 from rovsim.measurement.loading import load_campaign
-from rovsim.results.timing import Bench
+from rovsim.results.timing import Bench, Latency
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
+UNFINISHED = "bench.unfinished.json"  # as far as it is, beside the result
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 
 
@@ -54,16 +56,22 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
     effort = Effort(how.calls, how.warmup, how.seconds)
     speeds = replay_speeds(model, residuals)
-    timed, scheduling = inference(pairs, effort, how.sweep_seconds)
-    bench = Bench(
-        machine=describe_machine(),
-        replay=speeds,
-        inference=timed,
-        scheduling=scheduling,
-        accuracy=measure_accuracy(pairs),
-    )
     path = Path(settings.out or "results") / "bench.json"
+    known = Bench(
+        machine=describe_machine(), replay=speeds, inference={}, scheduling="", accuracy=()
+    )
+    unfinished = path.with_name(UNFINISHED)
+
+    def known_with(timed: dict[str, Latency], scheduling: str) -> Bench:
+        return known.model_copy(update={"inference": timed, "scheduling": scheduling})
+
+    def keep(timed: dict[str, Latency], scheduling: str) -> None:
+        known_with(timed, scheduling).write(unfinished)
+
+    timed = known_with(*inference(pairs, effort, how.sweep_seconds, keep))
+    bench = timed.model_copy(update={"accuracy": measure_accuracy(pairs)})
     bench.write(path)
+    unfinished.unlink(missing_ok=True)
     write_page(Path(how.page), bench)
     say(settings, str(path), bench.to_json())
 
