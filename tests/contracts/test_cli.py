@@ -279,6 +279,21 @@ def test_names_that_are_listed_are_not_listed_again_as_a_remedy():
     assert told[1] == "to: no 'mas'. Expected one of gz, mss. Did you mean 'mss'?"
 
 
+@pytest.mark.usefixtures("few_figures")
+def test_without_a_campaign_that_of_the_study_is_learned_from(
+    campaign, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit):
+        main(["train", "residual=knn", "-q"])
+    assert "no campaign was given. Expected" in unfolded(capsys.readouterr().err)
+    shutil.copytree(campaign, tmp_path / "results" / "tank-default" / "raw")
+    main(["train", "residual=knn", "out=knn", "--json"])
+    ended = capsys.readouterr()
+    assert json.loads(ended.out)["model"] == os.path.join("knn", "model.yaml")
+    assert "that of the study is taken, results/tank-default/raw" in unfolded(ended.err)
+
+
 def test_a_base_that_is_called_as_what_is_trained_is_refused(campaign, tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["train", f"campaign={campaign}", f"model={tmp_path / 'model.yaml'}", "residual=knn"])

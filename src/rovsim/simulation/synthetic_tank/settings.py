@@ -155,6 +155,11 @@ class TankSettings(Section):
         return self
 
     @property
+    def raw_folder(self) -> str:
+        """Where its exports lie, unless another folder is given."""
+        return f"results/{self.name}/raw"
+
+    @property
     def _rates(self) -> list[float]:
         """Of the frames, if there are cameras, and of the lines of the log, Hz."""
         return [*([] if self.sensors else [self.camera.rate]), self.log.rate]

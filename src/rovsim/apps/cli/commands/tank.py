@@ -33,7 +33,7 @@ class Settings(CommandSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Fly the runs and write the folder."""
-    out = Path(settings.out or f"results/{settings.tank.name}/raw")
+    out = Path(settings.out or settings.tank.raw_folder)
     tank, text = settings.tank, str(out)
     if settings.fly:
         tank, text = _with_flight(tank, settings.fly), f"{_begin(tank, settings.fly)}{text}"

@@ -5,7 +5,8 @@ rovsim train campaign=DIR model=nominal|FILE residual=knn|gp|svgp control=3dof|6
 Writes OUT/model.yaml (accepted wherever a model is), OUT/residual.npz, OUT/comparison.json, figures
 of the errors, and an MLflow run. With -m, comma-separated values are swept: residual.k=1,3,5
 control=3dof,6dof campaign=A,B; each combination has a folder of its own, in OUT if that is given.
-Needs the extras rovsim[learn,tracking].
+Without a campaign that of the study is taken, once it is made. Needs the extras
+rovsim[learn,tracking].
 """
 
 from pathlib import Path
@@ -18,6 +19,7 @@ from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
 from rovsim.application.tracking import ranking, tell_ranking, track
+from rovsim.apps.cli.complaint import warn
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
 from rovsim.core.errors import BadInput
@@ -34,14 +36,16 @@ from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
 from rovsim.results.quality import Quality
+from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 FILE = Path("model.yaml")  # in the folder that is written
 
 
 class Settings(TrainingSettings, CampaignSettings):
-    """What `rovsim train` takes."""
+    """What `rovsim train` takes; `tank`: the study whose campaign it is where none is given."""
 
     tracking: TrackingSettings
+    tank: TankSettings
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
@@ -52,6 +56,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     kind = settings.learner.kind
     name = name_learned(kind, settings.control)
     _check_name(settings.model)
+    settings = _of_study(settings)
     data, out = measure_campaign(settings, f"trained/{name}")
     base = load_one_model(settings.model, data.vehicle, catalogue)
     file, story = out / FILE, provenance(settings, catalogue, data.campaign)
@@ -83,6 +88,15 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     text += tell_residual(errors[base.name], errors[corrected.name]) + tell_doubts(data.quality)
     kept = tell_ranking(settings.tracking, data.campaign.name)
     say(settings, f"{text}\n\n{file}\n\n{kept}", {"model": str(file), "errors": errors})
+
+
+def _of_study(settings: Settings) -> Settings:
+    """With the synthetic campaign of the study, where none is given and that has been made."""
+    own = settings.tank.raw_folder
+    if settings.campaign is not None or not Path(own).is_dir():
+        return settings
+    warn(f"no campaign was given: that of the study is taken, {own}")
+    return settings.model_copy(update={"campaign": own})
 
 
 def _check_name(given: str | Sequence[str]) -> None:
