@@ -158,7 +158,7 @@ COMMANDS = {
     "infinite": (cell(7, 1, "inf", ","), ["line 8", "column 't1'", "inf", "commands.kind"]),
     "other clock": (
         lambda lines: [lines[0], "1000.0,1500,1500", "1001.0,1500,1500"],
-        ["1000 to 1001 s", "clock of the motion capture", "Shift"],
+        ["1000 to 1001 s", "clock of the motion capture", "commands_shift_s"],
     ),
     "all empty": (
         lambda lines: [lines[0], "0,,", "1,,"],
