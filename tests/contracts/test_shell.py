@@ -12,7 +12,7 @@ from commands import PAGES, ROOT, commands
 from pages import fenced
 from rovsim import __version__
 from rovsim.application.settings import select
-from rovsim.apps.cli import dispatch
+from rovsim.apps.cli import dispatch, sweep
 from rovsim.apps.cli.main import main
 from rovsim.core.collector import import_large
 from rovsim.dynamics.catalogue import built_in
@@ -48,7 +48,7 @@ def test_every_command_of_the_documents_is_understood(line, monkeypatch):
         understood.append(select(settings, command.Settings))
 
     monkeypatch.setattr(dispatch, "run_command", run)
-    monkeypatch.setattr("rovsim.apps.cli.sweep.run_sweep", understood.append)
+    monkeypatch.setattr(sweep, "run_sweep", lambda words, _: understood.append(words))
     main(shlex.split(line)[1:])
     assert understood
 

@@ -50,7 +50,7 @@ def test_a_sweep_is_checked_before_its_first_run(word, said):
 
 def test_campaigns_of_a_sweep_are_looked_at_first():
     with pytest.raises(BadInput, match="nowhere: no such file or folder"):
-        check_campaigns(["command=train", "seed=1,2", "campaign='nowhere'"])
+        check_campaigns(check_sweep(["command=train", "seed=1,2", "campaign='nowhere'"]))
 
 
 def test_a_sweep_over_slurm_asks_for_one_first(monkeypatch, tmp_path):

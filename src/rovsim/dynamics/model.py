@@ -151,5 +151,9 @@ def zero_acceleration(vehicle: Vehicle) -> Model:
     return Model(ZERO_ACCELERATION, vehicle, vehicle.effects(), inert=True)
 
 
-BUILT_IN = {NOMINAL: nominal, ZERO_ACCELERATION: zero_acceleration}
+def built_in_model(name: str, vehicle: Vehicle) -> Model:
+    """The one of `core.model_names.BUILT_IN` with this name."""
+    return {NOMINAL: nominal, ZERO_ACCELERATION: zero_acceleration}[name](vehicle)
+
+
 BASELINES = (ZERO_ACCELERATION, NOMINAL)  # what every comparison of a study begins with

@@ -8,13 +8,14 @@ from pydantic import Field, field_validator, model_validator
 
 from rovsim.core.errors import BadInput, located, nearest
 from rovsim.core.files import plain
+from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import name_of
 from rovsim.core.schema import PathText, Section, checked
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import EffectEntry, build_effects, describe_effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
-from rovsim.dynamics.model import BUILT_IN, Model
+from rovsim.dynamics.model import Model, built_in_model
 from rovsim.dynamics.uncertainty import Draws, Uncertainty
 from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_vehicle
 from rovsim.results.fitted import Correlation, FittedNoise, Probability
@@ -162,7 +163,7 @@ def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
         BadInput: no such file, or it does not describe a model.
     """
     if spec in BUILT_IN:
-        return BUILT_IN[spec](vehicle)
+        return built_in_model(spec, vehicle)
     if not Path(spec).suffix and not Path(spec).exists():
         raise BadInput(
             f"unknown model '{spec}'",

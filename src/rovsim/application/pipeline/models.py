@@ -5,10 +5,11 @@ from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import require_replaceable
+from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import as_list, is_name
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model import BUILT_IN, Model
+from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import SCHEMA, load_model, write_model
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.results.diagnosis import Diagnosis

@@ -12,7 +12,7 @@ from rovsim.apps.cli.complaint import complain, describe_os_error
 from rovsim.core.collector import end_at_once
 from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, RovsimError, unlisted
-from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
+from rovsim.core.model_names import BUILT_IN
 from rovsim.core.termination import CODE, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
@@ -20,7 +20,6 @@ PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to
 FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
 FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
 OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
-BUILT_IN = (NOMINAL, ZERO_ACCELERATION)
 COMMANDS = Path(__file__).with_name("commands")
 SWEPT = ("campaign", "model", "effects_file", "fly")  # of these: paths, of which -m takes several
 
@@ -81,9 +80,9 @@ def _run(command: str, overrides: list[str], sweep: bool) -> None:
     if sweep:
         from rovsim.apps.cli.sweep import check_sweep, run_sweep
 
-        check_sweep(whole)
+        campaigns = check_sweep(whole)
         require_taken(command, overrides)
-        run_sweep(whole)
+        run_sweep(whole, campaigns)
         return
     settings = compose(whole)
     require_taken(command, overrides)

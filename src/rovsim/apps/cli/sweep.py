@@ -27,8 +27,10 @@ FAILED = "failed.txt"
 NAMED = ("command", "campaign", "residual", "control", "out", "output")
 
 
-def run_sweep(overrides: Sequence[str]) -> None:
+def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
     """Let Hydra run a command once for every combination of the given values.
+
+    `campaigns`: those that `check_sweep` found.
 
     Raises:
         BadInput: there is no launcher, a campaign cannot be read, or some of the runs failed; all
@@ -39,7 +41,7 @@ def run_sweep(overrides: Sequence[str]) -> None:
     from rovsim.application.conf_search import first_folder
 
     check_launcher(overrides)
-    check_campaigns(overrides)
+    check_campaigns(campaigns)
     words = [word for word in overrides if not word.startswith(f"{FOLDER}=")]
     folder = choose_sweep_folder(sweep_folder(first_values(overrides)), given=words != [*overrides])
     for old in folder.rglob(FAILED):
@@ -119,37 +121,36 @@ def first_values(overrides: Sequence[str]) -> list[str]:
     return [f"{word.partition('=')[0]}={v[0]}" if v else word for word, v in listed]
 
 
-def check_sweep(overrides: Sequence[str]) -> None:
+def check_sweep(overrides: Sequence[str]) -> list[Path]:
     """Compose the run of each value, the others at their first, before any of them begins.
+
+    Returns the campaigns that they name, each once.
 
     Raises:
         BadInput: one of the values cannot be used.
     """
-    for run in _vary_one(overrides):
-        compose(run).learner  # noqa: B018 - its settings are checked when they are asked for
+    runs = [compose(words) for words in _vary_one(overrides)]
+    for run in runs:
+        run.learner  # noqa: B018 - its settings are checked when they are asked for
+    return [Path(name) for name in dict.fromkeys(run.campaign for run in runs) if name is not None]
 
 
-def check_campaigns(overrides: Sequence[str]) -> None:
+def check_campaigns(folders: Sequence[Path]) -> None:
     """Look at the campaigns of a sweep; each of its runs would fail alike.
 
     Raises:
         BadInput: one of them cannot be read.
     """
-    for run in _vary_one(overrides, only="campaign"):
-        if (campaign := compose(run).campaign) is not None:
-            load_campaign(Path(campaign))
+    for folder in folders:
+        load_campaign(folder)
 
 
-def _vary_one(overrides: Sequence[str], only: str = "") -> list[list[str]]:
-    """Overrides of the first run, and of each further value with all others at their first.
-
-    `only`: a key; the values of others stay at their first.
-    """
+def _vary_one(overrides: Sequence[str]) -> list[list[str]]:
+    """Overrides of the first run, and of each further value with all others at their first."""
     first = first_values(overrides)
     others = [
-        (k, f"{key}={value}")
+        (k, f"{word.partition('=')[0]}={value}")
         for k, word in enumerate(overrides)
-        if (key := word.partition("=")[0]) == only or not only
         for value in _list_values(word)[1:]
     ]
     return [first, *([*first[:k], word, *first[k + 1 :]] for k, word in others)]

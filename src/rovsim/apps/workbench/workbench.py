@@ -17,12 +17,12 @@ from rovsim.apps.workbench.kept_replays import KeptReplays
 from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
-from rovsim.core.model_names import EFFECTS
+from rovsim.core.model_names import BUILT_IN, EFFECTS
 from rovsim.core.names import as_list
 from rovsim.design.settings import Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
-from rovsim.dynamics.model import BUILT_IN, Model, zero_acceleration
+from rovsim.dynamics.model import Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.ladder import Ladder, Step

@@ -22,8 +22,9 @@ from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
+from rovsim.core.model_names import BUILT_IN
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model import BUILT_IN, Model
+from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.measurement.signals.motion import Motion

@@ -13,9 +13,8 @@ from rovsim.apps.cli.output import say
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
 from rovsim.core.extras import require
-from rovsim.core.model_names import ZERO_ACCELERATION
+from rovsim.core.model_names import BUILT_IN, ZERO_ACCELERATION
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.model import BUILT_IN
 from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
