@@ -221,7 +221,7 @@ def test_a_campaign_without_a_test_run_is_told_so(content):
     ],
 )
 def test_a_residual_that_does_not_help_is_told_so(without, corrected, told):
-    said = " ".join(terminal.tell_residual(without, corrected).split(" ")).replace("\n", " ")
+    said = terminal.tell_residual(without, corrected).replace("\n", " ")
     assert said.strip().endswith(told)
     assert bool(said.strip()) == bool(told)
 

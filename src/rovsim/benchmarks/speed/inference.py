@@ -19,9 +19,8 @@ from rovsim.results.timing import Latency
 
 BUSY = 100  # us: about what the slowest of our own paths to be counted takes
 CHECKED = 500  # queries whose predictions are compared
-Tell = Callable[
-    [dict[str, Latency], str], None
-]  # what was timed, and how the process was scheduled
+# What was timed, and how the process was scheduled.
+Tell = Callable[[dict[str, Latency], str], None]
 GP = {"kernel": "shared"}  # the settings of `conf/residual/gp.yaml` but for this
 
 

@@ -18,10 +18,8 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 # Readings before the present one, in growing groups whose sum counts: about a second at 20 Hz.
 GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))
-SUBSYSTEMS = (
-    (0, 2, 4),
-    (1, 3, 5),
-)  # longitudinal and lateral, which a plane of symmetry keeps apart
+# Longitudinal and lateral, which a plane of symmetry keeps apart.
+SUBSYSTEMS = ((0, 2, 4), (1, 3, 5))
 # 1/s: two axes that always drive each other this fast do so within what the filters, whose
 # bandwidth is about 1 Hz, take for a disturbance. A torpedo's sway and yaw: 0.6.
 COUPLED = 0.4

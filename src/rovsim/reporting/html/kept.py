@@ -6,7 +6,7 @@ from base64 import b64encode
 from dataclasses import dataclass
 from html import unescape
 from pathlib import Path
-from typing import Iterable
+from typing import Iterable, Sequence
 
 # What only the report of that command shows; one of a study shows both.
 SECTIONS = {"compare": 'id="compare"', "diagnose": 'id="verdict"'}
@@ -63,10 +63,15 @@ def find_outdated(page: Path, command: str, campaign: str | None) -> Outdated:
     figures = [
         path
         for path in sorted((page.parent / "figures").glob("*.png"))
-        if texts and any(b64encode(path.read_bytes()).decode() in text for text in texts)
+        if _shows(texts, path.read_bytes())
     ]
     told = next(filter(None, (_tell_other(page.parent, text, campaign) for text in texts)), "")
     return Outdated(tuple(figures), (kept,) if kept in earlier else (), told)
+
+
+def _shows(texts: Sequence[str], picture: bytes) -> bool:
+    code = b64encode(picture).decode()
+    return any(code in text for text in texts)
 
 
 def _tell_other(out: Path, text: str, campaign: str | None) -> str:
