@@ -41,6 +41,11 @@ class SettledAnswer:
     whole: Fit | None = None
 
     @property
+    def size(self) -> int:
+        """How many numbers were fitted."""
+        return len(self.fit.hypothesis.x)
+
+    @property
     def complete(self) -> bool:
         """Whether it leaves nothing."""
         return self.fit.is_finite and not (self.structures or self.refused)
@@ -102,18 +107,19 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer
 
 
 def choose(one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation) -> SettledAnswer:
-    """Of two answers the one that surely replays better; else what is complete, or the likelier.
+    """Of two answers the one that surely replays better; else what is complete, or the smaller.
 
-    Where an answer is not complete, what its likelihood takes for noise is physics. So each replays
-    stretches that took no part, at the values that replay the others best, as it would end; where
-    these do not tell, each run at the values that replay the other runs best.
+    Where an answer is not complete, what its likelihood takes for noise is physics, and so says
+    little. So each replays stretches that took no part, at the values that replay the others best,
+    as it would end; where these do not tell, each run at the values that replay the other runs
+    best.
     """
     better = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
     if better is None:
         better = holdout.prefers_between_runs(one.fit, other.fit)
     if better is not None:
         return one if better else other
-    return one if not other.complete and one.score >= other.score else other
+    return other if other.complete else min(one, other, key=lambda a: (a.size, -a.score))
 
 
 def finish(
@@ -125,7 +131,7 @@ def finish(
         answer: the answer.
         runs: all that it was fitted to.
     """
-    if answer.lasting and len(answer.fit.hypothesis.x):
+    if answer.lasting and answer.size:
         answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
     if answer.lasting or answer.whole is None:
         return answer, *include_rest(answer.fit, runs)
