@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from rovsim.diagnosis.answer import choose
+from rovsim.diagnosis.answer import choose_answer
 
 SMALL = SimpleNamespace(size=3, score=10.0, complete=False, replayed="small", fit="small")
 LARGE = SimpleNamespace(size=9, score=50.0, complete=False, replayed="large", fit="large")
@@ -33,15 +33,15 @@ def told(held: bool | None, between: bool | None) -> SimpleNamespace:
     ],
 )
 def test_what_replays_better_is_given_or_else_the_smaller(order, held, between, given):
-    assert choose(*order, told(held, between)) is given
+    assert choose_answer(*order, told(held, between)) is given
 
 
 def test_of_two_alike_the_likelier_is_given():
     likelier = SimpleNamespace(**vars(SMALL) | {"score": 11.0})
-    assert choose(SMALL, likelier, told(None, None)) is likelier
-    assert choose(likelier, SMALL, told(None, None)) is likelier
+    assert choose_answer(SMALL, likelier, told(None, None)) is likelier
+    assert choose_answer(likelier, SMALL, told(None, None)) is likelier
 
 
 def test_what_leaves_nothing_comes_before_what_is_smaller():
     complete = SimpleNamespace(**vars(LARGE) | {"complete": True})
-    assert choose(SMALL, complete, told(None, None)) is complete
+    assert choose_answer(SMALL, complete, told(None, None)) is complete

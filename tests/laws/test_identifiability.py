@@ -234,5 +234,5 @@ def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(del
 
 def test_what_wanders_may_be_what_has_no_name():
     drift = DriftFit(Rate(0.01, std=0.001, lr_statistic=120.0), lr_margin=100.0)
-    assert name_drift(drift, lasting=False).probability == pytest.approx(1.0)
-    assert name_drift(drift, lasting=True).probability is None
+    assert name_drift(drift, leaves_physics=False).probability == pytest.approx(1.0)
+    assert name_drift(drift, leaves_physics=True).probability is None

@@ -14,8 +14,8 @@ from rovsim.core.rotations import exp, log, multiply, normalized
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
     absorb_delay,
-    search_consistent,
-    seen_through,
+    search_with_consistent_filter,
+    with_camera_filter,
 )
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.clocks import InputDelay
@@ -230,11 +230,13 @@ def test_binned_recordings_are_turned_back_too():
 )
 def test_a_delay_is_the_filters_where_the_noise_leaves_it_open(delay, likelihood, absorbed):
     smoothing, base = (
-        Smoothing(6.0, std=0.3, lr_statistic=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01),
+        Smoothing(
+            6.0, std=0.3, lr_statistic=100.0, noise_cutoff=6.0, lowest=5.5, highest=7.0, frame=0.01
+        ),
         model(),
     )
     delayed = Term(InputDelay(delay=delay), ("delay",))
-    h = Hypothesis(seen_through(base, smoothing), (delayed,))
+    h = Hypothesis(with_camera_filter(base, smoothing), (delayed,))
     found = SimpleNamespace(hypothesis=h, columns=[[0]], std=np.array([0.01]))
     unmoved = SimpleNamespace(x=np.empty(0))
     rest = SimpleNamespace(is_finite=np.isfinite(likelihood), hypothesis=unmoved)
@@ -257,7 +259,7 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
     """`likelier`: by how much the lag is than the filter's latency, twice the log likelihood."""
     base = model()
     smoothing = Smoothing(
-        6.0, std=0.3, lr_statistic=100.0, told=6.0, lowest=5.5, highest=7.0, frame=0.01
+        6.0, std=0.3, lr_statistic=100.0, noise_cutoff=6.0, lowest=5.5, highest=7.0, frame=0.01
     )
 
     def found(start, score=0.0):
@@ -271,7 +273,8 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
         return found(replace(start, terms=late), -likelier)
 
     h = Hypothesis(
-        seen_through(base, smoothing), (Term(ThrusterLag(time_constant=lag), ("time_constant",)),)
+        with_camera_filter(base, smoothing),
+        (Term(ThrusterLag(time_constant=lag), ("time_constant",)),),
     )
     workspace = SimpleNamespace(fit=fit, score=lambda one: one.two_log_likelihood, penalty=0.0)
     again, finer = absorb_delay(SearchResult(workspace, found(h), ()), base, smoothing)
@@ -294,7 +297,9 @@ def test_what_the_noise_tells_of_a_filter_holds_unless_the_motion_still_differs(
 ):
     """Dry friction passed for less delay, the filter for one of 13.7 Hz, and that for a lag."""
     filters = [
-        Smoothing(f, std=0.1, lr_statistic=100.0, told=8.7, lowest=7.8, highest=14.4, frame=0.01)
+        Smoothing(
+            f, std=0.1, lr_statistic=100.0, noise_cutoff=8.7, lowest=7.8, highest=14.4, frame=0.01
+        )
         for f in (8.7, 13.7)
     ]
     starts = [SearchStart(None, None, one) for one in filters]
@@ -305,7 +310,7 @@ def test_what_the_noise_tells_of_a_filter_holds_unless_the_motion_still_differs(
         best = SimpleNamespace(hypothesis=Hypothesis(model(), late))
         return SearchResult(None, best, ()), replace(start.smoothing, cutoff=ended[k])
 
-    start, selection, smoothing = search_consistent(starts, search_from)
+    start, selection, smoothing = search_with_consistent_filter(starts, search_from)
     assert start is starts[chosen]
     assert smoothing.cutoff == ended[chosen]
     assert selection.best.hypothesis.terms == late

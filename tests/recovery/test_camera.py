@@ -61,7 +61,13 @@ def test_a_slow_error_of_the_cameras_is_told_from_noise_and_from_turbulence(tmp_
 def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypatch):
     base, runs = observed(tmp_path, duration=60.0)
     wrong = Smoothing(
-        cutoff=1.5, std=0.01, lr_statistic=100.0, told=1.5, lowest=1.49, highest=1.51, frame=0.01
+        cutoff=1.5,
+        std=0.01,
+        lr_statistic=100.0,
+        noise_cutoff=1.5,
+        lowest=1.49,
+        highest=1.51,
+        frame=0.01,
     )
     monkeypatch.setattr("rovsim.diagnosis.explanation.find_smoothing", lambda base, runs: wrong)
     found = diagnose_train_runs(base, runs, SearchSettings(most_effects=1), catalogue=built_in())

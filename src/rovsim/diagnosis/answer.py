@@ -1,8 +1,8 @@
-"""An answer: what the search selected, validated, at its final values, and what it leaves."""
+"""An answer: the accepted effects, validated, at their final values, and what they leave."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
@@ -26,10 +26,17 @@ from rovsim.estimation.replay_fit import fit_to_replays
 
 @dataclass(frozen=True, eq=False)
 class SettledAnswer:
-    """An answer: its final values, how likely it is, and all that it leaves unexplained.
+    """The accepted effects at their final values, and all that they leave unexplained.
 
-    `refused`: hold-out validation refused effects, and nothing else explains what these did.
-    `whole`: the same with all of a vehicle file that is off, by which what is left is judged.
+    Attributes:
+        selection: the search, with the effects that hold-out validation let pass.
+        fit: of these effects to all train runs.
+        bank: the filters of that fit.
+        score: its 2 log L, less the penalty of the free parameters.
+        structures: what the innovations still depend on, by more than chance.
+        refused: hold-out validation removed effects, and no other effect explains what they did.
+        whole_file_fit: where the vehicle file is loose, a fit in which all that the file states is
+            free as well; `structures` are then those that this fit leaves.
     """
 
     selection: SearchResult
@@ -38,7 +45,7 @@ class SettledAnswer:
     score: float
     structures: Sequence[Structure]
     refused: bool = False
-    whole: Fit | None = None
+    whole_file_fit: Fit | None = None
 
     @property
     def size(self) -> int:
@@ -47,18 +54,21 @@ class SettledAnswer:
 
     @property
     def complete(self) -> bool:
-        """Whether it leaves nothing."""
+        """Whether nothing but noise is left."""
         return self.fit.is_finite and not (self.structures or self.refused)
 
     @property
-    def lasting(self) -> bool:
-        """Whether more is left than single pushes: then names may stand for what has none."""
+    def leaves_physics(self) -> bool:
+        """Whether more is left than single pushes: physics that no accepted effect describes.
+
+        An accepted effect may then only stand in for part of that physics.
+        """
         single = all(one.moment for one in self.structures)
         return self.refused or not (self.fit.is_finite and single)
 
     @cached_property
     def replayed(self) -> Model:
-        """At the values that replay the stretches best that it was chosen by."""
+        """The model at the values that replay best, of the stretches the search was made on."""
         fit = self.selection.best
         if len(fit.hypothesis.x):
             fit = _refit_to_replays(fit, self.selection.workspace.bank)
@@ -68,10 +78,20 @@ class SettledAnswer:
 def settle_noticed(
     selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation, seed: int
 ) -> SettledAnswer:
-    """Names that a user would notice; where they leave something, the others too if they do not."""
+    """Settle the effects that a user would notice; where those leave physics, the others as well.
+
+    An effect goes unnoticed if it hardly changes the error of windows of 2 s. Such effects are only
+    accepted where, together with them, nothing but noise is left.
+
+    Args:
+        selection: where the search ended.
+        usable: the train runs.
+        holdout: the stretches of them that took no part in the search.
+        seed: of the draws that tell what chance explains.
+    """
     noticed = drop_idle(drop_unsure(selection))
     answer = settle(noticed, usable, holdout)
-    if not answer.lasting:
+    if not answer.leaves_physics:
         return answer
     every = drop_unsure(search_unnoticed(selection, seed))
     if every.best is noticed.best:
@@ -83,36 +103,38 @@ def settle_noticed(
 def settle(
     selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation
 ) -> SettledAnswer:
-    """What hold-out validation passes, at its final values on all runs, and what it leaves."""
+    """Validate a selection on the held-out stretches, and fit what passes to all train runs."""
     selection, whole = holdout.judge(selection)
     settled = _settle_values(selection, usable)
-    fewer = holdout.keep_earning(selection) if settled.lasting else selection
+    fewer = holdout.keep_earning(selection) if settled.leaves_physics else selection
     if fewer.best is not selection.best:
         settled = _settle_values(fewer, usable)
     return replace(settled, refused=not whole and settled.complete)
 
 
 def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer:
-    """At its final values on all runs, without what these do not bear out."""
+    """Fit a selection to all train runs, without effects that are not worth their penalty there."""
     fit, bank = polish_selection(selection, usable.runs)
-    borne_out = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
-    if borne_out is not fit:
-        fewer = selection.fit(borne_out.hypothesis)
+    worth_it = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
+    if worth_it is not fit:
+        fewer = selection.fit(worth_it.hypothesis)
         if fewer.is_finite:
             return _settle_values(replace(selection, best=fewer), usable)
     score = selection.workspace.score(fit)
     whole = fit_whole_file(fit.hypothesis, bank, fit.noise)
     left = find_structure(fit if whole is None else whole, bank) if fit.is_finite else []
-    return SettledAnswer(selection, fit, bank, score, left, whole=whole)
+    return SettledAnswer(selection, fit, bank, score, left, whole_file_fit=whole)
 
 
-def choose(one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation) -> SettledAnswer:
-    """Of two answers the one that surely replays better; else what is complete, or the smaller.
+def choose_answer(
+    one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation
+) -> SettledAnswer:
+    """Choose the answer that surely replays better; else the complete or the smaller one.
 
-    Where an answer is not complete, what its likelihood takes for noise is physics, and so says
-    little. So each replays stretches that took no part, at the values that replay the others best,
-    as it would end; where these do not tell, each run at the values that replay the other runs
-    best.
+    The likelihood alone cannot choose: where an answer is not complete, it takes physics for noise.
+    So both answers first replay the held-out stretches, each at the values that replay the other
+    stretches best. If that does not decide, they replay every run, each time at the values that
+    replay the other runs best.
     """
     better = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
     if better is None:
@@ -122,27 +144,44 @@ def choose(one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation)
     return other if other.complete else min(one, other, key=lambda a: (a.size, -a.score))
 
 
-def finish(
-    answer: SettledAnswer, runs: Sequence[ObservedRun]
-) -> tuple[SettledAnswer, Fit, CommonScale | None]:
-    """At its final values; the fit with intervals that hold all that is not known, and the scale.
+class FinalAnswer(NamedTuple):
+    """An answer as it is reported.
+
+    Attributes:
+        answer: at the values that are reported.
+        fit: the same values, with intervals that include what the runs cannot know.
+        scale: the factor common to all forces and inertias, where the runs leave it open.
+    """
+
+    answer: SettledAnswer
+    fit: Fit
+    scale: CommonScale | None
+
+
+def finish(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> FinalAnswer:
+    """Give an answer the values and the intervals that are reported.
+
+    Where physics is left that no effect describes, a likelihood would be misled by it, so the
+    values that replay best are reported. Else the intervals are widened by what else may be wrong:
+    the rest of the vehicle file, or the factor common to all forces and inertias.
 
     Args:
         answer: the answer.
-        runs: all that it was fitted to.
+        runs: all train runs, which it was fitted to.
     """
-    if answer.lasting and answer.size:
+    if answer.leaves_physics and answer.size:
         answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
-    if answer.lasting or answer.whole is None:
-        return answer, *include_rest(answer.fit, runs)
-    if is_right_elsewhere(answer.whole, answer.fit.hypothesis):
-        return answer, *include_scale(answer.fit, runs)
-    final, scale = settle_whole_file(answer.whole, answer.fit.hypothesis, answer.bank)
-    return replace(answer, fit=final), final, scale
+    whole, selected = answer.whole_file_fit, answer.fit.hypothesis
+    if answer.leaves_physics or whole is None:
+        return FinalAnswer(answer, *include_rest(answer.fit, runs))
+    if is_right_elsewhere(whole, selected):
+        return FinalAnswer(answer, *include_scale(answer.fit, runs))
+    final, scale = settle_whole_file(whole, selected, answer.bank)
+    return FinalAnswer(replace(answer, fit=final), final, scale)
 
 
 def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
-    """The values that replay best, without effects that these might as well lack."""
+    """Fit to replays, without effects whose values may then as well be those of their absence."""
     again = fit_to_replays(fit, bank)
     while len(again.hypothesis.terms) > 1:
         doubtful = find_doubtful(again)
@@ -156,5 +195,9 @@ def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
 def polish_selection(
     selection: SearchResult, runs: Sequence[ObservedRun]
 ) -> tuple[Fit, FilterBank]:
-    """Fitted once more to all runs under its own noise, with filters that suit it."""
+    """Fit a selection to all train runs, with the noise and the filters that suit it.
+
+    Returns:
+        The fit, and the filters that it was made with.
+    """
     return polish(selection.best, runs, selection.reach)

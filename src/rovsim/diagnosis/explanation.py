@@ -1,15 +1,20 @@
-"""What explains the train runs: searched, settled, and again where a premise proves wrong."""
+"""Explain the train runs: search and validate, again where an assumption turns out to be wrong.
+
+Two things are assumed at first: that the cameras smooth the poses if their noise looks as if they
+did, and that the current may wander. Where an answer contradicts one of them, all is done anew
+without it.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Sequence
 
-from rovsim.diagnosis.answer import SettledAnswer, choose, settle, settle_noticed
+from rovsim.diagnosis.answer import SettledAnswer, choose_answer, settle, settle_noticed
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
     absorb_delay,
-    search_consistent,
-    seen_through,
+    search_with_consistent_filter,
+    with_camera_filter,
 )
 from rovsim.diagnosis.selection.forward_selection import search
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
@@ -36,9 +41,15 @@ Stages = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class DiagnosisProblem:
-    """What is to be explained, and what is taken for given meanwhile.
+    """What is to be explained, and under which assumptions.
 
-    `smooths`: whether the cameras may smooth; `usable` says whether the water may wander.
+    Attributes:
+        base: the model that is diagnosed.
+        usable: the train runs; each says whether the current may wander in it.
+        settings: how the search decides.
+        catalogue: the effects that may be missing.
+        seed: of the draws that tell what chance explains.
+        cameras_may_smooth: whether a filter of the cameras is looked for.
     """
 
     base: Model
@@ -46,14 +57,19 @@ class DiagnosisProblem:
     settings: SearchSettings
     catalogue: Catalogue
     seed: int
-    smooths: bool = True
+    cameras_may_smooth: bool = True
 
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """An answer, where its search began, and what it was validated by.
+    """An answer, and how it was found.
 
-    `problem`: as it was solved; `smoothing` of the cameras, None for none.
+    Attributes:
+        problem: the problem with the assumptions that held in the end.
+        answer: the accepted effects, and what they leave.
+        start: where the search began.
+        smoothing: the filter of the cameras; None where they do not smooth.
+        holdout: the stretches that the answer was validated on.
     """
 
     problem: DiagnosisProblem
@@ -64,34 +80,38 @@ class Explanation:
 
 
 def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
-    """What explains the runs; asked anew without a premise that does not hold.
+    """Search for the missing effects and validate them, until the assumptions hold.
+
+    Args:
+        problem: what is to be explained.
+        stage: is told the name of each step as it begins.
 
     Raises:
-        ModelLost: no filter holds the model to some of the runs.
+        ModelLost: in some run the model diverges, whatever the filter's corrections.
     """
     base, usable = problem.base, problem.usable
     stage("observing")
-    smoothing = find_smoothing(base, usable.runs) if problem.smooths else None
+    smoothing = find_smoothing(base, usable.runs) if problem.cameras_may_smooth else None
     chosen, apart = keep_apart(usable.runs)
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
         stage("searching")
-        selection = search(start.workspace, start.nothing, problem.seed)
+        selection = search(start.workspace, start.base_fit, problem.seed)
         return (
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
         )
 
-    starts = _begin(problem, smoothing, chosen)
-    start, selection, smoothing = search_consistent(starts, search_from)
+    starts = _make_starts(problem, smoothing, chosen)
+    start, selection, smoothing = search_with_consistent_filter(starts, search_from)
     holdout = HoldoutValidation(apart, usable.runs, selection.best.noise.drift is not None)
     answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
-        return explain(replace(problem, smooths=False), stage)
+        return explain(replace(problem, cameras_may_smooth=False), stage)
     stage("checking")
-    if answer.lasting:
-        seen = seen_through(base, smoothing)
-        joint = settle(fit_jointly(start.workspace, seen, usable.moved), usable, holdout)
-        answer = choose(answer, _unmask(joint), holdout)
+    if answer.leaves_physics:
+        filtered = with_camera_filter(base, smoothing)
+        joint = settle(fit_jointly(start.workspace, filtered, usable.moved), usable, holdout)
+        answer = choose_answer(answer, _unmask(joint), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return explain(replace(problem, usable=usable.where_no_water_wanders()), stage)
@@ -99,47 +119,49 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:
-    """An answer that seems to leave nothing, beside a law that its names may stand in for."""
-    if answer.lasting or answer.whole is not None:
+    """Add to what an answer leaves any law that its accepted effects may only stand in for."""
+    if answer.leaves_physics or answer.whole_file_fit is not None:
         return answer
     masked = find_masked_laws(answer.selection)
     return replace(answer, structures=(*masked, *answer.structures))
 
 
-def _begin(
+def _make_starts(
     problem: DiagnosisProblem, smoothing: Smoothing | None, runs: Sequence[ObservedRun]
 ) -> Iterator[SearchStart]:
-    """From where to search, the last one where none before ends where it began; made when asked.
+    """Where to search from, each start made only when it is asked for.
 
-    Behind a filter what the motion tells of its delay is used before that is taken for something
-    else. But where it is far from what the noise tells, something else may pass for a delay: then
-    what the noise tells comes first.
+    Where the cameras smooth, the delay of the motion gives the filter's cutoff more precisely than
+    the noise does. So the search starts from that cutoff, before an effect can take up the delay.
+    But where the two cutoffs are far apart, another missing effect may look like a delay; then the
+    search starts from the cutoff that the noise gives, and from the other one only if that fails.
     """
 
-    def look(smoothing: Smoothing | None) -> SearchStart:
-        seen = seen_through(problem.base, smoothing)
-        workspace = _observe(seen, runs, problem)
-        return SearchStart(workspace.fit(Hypothesis(seen)), workspace, smoothing)
+    def start_with(smoothing: Smoothing | None) -> SearchStart:
+        filtered = with_camera_filter(problem.base, smoothing)
+        workspace = _observe(filtered, runs, problem)
+        return SearchStart(workspace.fit(Hypothesis(filtered)), workspace, smoothing)
 
-    told = look(smoothing)
+    by_noise = start_with(smoothing)
     if smoothing is None:
-        yield told
+        yield by_noise
         return
-    nothing = SearchResult(told.workspace, told.nothing, ())
-    _, finer = absorb_delay(nothing, problem.base, smoothing)
-    if finer is smoothing or not finer.is_near(smoothing):
-        yield told
-    if finer is not smoothing:
-        yield look(finer)
+    no_effects = SearchResult(by_noise.workspace, by_noise.base_fit, ())
+    _, by_delay = absorb_delay(no_effects, problem.base, smoothing)
+    if by_delay is smoothing or not by_delay.is_near(smoothing):
+        yield by_noise
+    if by_delay is not smoothing:
+        yield start_with(by_delay)
 
 
 def _observe(
     base: Model, runs: Sequence[ObservedRun], problem: DiagnosisProblem
 ) -> SearchWorkspace:
-    """Columns of the candidates, and the noise that is left when all of them may act at once.
+    """Observe the runs, linearise all candidates, and fit the noise that is left beside them all.
 
-    The columns are made with filters that take all the base misses for noise: these hold it close
-    to the measurement. The filters of the search then suit the noise that was found.
+    The candidates are linearised with filters that take everything the base lacks for noise, since
+    these filters keep the base close to the measurement. The search then uses filters that suit the
+    noise that is left when all candidates may act at once.
     """
     first = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)

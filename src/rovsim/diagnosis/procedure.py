@@ -66,29 +66,43 @@ def diagnose_train_runs(
     seed: int = 0,
     stage: Stages = lambda name: None,
 ) -> TrainDiagnosis:
-    """Find what a model lacks on the train runs of a campaign."""
+    """Find what a model lacks on the train runs of a campaign.
+
+    A run in which the model diverges whatever the filter's corrections is only used up to there.
+
+    Args:
+        base: the model that is diagnosed.
+        train: the train runs.
+        settings: how the search decides.
+        catalogue: the effects that may be missing.
+        seed: of the draws that tell what chance explains.
+        stage: is told the name of each step as it begins.
+    """
     one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
-    # models that diverge on the way are refused by what is not finite
+    # models may diverge during a search: they are refused for numbers that are not finite
     with one_thread, np.errstate(over="ignore", invalid="ignore"):
         usable = select_usable(train)
         while usable.enough:
             try:
-                return _name(
-                    explain(DiagnosisProblem(base, usable, settings, catalogue, seed), stage)
-                )
-            except ModelLost as away:
-                runs, lost = away.leave_out(usable.runs)
+                problem = DiagnosisProblem(base, usable, settings, catalogue, seed)
+                return _summarise(explain(problem, stage))
+            except ModelLost as diverged:
+                runs, lost = diverged.leave_out(usable.runs)
                 usable = select_usable(runs, {**usable.lost, **lost})
         return TrainDiagnosis(base, usable)
 
 
-def _name(explained: Explanation) -> TrainDiagnosis:
-    """All that is said of an explanation: names and how sure they are, and what has none."""
+def _summarise(explained: Explanation) -> TrainDiagnosis:
+    """All that is reported of an explanation.
+
+    These are the accepted effects with how sure they are, and a law or a force in time for what
+    no effect describes.
+    """
     problem, smoothing = explained.problem, explained.smoothing
     base, usable = problem.base, problem.usable
     answer, wider, scale = finish(explained.answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
-    law = _propose(answer, explained, camera) if answer.lasting else None
+    law = _propose(answer, explained, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals
     terms = name_terms(wider, rivals)
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
@@ -98,7 +112,7 @@ def _name(explained: Explanation) -> TrainDiagnosis:
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
-            named.append(name_drift(drift, answer.lasting))
+            named.append(name_drift(drift, answer.leaves_physics))
     selected = rank_selected(base, named, usable.runs)
     if answer.structures and not proposed:
         selected = doubt_small(selected, answer.structures[0].share)
@@ -109,7 +123,7 @@ def _name(explained: Explanation) -> TrainDiagnosis:
         answer.fit,
         _correlate(wider),
         selected,
-        ranking=rank_alone(start.workspace, start.nothing, answer.fit),
+        ranking=rank_alone(start.workspace, start.base_fit, answer.fit),
         rivals=rivals,
         structures=answer.structures,
         refused=answer.refused or not answer.fit.is_finite,
@@ -122,7 +136,7 @@ def _name(explained: Explanation) -> TrainDiagnosis:
 
 
 def _correlate(fit: Fit) -> Correlation:
-    """How values hang together; nothing is said where a fit does not know it."""
+    """Correlation of the fitted values; empty where the fit has no finite covariance."""
     if not np.isfinite(fit.covariance).all():
         return Correlation()
     return correlate(fit.covariance, fit.hypothesis.parameter_names)
@@ -131,7 +145,7 @@ def _correlate(fit: Fit) -> Correlation:
 def _propose(
     answer: SettledAnswer, explained: Explanation, camera: Sequence[Named]
 ) -> ProposedLaw | None:
-    """An equation for what is left, where one holds."""
+    """A law for what the accepted effects leave; None where none holds."""
     base, runs, holdout = explained.problem.base, explained.problem.usable.runs, explained.holdout
 
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
@@ -143,7 +157,7 @@ def _propose(
 
 
 def _trace(answer: SettledAnswer) -> ForceInTime | None:
-    """The force in time that is left; None where nothing is seen of it, or no filter holds."""
+    """The force in time that is left; None without a structure, or where the model diverges."""
     if not answer.structures or not answer.fit.is_finite:
         return None
     return trace_force(answer.fit, answer.bank, answer.structures)

@@ -28,42 +28,77 @@ BETWEEN_FRAMES = (0.5, 1.5)
 
 
 class SearchStart(NamedTuple):
-    """Nothing but what the camera does, where to look for more, and the camera's filter."""
+    """Where a search for missing effects begins.
 
-    nothing: Fit
+    Attributes:
+        base_fit: the base, with the filter of the cameras and without any effect.
+        workspace: the candidates, and the runs they are judged on.
+        smoothing: the filter of the cameras that is assumed; None where they do not smooth.
+    """
+
+    base_fit: Fit
     workspace: SearchWorkspace
     smoothing: Smoothing | None
 
 
-def search_consistent(
+class FinishedSearch(NamedTuple):
+    """A search that has ended.
+
+    Attributes:
+        start: where it began.
+        selection: the effects that it accepted.
+        smoothing: the filter of the cameras as it is known now; None where they do not smooth.
+    """
+
+    start: SearchStart
+    selection: SearchResult
+    smoothing: Smoothing | None
+
+
+def search_with_consistent_filter(
     starts: Iterable[SearchStart],
     search_from: Callable[[SearchStart], tuple[SearchResult, Smoothing | None]],
-) -> tuple[SearchStart, SearchResult, Smoothing | None]:
-    """The first search that ends, beside all that it found, with the camera it began with.
+) -> FinishedSearch:
+    """Search from one start after the other until a search confirms the filter it began with.
 
-    If none does, the last. Likelihoods do not tell: each camera makes other innovations of the
-    same poses.
+    A search confirms the filter if the accepted effects leave its cutoff about where it was, and
+    no delay of the commands is left over. If no search does, the last one is returned. Likelihoods
+    cannot decide between the searches: each filter turns the same poses into other innovations.
+
+    Args:
+        starts: at least one; the next is only made when the search before it was not consistent.
+        search_from: runs one search, and returns what it accepted and the filter it ends with.
     """
     for start in starts:
-        selection, smoothing = search_from(start)
+        finished = FinishedSearch(start, *search_from(start))
+        smoothing = finished.smoothing
         if start.smoothing is None or smoothing is None:
             break
-        if smoothing.is_near(start.smoothing) and not has_delay(selection.best.hypothesis):
+        if smoothing.is_near(start.smoothing) and not has_delay(finished.selection.best.hypothesis):
             break
-    return start, selection, smoothing
+    return finished
 
 
-def seen_through(base: Model, smoothing: Smoothing | None) -> Model:
-    """The base, as far as is known what the camera does to its poses."""
+def with_camera_filter(base: Model, smoothing: Smoothing | None) -> Model:
+    """The base with the filter of the cameras as an effect; unchanged where they do not smooth."""
     return base if smoothing is None else base + smoothing.effect
 
 
 def absorb_delay(
     selection: SearchResult, base: Model, smoothing: Smoothing
 ) -> tuple[SearchResult, Smoothing]:
-    """The selection without a delay that the filter explains, and the filter that explains it.
+    """Count a delay of the commands as part of the filter, where the filter can explain it.
 
-    Whatever was named only because the cutoff was not quite right goes.
+    Effects that were only accepted because the cutoff was slightly wrong are removed again.
+
+    Args:
+        selection: what the search accepted.
+        base: the model that is diagnosed, without the filter.
+        smoothing: the filter that the search began with.
+
+    Returns:
+        The selection without the delay, and the filter that explains it; both unchanged where the
+        filter cannot.
     """
     fit, workspace = selection.best, selection.workspace
     unlagged = _without_short_lag(fit.hypothesis, smoothing)
@@ -78,20 +113,21 @@ def absorb_delay(
 
 
 def has_delay(h: Hypothesis) -> bool:
-    """Whether commands are late in it."""
+    """Whether the hypothesis contains an `input_delay`."""
     return any(term.id == DELAY for term in h.terms)
 
 
 def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
-    """A hypothesis with a delay, fitted."""
+    """Fit the hypothesis with an `input_delay` in place of any that it has."""
     others = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
     return selection.fit(others.with_term(Term(InputDelay(), ("delay",))))
 
 
 def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None:
-    """Without thrusters that lag by about a frame: to most commands the same as a delay.
+    """Without a thruster lag of about one frame; None where there is no such lag.
 
-    The likelihood hardly tells: it hangs more on the cutoff, within what the noise leaves open.
+    With most commands so short a lag looks the same as a delay. The likelihood hardly tells them
+    apart: it depends more on the cutoff, which the noise gives only roughly.
     """
     for k, term in enumerate(h.terms):
         if term.id == LAG and term.effect["time_constant"] < BETWEEN_FRAMES[1] * smoothing.frame:
@@ -102,7 +138,11 @@ def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None
 def _absorb(
     selection: SearchResult, at: Fit, base: Model, smoothing: Smoothing
 ) -> tuple[Fit | None, Smoothing]:
-    """A hypothesis without its delay, beside the filter that explains it; None if there is none."""
+    """Fit a hypothesis without its delay, with a slower filter that causes the same delay.
+
+    Returns:
+        The fit and the slower filter; None and the filter as it was where no such filter fits.
+    """
     h = at.hypothesis
     k = next(i for i, term in enumerate(h.terms) if term.id == DELAY)
     delay, column = h.terms[k].effect["delay"], h.columns[k][0]
@@ -110,23 +150,28 @@ def _absorb(
     finer = _refine(smoothing, delay, std)
     if finer is None:
         return None, smoothing
-    rest = Hypothesis(seen_through(base, finer), h.without(k).terms)
+    rest = Hypothesis(with_camera_filter(base, finer), h.without(k).terms)
     again = selection.workspace.fit(rest)
-    if not again.is_finite:  # undone, so slow a filter makes more than was there
+    if not again.is_finite:  # undoing so slow a filter amplifies the noise without bound
         return None, smoothing
     return again, finer
 
 
 def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
-    """The filter that is later by a delay, known to within `std` s; None if it cannot be.
+    """The filter that delays poses by `delay` s more; None where the noise excludes its cutoff.
 
-    Two stages delay slow motions by twice their time constant T = 1 / (2 pi f).
+    Its two stages delay slow motions by twice their time constant T = 1 / (2 pi f).
+
+    Args:
+        smoothing: the filter as it is known so far.
+        delay: to be added, s.
+        std: standard deviation of that delay, s.
     """
     late = _delay(smoothing.cutoff) + smoothing.latency + delay
-    beyond = late - _delay(smoothing.told)
+    beyond = late - _delay(smoothing.noise_cutoff)
     least, most = BETWEEN_FRAMES
     if least * smoothing.frame < beyond < most * smoothing.frame:
-        return replace(smoothing, cutoff=smoothing.told, latency=beyond)
+        return replace(smoothing, cutoff=smoothing.noise_cutoff, latency=beyond)
     cutoff = 1.0 / (np.pi * late) if late > 0.0 else np.inf
     if not smoothing.lowest <= cutoff <= smoothing.highest:
         return None
@@ -134,4 +179,5 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
 
 
 def _delay(cutoff: float) -> float:
+    """How late, s, the filter reports slow motions; its cutoff is in Hz."""
     return 1.0 / (np.pi * cutoff)

@@ -67,7 +67,7 @@ def rank_selected(
 
 
 def name_terms(fit: Fit, rivals: Sequence[Rival]) -> list[Named]:
-    """The effects of a fit."""
+    """The effects of a fit, with how sure their values and their names are."""
     return [
         Named(term, find_std(fit, i), _share_of_odds(fit, i, rivals))
         for i, term in enumerate(fit.hypothesis.terms)
@@ -75,23 +75,31 @@ def name_terms(fit: Fit, rivals: Sequence[Rival]) -> list[Named]:
 
 
 def name_smoothing(smoothing: Smoothing) -> Named:
-    """What the camera does, as an effect; white noise was tried in its place."""
+    """The filter of the cameras, as an effect whose only rival is unfiltered noise."""
     term = Term(smoothing.effect, ("cutoff",))
     return Named(term, {"cutoff": smoothing.std}, probability_of(smoothing.lr_statistic))
 
 
 def leads(one: Named) -> bool:
-    """Whether it says that the vehicle answers before it is told."""
+    """Whether the effect says that the vehicle moves before its command: a negative delay."""
     return isinstance(one.term.effect, InputDelay) and one.term.effect["delay"] < 0.0
 
 
 def doubt_lead(named: Sequence[Named]) -> list[Named]:
-    """The same beside a camera that smooths: its filter may look ahead, and that was not tried."""
+    """The same without a probability for a negative delay, where the cameras smooth.
+
+    Their filter may use later frames as well, and such a filter was not among the rivals.
+    """
     return [replace(one, probability=None) if leads(one) else one for one in named]
 
 
 def find_stand_ins(named: Sequence[Named], beside: Sequence[Named]) -> set[str]:
-    """Names that a law makes unnecessary, or another: what they do changes `beside` it by half."""
+    """Ids of effects that a law makes unnecessary, or changes by more than half.
+
+    Args:
+        named: the accepted effects, fitted without the law.
+        beside: the effects that are fitted together with the law.
+    """
     acting = {one.term.id: one.term for one in beside}
     return {
         one.term.id
@@ -101,7 +109,7 @@ def find_stand_ins(named: Sequence[Named], beside: Sequence[Named]) -> set[str]:
 
 
 def _differs(own: Term, other: Term) -> bool:
-    """Whether the fitted values of an effect are others, by more than half of what they change."""
+    """Whether two fits of an effect differ by more than half of what the first one changes."""
     if not (own.free and own.vanishes):
         return False
     names = [p for p in own.effect.parameters if p.name in own.free]
@@ -113,15 +121,19 @@ def _differs(own: Term, other: Term) -> bool:
 
 
 def doubt_names(named: Sequence[Named], doubted: Collection[str]) -> list[Named]:
-    """The same, none of the doubted sure."""
+    """The same, without a probability for the effects that are doubted."""
     return [replace(one, probability=None) if one.term.id in doubted else one for one in named]
 
 
 def doubt_small(selected: Sequence[Selected], fraction: float | None) -> list[Selected]:
-    """The same, none sure that removes less error than a structure that is left may make.
+    """The same, without a probability for effects that remove less error than what is left causes.
 
-    A likelihood weighs names right where all else is noise; what follows a law that nobody named
-    favours the one that looks a little like it.
+    Likelihoods weigh effects rightly only where all else is noise. Where unknown physics is left,
+    they favour the effect that happens to resemble it a little.
+
+    Args:
+        selected: the accepted effects.
+        fraction: share of the remaining disturbance's power that follows the largest structure.
     """
     left = bound_unexplained(fraction, [one.error_reduction for one in selected])
     return [
@@ -129,14 +141,18 @@ def doubt_small(selected: Sequence[Selected], fraction: float | None) -> list[Se
     ]
 
 
-def name_drift(drift: DriftFit, lasting: bool) -> Named:
-    """A current that wanders, as an effect; forces that wander were tried in its place.
+def name_drift(drift: DriftFit, leaves_physics: bool) -> Named:
+    """A wandering current, as an effect whose rivals are forces that wander.
 
-    Nobody can foresee it, so it removes no error. Where physics is left that has no name, that may
-    be what seems to wander.
+    No replay can predict it, so it removes no error.
+
+    Args:
+        drift: the likeliest drift.
+        leaves_physics: whether the accepted effects leave physics that none of them describes. That
+            may be what seems to wander, so the effect then has no probability.
     """
     term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
-    probability = None if lasting else probability_of(drift.lr_margin)
+    probability = None if leaves_physics else probability_of(drift.lr_margin)
     return Named(term, {"rate": drift.rate.std}, probability)
 
 
@@ -146,32 +162,38 @@ def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
 
 
 def find_std(fit: Fit, i: int) -> dict[str, float]:
-    """Standard deviations by name."""
+    """Standard deviations of the i-th effect's fitted parameters, by name, in their units."""
     term, columns = fit.hypothesis.terms[i], fit.hypothesis.columns[i]
     return {p.name: p.std_of(fit.std[k]) for p, k in zip(term.parameters, columns, strict=True)}
 
 
 def _share_of_odds(fit: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
-    """Of this name among all that were tried in its place, from their likelihoods; None: none."""
+    """Probability of the i-th effect among all that were tried in its place; None if none was."""
     name = fit.hypothesis.terms[i].id
     tried = [-r.deviance_difference for r in rivals if r.instead_of == name]
     return float(share_odds([0.0, *tried])[0]) if tried else None
 
 
-def rank_alone(workspace: SearchWorkspace, nothing: Fit, fit: Fit) -> list[Ranked]:
-    """Every effect by itself: those refitted first, by their likelihood, then the others' promise.
+def rank_alone(workspace: SearchWorkspace, base_fit: Fit, fit: Fit) -> list[Ranked]:
+    """Rank every effect by how well it explains the runs as the only addition to the base.
 
-    The probability is that of the name if one effect alone is missing, or none.
+    Effects that were refitted come first, by their likelihood; then the others, by what they
+    promise to first order. The probabilities assume that at most one effect is missing.
+
+    Args:
+        workspace: of the search, as it began.
+        base_fit: the base without any effect.
+        fit: of the base with all accepted effects.
     """
-    named, alone = {term.id for term in fit.hypothesis.terms}, workspace.propose(nothing)
-    starts = [(p, nothing.hypothesis.with_term(p.term)) for p in alone]
+    named, alone = {term.id for term in fit.hypothesis.terms}, workspace.propose(base_fit)
+    starts = [(p, base_fit.hypothesis.with_term(p.term)) for p in alone]
     fits = [workspace.fit(h) for p, h in starts if p.term.id in named or workspace.has_fitted(h)]
     fits.sort(key=workspace.score, reverse=True)
     terms = [one.hypothesis.terms[0] for one in fits]
     terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    likelier = [workspace.score(one) - workspace.score(nothing) for one in fits]
+    likelier = [workspace.score(one) - workspace.score(base_fit) for one in fits]
     _, *share = share_odds([0.0, *likelier])
-    base = nothing.hypothesis.base
+    base = base_fit.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
     error = _score(models, workspace.bank.runs)
     sure = [*share, *np.zeros(len(terms) - len(fits))]

@@ -1,13 +1,13 @@
-"""What the motion capture does to the poses it reports: does its software smooth them?
+"""Does the software of the motion capture smooth the poses that it reports?
 
-Where it smooths, the noise of the cameras falls off as the software's filter does, and where that
-is tells the cutoff. Noise that lasts falls off too, and so do frames on lines between others, but
-otherwise than two equal first-order low-passes: a filter is said to be there only if no such noise
-is as likely.
+Where it does, the noise of the cameras falls off at high frequencies as the software's filter does,
+and the frequency at which that begins is the cutoff. Camera errors that last several frames fall
+off as well, and so do frames that were interpolated, but with another shape than two equal
+first-order low-passes. A filter is only reported if none of these kinds of noise is as likely.
 """
 
 from dataclasses import dataclass
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -31,16 +31,23 @@ OPEN_CUTOFF_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Smoothing:
-    """A software filter: `cutoff` Hz and its standard deviation, its `lr_statistic`.
+    """The filter of the motion capture's software: two equal first-order low-passes.
 
-    The noise tells the cutoff `told`, and leaves those from `lowest` to `highest` open, if it may
-    be of any kind. `frame` s: from one pose to the next. `latency` s: of a `PoseFilter`.
+    Attributes:
+        cutoff: in Hz, as it is known now.
+        std: standard deviation of the cutoff, Hz.
+        lr_statistic: likelihood-ratio statistic of the filter, against no filter.
+        noise_cutoff: the cutoff in Hz that the noise of the poses gives by itself.
+        lowest: the lowest cutoff in Hz that is possible, whatever the kind of that noise.
+        highest: likewise the highest, Hz.
+        frame: time from one pose to the next, s.
+        latency: further delay of the reported poses, s (as of a `PoseFilter`).
     """
 
     cutoff: float
     std: float
     lr_statistic: float
-    told: float
+    noise_cutoff: float
     lowest: float
     highest: float
     frame: float
@@ -48,22 +55,27 @@ class Smoothing:
 
     @property
     def effect(self) -> PoseFilter:
-        """What it does to the poses."""
+        """The filter as an effect of a model."""
         return PoseFilter(cutoff=self.cutoff, latency=self.latency)
 
     def is_near(self, other: "Smoothing") -> bool:
-        """Whether its cutoff is that of another, as finely as noise of an unknown kind tells it."""
+        """Whether two cutoffs are the same within what noise of an unknown kind can tell."""
         return abs(self.cutoff - other.cutoff) < OPEN_CUTOFF_SHARE * other.cutoff
 
 
 def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None:
-    """The filter that poses were reported through, beside what the base knows; None: none."""
+    """The filter that the poses of these runs went through; None where they show none.
+
+    Args:
+        base: the model that is diagnosed; what it already says of the cameras is taken as given.
+        runs: the runs, of which those recorded by motion capture count.
+    """
     spectra = measure_spectra(base, runs)
     return fit_smoothing(spectra) if spectra else None
 
 
 def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
-    """The filter that the noise of these poses went through; None: none."""
+    """The filter that the noise in these spectra went through; None where they show none."""
     highest = MAX_CUTOFF_SHARE * min(float(s.frequency[-1]) for s in spectra)
     tried = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
     costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in tried] for kind in KINDS])
@@ -71,8 +83,8 @@ def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
     least, cutoff, std = min(likely)
     unfiltered = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS)
     lr_statistic = unfiltered - least
-    # far below what is looked at a filter only makes the motion fall off more steeply, as it does
-    # by itself where a vehicle tumbles: its cutoff is then hardly known
+    # A cutoff far below the band that is examined would only make the motion itself fall off more
+    # steeply, as it also does where a vehicle tumbles. The cutoff is then hardly determined.
     if (
         lr_statistic < MIN_LR_OF_FILTER
         or cutoff > END_SHARE * highest
@@ -86,6 +98,14 @@ def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
     return Smoothing(cutoff, std, lr_statistic, cutoff, float(lowest), float(highest), frame)
 
 
+class _LikelyCutoff(NamedTuple):
+    """A cutoff in Hz with its standard deviation; `cost` includes the penalty of the noise."""
+
+    cost: float
+    cutoff: float
+    std: float
+
+
 def _cost(spectra: Sequence[NoiseSpectrum], kind: NoiseKind, cutoff: float | None) -> float:
     return sum(one.cost(kind, cutoff) for one in spectra)
 
@@ -96,8 +116,8 @@ def _penalty(spectra: Sequence[NoiseSpectrum], kind: NoiseKind) -> float:
 
 def _refine(
     spectra: Sequence[NoiseSpectrum], kind: NoiseKind, tried: Array, costs: Array
-) -> tuple[float, float, float]:
-    """Cost, with its penalty, of the likeliest cutoff near the best tried (t,); it, its std."""
+) -> _LikelyCutoff:
+    """The likeliest cutoff near the best of those that were tried (t,), for one kind of noise."""
 
     def cost(x: float) -> float:
         return _cost(spectra, kind, float(np.exp(x)))
@@ -110,4 +130,4 @@ def _refine(
     bend = 0.5 * (sides - 2.0 * least) / LOG_CUTOFF_STEP**2
     cutoff = float(np.exp(x))
     std = cutoff / np.sqrt(bend) if bend > 0.0 else np.inf
-    return least + _penalty(spectra, kind), cutoff, float(std)
+    return _LikelyCutoff(least + _penalty(spectra, kind), cutoff, float(std))
