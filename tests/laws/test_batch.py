@@ -12,7 +12,7 @@ from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.tether import TetherTension
 from rovsim.dynamics.effects.thrusters import VoltageSag
-from rovsim.estimation.observer.innovations import serve_all
+from rovsim.estimation.observer.innovations import batch_of
 from rovsim.estimation.observer.observed_run import prepare_run
 from rovsim.estimation.observer.windows import Windows
 from rovsim.evaluation.force_budget import balance_forces
@@ -69,7 +69,7 @@ def by_heun():
 
 def by_observer():
     run = observed()
-    drives, batch = run.replay_drives.of([WORLD]), serve_all([WORLD], run)
+    drives, batch = run.replay_drives.of([WORLD]), batch_of([WORLD], run)
     return batch.accelerations(drives[0].at([0]), np.zeros(1), START[None], np.empty((0, 6)))[0]
 
 
@@ -111,7 +111,7 @@ def test_models_side_by_side_move_as_each_would_alone():
     run, first = observed(), np.zeros(1, np.int64)
     drives = run.replay_drives.of(worlds)
     starts = Starts(np.tile(START, (len(worlds), 1, 1)), first, first + 100)
-    together = serve_all(worlds, run).trajectories(drives, starts, run.grid - run.grid[0])
+    together = batch_of(worlds, run).trajectories(drives, starts, run.grid - run.grid[0])
     for world, paths in zip(worlds, together, strict=True):
         alone = simulate(world, RUN, [(0, 100, START)], ReplaySettings())[0]
         np.testing.assert_allclose(paths[0], alone, rtol=0, atol=1e-12)

@@ -110,7 +110,7 @@ def _mix_error_dynamics(
 ) -> tuple[AxisErrorDynamics, ...]:
     """How errors go on in the train runs and a flight, each as long as it lasts."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
-    own = np.array(estimate_errors(rival.hypothesis.model, [some]).error_dynamics)
+    own = np.array(estimate_errors(rival.hypothesis.model, [some]).by_axis)
     before, lasts = prior.seconds, float(run.reading_times[-1])
     both = (before * np.array(prior.error_dynamics) + lasts * own) / (before + lasts)
     return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in both)

@@ -52,9 +52,9 @@ class FilterBank:
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
         """A filter bank that suits this noise."""
         errors = estimate_errors(base, runs)
-        run_filters = tuple(design_filters(noise.white, errors.error_dynamics, w) for w in runs)
+        run_filters = tuple(design_filters(noise.white, errors.by_axis, w) for w in runs)
         coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
-        return FilterBank(tuple(runs), errors.error_dynamics, run_filters, base, coupled, paths)
+        return FilterBank(tuple(runs), errors.by_axis, run_filters, base, coupled, paths)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
         """The same runs, with filters that suit another model and noise."""

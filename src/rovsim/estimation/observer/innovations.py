@@ -1,4 +1,4 @@
-"""Innovations of many models on one run, in one compiled call."""
+"""Run many models along one recording at once: their innovations, and how their errors evolve."""
 
 from typing import NamedTuple, Sequence
 
@@ -23,16 +23,21 @@ NUDGE = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 def observe(
     models: Sequence[Model], run: ObservedRun, filters: RunFilters, pushed: Array | None = None
 ) -> Array:
-    """Innovations (m, 6, n) of models without a residual on one run; the models share a vehicle.
+    """Innovations (m, 6, n) of m models on one run, without their learned residuals.
 
-    `pushed` (m, n, 6): accelerations at the readings that models have besides.
+    They stand in the axes, and at the point, that the motion capture reports. There the noise of
+    the cameras is the same wherever a model assumes the markers to be, so that it favours none of
+    these assumptions.
 
-    Each in the axes and at the point that the motion capture reports: there its noise does not
-    depend on where a model believes the markers to be, so no such belief is favoured by its noise.
+    Args:
+        models: of one vehicle.
+        run: what was measured.
+        filters: that correct the models.
+        pushed: further accelerations (m, n, 6) of the models at the readings, m/s2 and rad/s2.
     """
-    readings, starts = _see(models, run)
+    readings, starts = _read_as_modelled(models, run)
     time = run.since_start(run.edges)
-    seen = Correction(
+    correction = Correction(
         readings,
         run.reading_mask.astype(float),
         run.pose_measured,
@@ -48,22 +53,28 @@ def observe(
             drive.pushed(_between(run, own) @ model.M.T)
             for drive, own, model in zip(drives, pushed, models, strict=True)
         ]
-    e = serve_all(models, run).innovations(drives, starts, seen)
+    e = batch_of(models, run).innovations(drives, starts, correction)
     reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
 def _between(run: ObservedRun, a: Array) -> Array:
-    """Of accelerations (n, 6) at the readings, those (s, 6) in the middle of the steps."""
+    """Interpolate accelerations (n, 6) at the readings to the middle of each step, (s, 6)."""
     middle = run.edges[:-1] + 0.5 * np.diff(run.edges) - run.edges[0]
     return np.column_stack([np.interp(middle, run.time, own) for own in a.T])
 
 
 class ErrorDynamics(NamedTuple):
-    """How small errors go on: -d nu_dot / d nu, and / d pose (6, 6), mean over measured states.
+    """How small errors of a model grow or decay, linearised and averaged over measured states.
 
-    `largest` (6, 6): root mean square of `damping`, what it would be if it never changed its sign.
-    Errors of the position stand along the body's axes, or level ones (`ObservedRun.pose_measured`).
+    Errors of the position stand along the body's axes, or along level axes where the whole attitude
+    was not measured (`ObservedRun.pose_measured`).
+
+    Attributes:
+        damping: -d nu_dot / d nu (6, 6), 1/s.
+        largest: root mean square (6, 6) of the same, 1/s; as large as `damping` where that never
+            changes its sign.
+        stiffness: -d nu_dot / d pose (6, 6), 1/s2.
     """
 
     damping: Array
@@ -71,21 +82,21 @@ class ErrorDynamics(NamedTuple):
     stiffness: Array
 
     @property
-    def error_dynamics(self) -> tuple[AxisErrorDynamics, ...]:
-        """Each axis by itself."""
+    def by_axis(self) -> tuple[AxisErrorDynamics, ...]:
+        """The same for each of the six axes by itself, without what couples them."""
         each = zip(np.diag(self.damping), np.diag(self.stiffness), strict=True)
         return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in each)
 
     @property
     def coupling(self) -> float:
-        """How fast velocities of two axes drive each other all the time, 1/s, at most."""
+        """The fastest rate at which two axes constantly drive each other, 1/s."""
         lasting = np.where(np.abs(self.damping) > LASTING * self.largest, self.damping, 0.0)
         across = lasting * lasting.T
         return float(np.sqrt(np.max(np.abs(across - np.diag(np.diag(across))))))
 
 
 def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
-    """How errors of a model's velocities and poses go on over the measured states."""
+    """Linearise a model at all measured states: how errors of its velocities and poses evolve."""
     slopes = []
     for run in runs:
         states = undo_mocap_view(model, run.motion).state
@@ -99,7 +110,11 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
 
 
 def _nudge(states: Array, level: bool) -> Array:
-    """States (13, k, 13): as they are, then faster on each axis, then displaced along each."""
+    """Thirteen variants (13, k, 13) of states (k, 13).
+
+    The states themselves, then with a faster velocity on each of the six axes, then displaced along
+    or turned about each of them; along level axes where `level`.
+    """
     nudged = np.tile(states, (13, 1, 1))
     q = states[:, 3:7]
     zero = np.zeros(len(q))
@@ -113,22 +128,36 @@ def _nudge(states: Array, level: bool) -> Array:
 
 
 def accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
-    """Accelerations (s, k, 6) at states (s, k, 13) of some samples or bins (k,)."""
-    at, edges, batch = run.at[index], run.grid, serve_all([model], run)
+    """Accelerations (s, k, 6) of a model at s variants of the states (s, k, 13).
+
+    Args:
+        model: the model.
+        run: under whose commands it moves.
+        index: samples or bins (k,) of the run that the states belong to.
+        states: s variants of each.
+    """
+    at, edges, batch = run.at[index], run.grid, batch_of([model], run)
     drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
-    memory = recall([model], run, edges, at).reshape(-1, 6)
+    memory = find_fluid_memory([model], run, edges, at).reshape(-1, 6)
     return np.stack(
         [batch.accelerations(drive, run.since_start(edges)[at], own, memory) for own in states]
     )
 
 
-def serve_all(models: Sequence[Model], run: ObservedRun) -> Batch:
-    """One engine for all models, at the site of a run."""
+def batch_of(models: Sequence[Model], run: ObservedRun) -> Batch:
+    """The models side by side in one engine, at the site of a run, without learned residuals."""
     return Batch(models, run.motion.site, candidates=run.wrenches, learned=False)
 
 
-def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts]:
-    """What each model takes for true: readings (k, 13), shared where models see alike; starts."""
+def _read_as_modelled(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts]:
+    """Readings and starts as each model interprets them.
+
+    Models may differ in what they assume of the cameras, such as where the markers are.
+
+    Returns:
+        For each model the readings (k, 13) of the vehicle itself, one array for all models that
+        assume the same; and where the models start.
+    """
     views = [m.mocap_view.inverse for m in models]
     readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
     first = np.array([a for a, _ in run.segments], np.int64)
@@ -136,10 +165,24 @@ def _see(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts
     alike = {m.mocap_view.key: m for m in models}
     true = {key: true_states(m, run.motion, run.reading_samples[first]) for key, m in alike.items()}
     states = np.stack([true[m.mocap_view.key] for m in models])
-    starts = Starts(states, first, steps, recall(models, run, run.edges, run.reading_steps[first]))
+    starts = Starts(
+        states, first, steps, find_fluid_memory(models, run, run.edges, run.reading_steps[first])
+    )
     return [readings[back.key] for back in views], starts
 
 
-def recall(models: Sequence[Model], run: ObservedRun, edges: Array, steps: Array) -> Array:
-    """What the water remembers (m, s, 6) at steps (s,) of a grid; empty if it never does."""
+def find_fluid_memory(
+    models: Sequence[Model], run: ObservedRun, edges: Array, steps: Array
+) -> Array:
+    """Velocity (m, s, 6) that the water still has in each model, where it has a fluid memory.
+
+    Args:
+        models: m of them.
+        run: whose measured motion the water followed.
+        edges: (k+1,) s at which the steps of a grid begin and end.
+        steps: (s,) of that grid.
+
+    Returns:
+        The velocities; empty if no model has a fluid memory.
+    """
     return remembered_at(models, lambda m: undo_mocap_view(m, run.motion), edges, steps)

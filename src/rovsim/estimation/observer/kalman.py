@@ -1,4 +1,4 @@
-"""Steady-state Kalman filters of one axis, and what turns the innovations of one into another's."""
+"""Steady-state Kalman filters of one axis, and how innovations of one become another's."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -15,21 +15,26 @@ from rovsim.estimation.observer.axis_kernels import (
     solve_steady_state,
 )
 
-# s: a slow error of calibrated cameras lasts as long as the vehicle takes to leave the place where
-# the calibration errs.
+# s: a slow error of calibrated cameras lasts as long as the vehicle stays where the calibration is
+# off.
 TYPICAL_BIAS_TIME = 0.5
 
 
 class AxisErrorDynamics(NamedTuple):
-    """How an error of one axis goes on: v' = -`damping` v - `stiffness` p, in 1/s and 1/s2."""
+    """How an error of a model grows or decays on one axis: v' = -damping v - stiffness p.
+
+    p is the error of the pose (m, rad) and v that of the velocity; `damping` is in 1/s and
+    `stiffness` in 1/s2.
+    """
 
     damping: float
     stiffness: float = 0.0
 
     def over(self, h: float, kind: int = POSE) -> Array:
-        """Transition (3, 3) over h s of pose, velocity and a push that stays.
+        """Transition (3, 3) over h s of the errors of pose and velocity, and of a constant push.
 
-        Where the mean velocity of bins is read, poses are taken as measured and do not err.
+        `kind` is that of the readings (see `axis_kernels`). Where they are mean velocities over
+        bins, poses are taken as measured, so that an error of the pose has no effect.
         """
         return _integrate(h, self.damping, 0.0 if kind == BIN_MEAN else self.stiffness)
 
@@ -37,16 +42,20 @@ class AxisErrorDynamics(NamedTuple):
 @lru_cache(maxsize=1024)
 def _integrate(h: float, damping: float, stiffness: float) -> Array:
     rates = [[0.0, 1.0, 0.0], [-stiffness, -damping, 1.0], [0.0, 0.0, 0.0]]
-    found = np.ascontiguousarray(expm(h * np.array(rates)))
-    found.flags.writeable = False
-    return found
+    transition = np.ascontiguousarray(expm(h * np.array(rates)))
+    transition.flags.writeable = False  # the cache hands the same array to everybody
+    return transition
 
 
 class AxisNoise(NamedTuple):
-    """Noise of one axis: a disturbance (m/s2, rad/s2) and errors of the readings (in their units).
+    """The disturbance on one axis, and the noise of its readings.
 
-    The disturbance has a `correlation_time` in s. Errors are white with `measurement_std`; beside
-    them a slow one may last: a bias that changes.
+    Attributes:
+        disturbance_std: of the disturbance, m/s2 or rad/s2.
+        correlation_time: of the disturbance, s.
+        measurement_std: of the white noise of the readings, in their unit.
+        bias_std: of a slow error of the readings, in their unit; 0 where there is none.
+        bias_correlation_time: of that error, s.
     """
 
     disturbance_std: float
@@ -58,10 +67,16 @@ class AxisNoise(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class AxisFilter:
-    """Filter of one axis: `F` (n, n), `C` and `gain` (n,), variance of its innovations.
+    """The steady-state Kalman filter of one axis, with n states (noise.py).
 
-    `denominator` (n + 1,): its characteristic polynomial, highest power first; `noise_denominator`:
-    that of the disturbance and of a slow error of the readings, which other filters do not share.
+    Attributes:
+        F: transition (n, n) from one reading to the next.
+        C: output row (n,): what is read of the states.
+        gain: (n,) correction of the states per unit of innovation.
+        variance: of the innovations, in the unit of the readings squared.
+        denominator: (n + 1,) characteristic polynomial of the filter, highest power first.
+        noise_denominator: likewise of the disturbance and of the slow error alone. These depend on
+            the noise, whereas all filters of an axis have the error dynamics in common.
     """
 
     F: Array
@@ -73,12 +88,12 @@ class AxisFilter:
 
     @property
     def decay(self) -> float:
-        """What remains of the disturbance after one period."""
-        place = min(2, len(self.C) - 1)  # behind velocity, and the pose where it is read
+        """Share of the disturbance that remains after one period."""
+        place = min(2, len(self.C) - 1)  # the disturbance is the last of (p, v, a) or of (v, a)
         return float(self.F[place, place])
 
     def whitening(self, old: "AxisFilter") -> tuple[Array, Array]:
-        """Rational filter (b, a) that turns innovations of the filter `old` into this one's."""
+        """Rational filter (b, a) that turns innovations of the filter `old` into those of this."""
         return (
             np.convolve(self.noise_denominator, old.denominator),
             np.convolve(old.noise_denominator, self.denominator),
@@ -102,5 +117,5 @@ class AxisFilter:
 
 
 def design_filter(kind: int, h: float, dynamics: AxisErrorDynamics, noise: AxisNoise) -> AxisFilter:
-    """The filter of one axis for one noise (noise.py), readings every h s."""
+    """Design the filter of one axis for readings of a `kind` (`axis_kernels`) every h s."""
     return AxisFilter(*solve_steady_state(kind, h, dynamics.over(h, kind), *noise))

@@ -1,15 +1,18 @@
-"""What no model predicts: noise of the readings, and a disturbance that lasts. Per axis.
+"""What no model predicts, axis by axis: a disturbance that lasts, and noise of the readings.
+
+The errors of a model are themselves modelled as a linear system. Its states are the error of the
+pose p and of the velocity v, and the disturbance a (an acceleration). A reading is of one kind:
 
     pose      x = (p, v, a):  p' = v,  v' = -d v - k p + a,  a' = -a / T + white noise
-              reading p + noise
-              where cameras err slowly, also b' = -b / T_b + white noise, and p + b is read
-    velocity  x = (v, a):     the same without p; reading v (mean over the bin) + noise
-    sum       as pose, of summed-up velocities: the noise adds up in p, and p is read as it is
+              p is read, with white noise
+              if cameras err slowly, also b' = -b / T_b + white noise, and p + b is read
+    velocity  x = (v, a):     the same without p; v (its mean over a bin) is read, with white noise
+    sum       as pose, where p is the sum of measured velocities: their noise adds up in p itself
 
-The steady-state Kalman filter of this linear model corrects the nonlinear one (engine/observer.py),
-and its innovations, if the noise is right, are white with a known variance. Innovations found with
-one noise are turned into those of another by a rational filter, so the noise can be fitted, and
-candidates be compared, without observing anew.
+The steady-state Kalman filter of this linear system corrects the nonlinear model
+(engine/observer.py). If the noise is right, its innovations are white with a known variance.
+A rational filter turns the innovations of one noise into those of another. So the noise can be
+fitted, and candidates can be compared, without running the model again.
 """
 
 from dataclasses import dataclass, field, replace
@@ -34,20 +37,28 @@ from rovsim.simulation.noise_draws import NoiseDraws
 
 
 class CurrentPath(NamedTuple):
-    """A current (n, 2), north and east in m/s, at the readings of a run (n,) s."""
+    """The current over one run.
+
+    Attributes:
+        time: of the readings (n,), s.
+        current: north and east (n, 2), m/s.
+    """
 
     time: Array
     current: Array
 
     def at(self, time: Array) -> Array:
-        """The current (k, 2) at other times (k,); before and after as at the ends."""
+        """The current (k, 2) m/s at other times (k,) s; constant beyond the first and the last."""
         return np.column_stack([np.interp(time, self.time, c) for c in self.current.T])
 
 
 class DriftingCurrent(NamedTuple):
-    """A current that wanders by `rate` m/s per sqrt(s), and where it most likely went on each run.
+    """A current that is a random walk.
 
-    Without `paths` the water is thought to rest.
+    Attributes:
+        rate: of the walk, m/s per sqrt(s).
+        paths: the likeliest current of each run; empty where the model is linearised about still
+            water.
     """
 
     rate: float
@@ -56,11 +67,16 @@ class DriftingCurrent(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Per axis (6,): a disturbance, m/s2 or rad/s2, its `correlation_time`, s, and white noise.
+    """The disturbance and the noise of the readings, (6,) each for surge to yaw.
 
-    `bias_std` is that of a slow error of the readings; 0 where there is none.
-    `autoregression`: what the axes foretell of each other, where they hang together.
-    `drift`: of the current, where it wanders.
+    Attributes:
+        disturbance_std: of the disturbance, m/s2 and rad/s2.
+        correlation_time: of the disturbance, s.
+        measurement_std: of the white noise of the readings, in their units (m, rad, or per s).
+        bias_std: of a slow error of the readings, in their units; 0 where there is none.
+        bias_correlation_time: of that error, s.
+        autoregression: how innovations predict one another, where axes drive each other.
+        drift: of the current, where it wanders.
     """
 
     disturbance_std: Array
@@ -82,7 +98,7 @@ class Noise:
         )
 
     def draws(self, run: ObservedRun, random: np.random.Generator) -> NoiseDraws:
-        """The same to draw from, of a run."""
+        """The same noise as a generator of random errors at the readings of a run."""
         return NoiseDraws(
             self.disturbance_std,
             self.correlation_time,
@@ -95,7 +111,7 @@ class Noise:
 
     @property
     def white(self) -> "Noise":
-        """The same without slow errors: what the observer itself corrects for."""
+        """The same without slow errors of the readings: the noise that the filters are made for."""
         return replace(self, bias_std=np.zeros(6))
 
 
@@ -107,7 +123,13 @@ FIRST_NOISE = Noise(
 
 @dataclass(frozen=True, eq=False)
 class RunFilters:
-    """One filter an axis, for one noise and one way to move, and the run's steps (s,) s."""
+    """The filters of the six axes for one run.
+
+    Attributes:
+        filters: one for each axis, surge to yaw.
+        periods: mean time (6,) between two readings of each axis, s.
+        steps: how long each integration step (s,) of the run takes, s.
+    """
 
     filters: tuple[AxisFilter, ...]
     periods: Array
@@ -121,11 +143,11 @@ class RunFilters:
 
     @cached_property
     def decays(self) -> Array:
-        """What remains of the disturbance (s, 6) after each of the run's steps."""
+        """Share of the disturbance (s, 6) that remains after each of the run's steps."""
         return self.decay(self.steps)
 
     def decay(self, h: Array) -> Array:
-        """What remains of the disturbance (s, 6) after each of h (s,) s."""
+        """Share of the disturbance (s, 6) that remains after times `h` (s,) s."""
         return np.array([f.decay for f in self.filters]) ** (h[:, None] / self.periods)
 
     @property
@@ -137,7 +159,13 @@ class RunFilters:
 def design_filters(
     noise: Noise, error_dynamics: Sequence[AxisErrorDynamics], run: ObservedRun
 ) -> RunFilters:
-    """The filters of six axes for one noise; errors go on as `error_dynamics` say."""
+    """Design the filters of the six axes for one noise and one run.
+
+    Args:
+        noise: of the six axes.
+        error_dynamics: how an error of the model grows or decays on each of the six axes.
+        run: whose readings are filtered.
+    """
     kinds, periods = run.reading_kinds, run.axis_periods
     filters = [
         design_filter(kinds[i], float(periods[i]), dynamics, noise.of_axis(i))
@@ -150,28 +178,34 @@ def whiten(
     e: Sequence[Array],
     runs: Sequence[ObservedRun],
     made_by: Sequence[RunFilters],
-    wanted: Sequence[RunFilters],
+    suited: Sequence[RunFilters],
 ) -> Array:
-    """Innovations of unit variance (..., 6, n) of all runs, those not settled left out.
+    """Turn innovations of some filters into those of others, scaled to unit variance.
+
+    They are white if `suited` suit the noise. Innovations from before the filters had settled are
+    left out.
 
     Args:
         e: innovations (..., 6, n_run) of each run.
         runs: the runs.
-        made_by: the filters that each was made by.
-        wanted: the filters that should make them white.
+        made_by: the filters of each run that the innovations come from.
+        suited: the filters of each run whose innovations are wanted.
+
+    Returns:
+        Those (..., 6, n) of all runs, one run after the other.
     """
     return np.concatenate(
-        [whiten_run(*one) for one in zip(e, runs, made_by, wanted, strict=True)], axis=-1
+        [whiten_run(*one) for one in zip(e, runs, made_by, suited, strict=True)], axis=-1
     )
 
 
-def whiten_run(e: Array, run: ObservedRun, made_by: RunFilters, wanted: RunFilters) -> Array:
-    """The same (..., 6, m) of the innovations (..., 6, n) of one run."""
-    pairs = zip(wanted.filters, made_by.filters, strict=True)
+def whiten_run(e: Array, run: ObservedRun, made_by: RunFilters, suited: RunFilters) -> Array:
+    """As `whiten`, for innovations (..., 6, n) of one run, of which m are settled: (..., 6, m)."""
+    pairs = zip(suited.filters, made_by.filters, strict=True)
     b, a = map(_stack, zip(*(new.whitening(old) for new, old in pairs), strict=True))
     rows = e.reshape(int(np.prod(e.shape[:-2])), *e.shape[-2:])
     out = np.empty((*rows.shape[:-1], int(run.settled.sum())), e.dtype)
-    scale = 1.0 / np.sqrt(wanted.variance)
+    scale = 1.0 / np.sqrt(suited.variance)
     on_cores(
         lambda k: filter_kept(
             b, a, rows[k], run.innovation_segments, run.settled, run.innovation_mask, scale, out[k]
@@ -182,8 +216,8 @@ def whiten_run(e: Array, run: ObservedRun, made_by: RunFilters, wanted: RunFilte
 
 
 def _stack(polynomials: Sequence[Array]) -> Array:
-    """Of the six axes, in powers of the delay: those of lower order end in zeros."""
-    found = np.zeros((len(polynomials), max(len(own) for own in polynomials)))
-    for row, own in zip(found, polynomials, strict=True):
+    """Polynomials in the delay operator as the rows of one array, padded with zeros at the end."""
+    stacked = np.zeros((len(polynomials), max(len(own) for own in polynomials)))
+    for row, own in zip(stacked, polynomials, strict=True):
         row[: len(own)] = own
-    return found
+    return stacked

@@ -16,7 +16,7 @@ from scipy.integrate import cumulative_simpson
 from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import step
 from rovsim.dynamics.model import Model
-from rovsim.estimation.observer.innovations import recall, serve_all
+from rovsim.estimation.observer.innovations import batch_of, find_fluid_memory
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.evaluation.scores import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
@@ -131,8 +131,8 @@ class Windows:
             drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
         first = self._steps
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
-        begins = Starts(begin, first, steps, recall(models, run, run.grid, first))
-        batch, time = serve_all(models, run), run.since_start(run.grid)
+        begins = Starts(begin, first, steps, find_fluid_memory(models, run, run.grid, first))
+        batch, time = batch_of(models, run), run.since_start(run.grid)
         begins = propagate_unmeasured_velocities(
             batch, drives, begins, time, find_measured(run.motion.measured)
         )
