@@ -1,4 +1,4 @@
-"""The most likely parameters of a hypothesis, the noise that it leaves, and their spread."""
+"""Fit a hypothesis: its likeliest parameters, their covariance, and the noise that it leaves."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -25,15 +25,19 @@ REACHABLE = 4.0
 
 
 class GivenUp(Exception):
-    """A fit that would not end where it was wanted."""
+    """A fit was stopped, for it would not have reached the likelihood that was asked for."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A fitted hypothesis.
+    """A fitted hypothesis with k free parameters.
 
-    `linearised` with its errors and how they change; `noise` fitted to it; `two_log_likelihood`
-    under that noise; `covariance` (k, k) of the scaled parameters.
+    Attributes:
+        linearised: the hypothesis at its fitted values, its innovations and their derivatives.
+        noise: fitted to these innovations.
+        two_log_likelihood: twice the log likelihood under that noise, up to a constant; -inf where
+            the model diverges.
+        covariance: (k, k) of the scaled parameters.
     """
 
     linearised: Linearised
@@ -43,7 +47,7 @@ class Fit:
 
     @property
     def is_finite(self) -> bool:
-        """Whether the model stayed finite beside its filters; if not, nothing is known of it."""
+        """Whether the filters kept the model from diverging; if not, the fit tells nothing."""
         return bool(np.isfinite(self.two_log_likelihood))
 
     @property
@@ -58,22 +62,29 @@ class Fit:
 
     @property
     def z_scores(self) -> Array:
-        """How far the free parameters (k,) are from their absence, in standard deviations."""
+        """Distance of the free parameters (k,) from changing nothing, in standard deviations."""
         return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, 1e-12)
 
     def distance(self, own: Sequence[int] | Array) -> float:
-        """Of some parameters from their absence, squared, in standard deviations (Wald 1943)."""
+        """Wald statistic of some parameters against changing nothing (Wald 1943).
+
+        Their squared distance from their absence, in standard deviations; `own` are their numbers.
+        """
         off, V = (self.hypothesis.x - self.hypothesis.absence)[own], self.covariance[own][:, own]
         return float(off @ solve(V, off))
 
 
 def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf) -> Fit:
-    """Fit the free parameters under a given noise, then the noise to what is left.
+    """Fit the free parameters under a given noise, then the noise to what they leave.
 
-    `reach`, in scales: a prior's standard deviation about the start, which keeps parameters that
-    only act together from running away together.
+    A model that diverges in spite of the filters' corrections is infinitely unlikely.
 
-    A model that diverges in spite of the observer's corrections is infinitely unlikely.
+    Args:
+        start: where the parameters begin.
+        bank: the runs, and the filters that observe them.
+        noise: under which the parameters are fitted.
+        reach: standard deviation, in scales of the parameters, of a prior about the start. It keeps
+            parameters that only act together from growing without bound together.
     """
     return judge(levenberg_marquardt(start, bank, noise, Prior.around(start.x, reach)), bank, noise)
 
@@ -81,9 +92,17 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf
 def fit_or_give_up(
     first: Linearised, bank: FilterBank, noise: Noise, least: float, reach: float = np.inf
 ) -> Fit | None:
-    """The same, but None as soon as nothing says that its `two_log_likelihood` reaches `least`.
+    """As `fit`, but give up as soon as `two_log_likelihood` is not expected to reach `least`.
 
-    `first`: a start, and derivatives that are roughly right there.
+    Args:
+        first: where the parameters begin, with derivatives that are about right there.
+        bank: see `fit`.
+        noise: see `fit`.
+        least: what is to be reached.
+        reach: see `fit`.
+
+    Returns:
+        The fit; None where it was given up.
     """
 
     def monitor(seen: Linearised, predicted_reduction: float) -> None:
@@ -103,9 +122,18 @@ def fit_or_give_up(
 def polish(
     start: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
 ) -> tuple[Fit, FilterBank]:
-    """Fitted once more to these runs under its own noise, with filters that suit it.
+    """Fit a hypothesis to these runs once more, under its own noise and with filters that suit it.
 
-    As far as filters under that noise hold the model.
+    That is done twice, since the noise changes with it, unless the model diverges with the filters
+    of the second time.
+
+    Args:
+        start: a fit, perhaps to other runs.
+        runs: to fit to.
+        reach: see `fit`.
+
+    Returns:
+        The fit, and the filters that it was made with.
     """
 
     def again(start: Fit) -> tuple[Fit, FilterBank]:
@@ -122,7 +150,14 @@ def polish(
 
 
 def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
-    """A hypothesis as it stands, the noise fitted to what it leaves, beside what was known."""
+    """Fit the noise to what a hypothesis leaves; its parameters stay as they are.
+
+    Args:
+        seen: the hypothesis, its innovations and their derivatives.
+        bank: that these innovations come from.
+        noise: where the fit of the noise begins.
+        prior: what is known of the parameters besides; it makes their covariance smaller.
+    """
     if not seen.finite:
         unknown = np.full((len(seen.hypothesis.x), len(seen.hypothesis.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)

@@ -1,4 +1,7 @@
-"""Innovations, and how they change with parameters: what all decisions are made of."""
+"""The filters of all runs: they give innovations, and how these change with a model's parameters.
+
+All decisions of a diagnosis are made on these two.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -28,17 +31,22 @@ from rovsim.estimation.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised, evaluate_possible, linearise
 
-ROUNDS = 3  # at most: what wanders and what pushes for a second are told apart by then
+ROUNDS = 3  # at most: by then a wandering current and the disturbance are told apart
 RATE_TOLERANCE = 0.05  # of a drift, which its standard deviation exceeds
 
 
 @dataclass(frozen=True, eq=False)
 class FilterBank:
-    """The runs, and the filters they are observed with, which suit a model.
+    """Several runs, with filters that suit one model and one noise.
 
-    `coupled`: axes drive each other (autoregression.py). Innovations found with the filters of one
-    noise are then those of another only nearly. `paths`: of a current that wanders, about which all
-    is linearised.
+    Attributes:
+        runs: what was measured.
+        error_dynamics: of `model`, for each of the six axes.
+        run_filters: the filters of each run.
+        model: that the filters suit.
+        coupled: whether axes drive each other (autoregression.py). Innovations can then only
+            nearly be converted from one noise to another.
+        paths: the current of each run about which everything is linearised; empty for still water.
     """
 
     runs: tuple[ObservedRun, ...]
@@ -50,7 +58,7 @@ class FilterBank:
 
     @staticmethod
     def design(runs: Sequence[ObservedRun], base: Model, noise: Noise) -> "FilterBank":
-        """A filter bank that suits this noise."""
+        """Design the filters of these runs for one model and one noise."""
         errors = estimate_errors(base, runs)
         run_filters = tuple(design_filters(noise.white, errors.by_axis, w) for w in runs)
         coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
@@ -61,14 +69,14 @@ class FilterBank:
         return FilterBank.design(self.runs, model, noise)
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
-        """Innovations (m, 6, n) of each run; NaN where a model cannot move at all."""
+        """Innovations (m, 6, n) of m models on each run; NaN for models that are impossible."""
         return [
             evaluate_possible(models, len(run.time), partial(self._innovations_of_run, k))
             for k, run in enumerate(self.runs)
         ]
 
     def innovations(self, model: Model) -> list[Array]:
-        """Innovations (6, n) of each run of one model."""
+        """Innovations (6, n) of one model on each run."""
         return [e[0] for e in self.evaluate([model])]
 
     def _innovations_of_run(self, k: int, models: Sequence[Model]) -> Array:
@@ -77,7 +85,14 @@ class FilterBank:
         return observe(models, self.runs[k], self.run_filters[k], pushed)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
-        """Settled innovations (..., 6, n) of all runs, of unit variance if the noise is right."""
+        """Whitened settled innovations (..., 6, n) of all runs, one run after the other.
+
+        Their variance is one if `noise` is right.
+
+        Args:
+            e: innovations (..., 6, n_run) of each run, as `evaluate` gives them.
+            noise: that should explain them.
+        """
         run_filters, past = self.design_filters(noise), noise.autoregression
         z = whiten(e, self.runs, self.run_filters, run_filters)
         if noise.drift:
@@ -86,12 +101,12 @@ class FilterBank:
 
     @property
     def looks_for_drift(self) -> bool:
-        """Whether a current that wanders is looked for: every axis has its own, steady filter."""
-        known = all(run.motion.measured is None and run.current_may_drift for run in self.runs)
-        return known and not self.coupled
+        """Whether a wandering current is looked for: only where each axis has one steady filter."""
+        steady = all(run.motion.measured is None and run.current_may_drift for run in self.runs)
+        return steady and not self.coupled
 
     def shows_drift(self, noise: Noise) -> bool:
-        """Whether a usual drift of the current would be told from none."""
+        """Whether a current that wanders as much as usual would be noticed in these runs."""
         return self.looks_for_drift and self._water.shows_drift(self.design_filters(noise))
 
     @cached_property
@@ -103,7 +118,7 @@ class FilterBank:
         return Stretches.of(self.runs)
 
     def flatten(self, rows: Sequence[Array], noise: Noise) -> Array:
-        """Rows (q, 6, n_run) of each run, whitened, all axes after one another: (q, 6 n)."""
+        """As `whiten`, for rows (q, 6, n_run) of each run, with the axes joined: (q, 6 n)."""
         return as_rows(self.whiten(rows, noise))
 
     def design_filters(self, noise: Noise) -> list[RunFilters]:
@@ -111,9 +126,13 @@ class FilterBank:
         return [design_filters(noise, self.error_dynamics, w) for w in self.runs]
 
     def fit_noise(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
-        """The most likely noise of innovations (6, n) of each run; see `fit_noise`.
+        """The most likely noise of innovations (6, n_run) of each run.
 
-        `thorough`: whether to look for slow errors of the readings and for a current that wanders.
+        Args:
+            e: the innovations; several sets of them, one after the other, if they are draws that
+                might all be the true ones.
+            start: where the fit begins.
+            thorough: whether to look for slow errors of the readings and for a wandering current.
         """
         fit = self.fit_axes(e, start, thorough)
         if not self.coupled:
@@ -123,13 +142,13 @@ class FilterBank:
         return NoiseFit(replace(fit.noise, autoregression=past), fit.two_log_likelihood + more)
 
     def fit_axes(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
-        """The same, each axis by itself, also where they are coupled; beside a drift as it is."""
+        """As `fit_noise`, but each axis by itself, and with the wandering current of `start`."""
         draws = self._draws(e)
         if start.drift is None:
-            return self._fit_calm(draws, start, thorough)
+            return self._fit_without_drift(draws, start, thorough)
         each = [self._subtract_drift(own, start, start.drift.rate) for own in draws]
         rests, walks = [rest for rest, _ in each], each[0][1]
-        fit = self._fit_calm(rests, start, thorough)
+        fit = self._fit_without_drift(rests, start, thorough)
         paths = (CurrentPath(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
         noise = replace(fit.noise, drift=start.drift._replace(paths=tuple(paths)))
         lr_statistics = [
@@ -138,7 +157,7 @@ class FilterBank:
         ]
         return NoiseFit(noise, fit.two_log_likelihood + float(np.mean(lr_statistics)))
 
-    def _fit_calm(
+    def _fit_without_drift(
         self, draws: Sequence[Sequence[Array]], start: Noise, with_bias: bool
     ) -> NoiseFit:
         count = len(draws)
@@ -154,28 +173,28 @@ class FilterBank:
         )
 
     def _draws(self, e: Sequence[Array]) -> list[Sequence[Array]]:
-        """Innovations of every run, as often as there are any."""
+        """Split innovations into sets that each hold every run once."""
         count = len(self.runs)
         return [e[first : first + count] for first in range(0, len(e), count)]
 
     def _fit_drift(self, e: Sequence[Array], fit: NoiseFit) -> NoiseFit:
-        """The noise with a current that wanders, if it does."""
+        """Add a wandering current to the noise, if the innovations show one for sure."""
         for _ in range(ROUNDS):
-            drift, known = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
+            drift, before = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
             now = DriftingCurrent(drift.rate.value) if drift.sure else None
-            if now is None and known is None:
+            if now is None and before is None:
                 break
-            if now and known and abs(now.rate - known.rate) < RATE_TOLERANCE * known.rate:
+            if now and before and abs(now.rate - before.rate) < RATE_TOLERANCE * before.rate:
                 break
             fit = self.fit_axes(e, replace(fit.noise, drift=now), thorough=True)
         return fit
 
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
-        """How the current most likely wanders, from innovations (6, n) of each run."""
+        """The likeliest wandering of the current, from innovations (6, n_run) of each run."""
         return self._water.find_drift(self._whiten_by_run(e, noise), self.design_filters(noise))
 
     def varies_with_place(self, e: Sequence[Array], noise: Noise) -> bool:
-        """Whether a steady flow through the tank may be what seems to wander."""
+        """Whether a steady flow that varies with place may look like a wandering current."""
         return self._water.varies_with_place(
             self._whiten_by_run(e, noise), self.design_filters(noise)
         )
@@ -183,14 +202,21 @@ class FilterBank:
     def _subtract_drift(
         self, e: Sequence[Array], noise: Noise, rate: float
     ) -> tuple[list[Array], list[Array]]:
-        """Innovations of each run less a likely drift, and the likeliest current (n, 2)."""
+        """Subtract a likely wandering current from the innovations of each run.
+
+        Returns:
+            The innovations (6, n_run) that are left, and the likeliest current (n_run, 2) in m/s.
+        """
         z, run_filters = self._whiten_by_run(e, noise), self.design_filters(noise)
         return self._water.walk.subtract(e, z, rate, run_filters)
 
     def _lr_of_drift(
         self, e: Sequence[Array], rest: Sequence[Array], noise: Noise, rate: float
     ) -> float:
-        """By how much likelier innovations are with a drift than what it left is without."""
+        """How much likelier innovations are with a drift than what it leaves is without one.
+
+        As a likelihood-ratio statistic; `rest` are the innovations less the drift.
+        """
         z, left = self._whiten_by_run(e, noise), self._whiten_by_run(rest, noise)
         more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
         return more + self._water.walk.lr_statistic(z, rate, self.design_filters(noise))
@@ -201,9 +227,11 @@ class FilterBank:
         return [whiten_run(*one) for one in each]
 
     def linearise(self, at: Hypothesis, known: Linearised | None = None) -> Linearised:
-        """Innovations (6, n), and their derivatives (k, 6, n) to the k scaled parameters.
+        """Innovations (6, n) of each run, and their derivatives to the k scaled parameters.
 
-        `known`: derivatives of another hypothesis, which stand for those to the same parameters.
+        Args:
+            at: the hypothesis.
+            known: another hypothesis, whose derivatives to the same parameters are used again.
         """
         step()
         return linearise(at, self.evaluate, known)

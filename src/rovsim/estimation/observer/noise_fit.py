@@ -33,7 +33,7 @@ MIN_LR_OF_BIAS = 12.0  # two more numbers, and sure of it on six axes
 
 
 class NoiseFit(NamedTuple):
-    """The most likely noise, and 2 log L under it, up to a constant."""
+    """The most likely noise, and twice the log likelihood under it, up to a constant."""
 
     noise: Noise
     two_log_likelihood: float
@@ -48,18 +48,19 @@ def fit_noise(
     with_bias: bool = False,
     draws: int = 1,
 ) -> NoiseFit:
-    """The most likely noise of innovations e (6, n_run).
+    """Fit the noise to innovations by maximum likelihood, each axis by itself.
 
     The correlation time has a prior: that of turbulence is about a second, within a factor of two.
 
     Args:
-        e: innovations of each run.
+        e: innovations (6, n_run) of each run.
         runs: the runs.
-        made_by: the filters that each was made by.
-        error_dynamics: how errors of the six axes go on.
-        start: where to begin.
-        with_bias: whether to look for slow errors of the readings; if not, they stay.
-        draws: how often each run is there, with innovations that might all be its own.
+        made_by: the filters of each run that its innovations come from.
+        error_dynamics: how an error of the model grows or decays on each of the six axes.
+        start: where the fit begins. An axis that no reading shows keeps this noise.
+        with_bias: whether to look for slow errors of the readings; else they stay as in `start`.
+        draws: how many sets of innovations `e` holds, each of which might be the true one. All sets
+            together then count as one.
     """
     noises, costs = [], []
     for i, dynamics in enumerate(error_dynamics):
@@ -77,11 +78,28 @@ def fit_noise(
     return NoiseFit(Noise(*np.array(noises).T), -2.0 * sum(costs))
 
 
+class _Misfit(NamedTuple):
+    """Sums over innovations: of their squares over their variance, and of its logarithm.
+
+    `shown` is the number of innovations that count.
+    """
+
+    squares: float
+    logs: float
+    shown: float
+
+
 @dataclass(frozen=True, eq=False)
 class _AxisInnovations:
-    """Innovations (n_run,) of an axis, and the filter of each run they were found with.
+    """Innovations of one axis, with all that their likelihood needs besides the noise.
 
-    All that is there `draws` times counts once.
+    Attributes:
+        axis: its number, 0 to 5.
+        e: innovations (n_run,) of each run.
+        runs: the runs.
+        filters: of each run, that its innovations come from.
+        dynamics: how an error of the model grows or decays on this axis.
+        draws: how many sets of innovations there are; they count as one.
     """
 
     axis: int
@@ -103,35 +121,39 @@ class _AxisInnovations:
 
     @property
     def single(self) -> float:
-        """Square root of the number of frames in a reading: how much noisier one frame is."""
+        """How many times noisier a single frame is than a reading, which is a mean of frames."""
         return float(np.sqrt(self.runs[0].group))
 
     def cost(self, noise: AxisNoise) -> float:
-        """Negative log likelihood of a noise, up to a constant; infinite where it has none."""
-        squares, logs, _ = self._misfit(noise)
-        return _finite(0.5 * (squares + logs) / self.draws)
+        """Negative log likelihood of a noise, up to a constant; infinite where it is undefined."""
+        sums = self._misfit(noise)
+        return _finite(0.5 * (sums.squares + sums.logs) / self.draws)
 
     def scaled(self, noise: AxisNoise) -> tuple[AxisNoise, float]:
-        """The likeliest multiple of a noise without a slow error, and its cost."""
-        squares, logs, count = self._misfit(noise)
-        size = max(squares / count, FAINTEST)  # of the variance; all of the noise makes it alike
-        cost = _finite(0.5 * (squares / size + count * np.log(size) + logs) / self.draws)
+        """The likeliest multiple of a noise without a slow error, and its negative log likelihood.
+
+        The multiple follows without a search: the variance of the innovations is proportional to
+        that of the noise.
+        """
+        squares, logs, shown = self._misfit(noise)
+        size = max(squares / shown, FAINTEST)
+        cost = _finite(0.5 * (squares / size + shown * np.log(size) + logs) / self.draws)
         by = float(np.sqrt(size))
         disturbance_std, measurement_std = by * noise.disturbance_std, by * noise.measurement_std
         scaled = noise._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)
         return scaled, cost
 
-    def _misfit(self, noise: AxisNoise) -> tuple[float, float, float]:
-        """Sum of squares over their variance, sum of its logarithm, and how many innovations."""
+    def _misfit(self, noise: AxisNoise) -> "_Misfit":
+        """What the likelihood of a noise is made of, summed over all runs."""
         values, squares, logs, count = np.array(noise), 0.0, 0.0, 0.0
         for known in self._known:
             own, log, more = misfit(values, *known)
             squares, logs, count = squares + own, logs + more * log, count + more
-        return squares, logs, count
+        return _Misfit(squares, logs, count)
 
     @cached_property
     def _known(self) -> list[tuple]:
-        """Of each run all that its likelihood needs, but for the noise."""
+        """Arguments of the kernel `misfit` for each run, without the noise."""
         each = zip(self.e, self.runs, self.filters, strict=True)
         return [self._of_run(run, old, e) for e, run, old in each]
 
@@ -151,7 +173,7 @@ class _AxisInnovations:
 
 
 def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
-    """The noise of one axis, its slow error as given, and what it costs."""
+    """The likeliest noise of one axis, with the slow error of `start`, and its cost."""
     if start.bias_std == 0.0:
         return _fit_white(axis, start)
 
@@ -164,7 +186,11 @@ def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, floa
 
 
 def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
-    """The noise of one axis without a slow error, and what it costs; how large it is, is known."""
+    """The likeliest noise of one axis without a slow error, and its cost.
+
+    Only the correlation time and the ratio of disturbance to noise are searched for; the size of
+    both follows from them.
+    """
 
     def at(x: Array) -> tuple[AxisNoise, float]:
         correlation_time, ratio = np.exp(x)
@@ -179,7 +205,16 @@ def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, flo
 
 
 def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
-    """The noise of one axis with a slow error of the readings, where that is more likely."""
+    """The noise of one axis with a slow error of the readings, if that is surely more likely.
+
+    Args:
+        axis: the innovations.
+        white: the noise so far, with which the fit begins.
+        known: its cost.
+
+    Returns:
+        The likelier noise, and its cost.
+    """
 
     def cost(x: Array) -> float:
         return _cost(axis, AxisNoise(*np.exp(x)))
@@ -195,7 +230,7 @@ def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[A
 
 
 def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:
-    """Negative log likelihood of a noise, and of its priors."""
+    """Negative log posterior of a noise, up to a constant: its likelihood and its priors."""
     prior = _correlation_time_prior(noise.correlation_time) + _bias_prior(noise, axis.single)
     return prior + axis.cost(noise)
 
@@ -205,7 +240,7 @@ def _finite(cost: float) -> float:
 
 
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
-    """Where a cost is least, and the least."""
+    """Minimise a cost from a first point (k,): the best point, and its cost."""
     simplex = first + np.vstack([np.zeros(len(first)), FIRST_STEP * np.eye(len(first))])
     best = minimize(
         cost,
@@ -217,7 +252,7 @@ def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float
 
 
 def _correlation_time_prior(time: float) -> float:
-    """Negative log of the prior of a correlation time, s; steep outside of what eddies can do."""
+    """Negative log prior of a correlation time, s; steep beyond the range that eddies can have."""
     outside = max(0.0, time / MAX_CORRELATION_TIME - 1.0)
     outside += max(0.0, MIN_CORRELATION_TIME / time - 1.0)
     log = np.log(time / TYPICAL_CORRELATION_TIME)
@@ -225,7 +260,10 @@ def _correlation_time_prior(time: float) -> float:
 
 
 def _bias_prior(noise: AxisNoise, single: float) -> float:
-    """Negative log of the prior of a slow error, if there is one."""
+    """Negative log prior of a slow error of the readings; 0 where there is none.
+
+    `single`: how many times noisier a single frame is than a reading.
+    """
     if noise.bias_std == 0.0:
         return 0.0
     lasting = np.log(noise.bias_correlation_time / TYPICAL_BIAS_TIME) / BIAS_TIME_LOG_STD

@@ -1,4 +1,7 @@
-"""Errors of models, how they change with parameters, and what makes them comparable."""
+"""The errors that a hypothesis is fitted to, and their derivatives to its parameters.
+
+The errors are innovations in `filter_bank`, and errors of replays in `replay_fit`.
+"""
 
 from dataclasses import dataclass
 from typing import Callable, Protocol, Sequence
@@ -15,9 +18,12 @@ Errors = Callable[[Sequence[Model]], list[Array]]
 
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """A hypothesis, its errors `e` (6, n) of each run, not whitened, and how they change.
+    """A hypothesis with its errors, linearised in its k scaled parameters.
 
-    `J` (k, 6, n) of each run are their derivatives to the k scaled parameters.
+    Attributes:
+        hypothesis: at which the errors were evaluated.
+        e: errors (6, n) of each run, not whitened.
+        J: their derivatives (k, 6, n) of each run.
     """
 
     hypothesis: Hypothesis
@@ -26,7 +32,7 @@ class Linearised:
 
     @property
     def finite(self) -> bool:
-        """Whether the model stayed finite on all runs, there and a step beside."""
+        """Whether no error and no derivative diverged on any run."""
         return all(np.isfinite(one).all() for one in (*self.e, *self.J))
 
     @property
@@ -36,23 +42,26 @@ class Linearised:
 
 
 class ResidualSource(Protocol):
-    """What a hypothesis is fitted to."""
+    """Gives the errors that a hypothesis is fitted to."""
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
-        """Errors (m, 6, n) of each run; NaN where a model cannot move at all."""
+        """Errors (m, 6, n) of m models on each run; NaN for models that are impossible."""
 
     def linearise(self, at: Hypothesis) -> Linearised:
-        """Errors of a hypothesis, and how they change with its parameters."""
+        """Errors of a hypothesis, and their derivatives to its free parameters."""
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
-        """Errors (..., 6, n) of all runs, each worth the same."""
+        """Errors (..., 6, n) of all runs, scaled so that each tells as much as any other."""
 
 
 def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -> Linearised:
-    """Differences of the errors (m, 6, n) of each run that `errors` returns for m models.
+    """Linearise the errors of a hypothesis by finite differences.
 
-    `known`: derivatives of another hypothesis, which stand for those to the same parameters. Those
-    of a law are its own: its terms move up as others go.
+    Args:
+        at: the hypothesis.
+        errors: gives the errors (m, 6, n) of m models on each run.
+        known: another hypothesis, whose derivatives to the same parameters are used again. The
+            parameters of a law are never the same: its terms are numbered anew as others go.
     """
     count = len(at.x)
     taken = {} if known is None else _take(at, known)
@@ -68,7 +77,10 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
 
 
 def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
-    """Derivatives of each run to parameters of the catalogue that both have, by where they go."""
+    """Derivatives of `known` to parameters that both have, by their place in `at`.
+
+    Each is one array (6, n) per run; parameters of a law, which no catalogue lists, are left out.
+    """
     listed = [term.effect.listed for term in known.hypothesis.terms for _ in term.free]
     rows = {name: k for k, name in enumerate(known.hypothesis.parameter_names) if listed[k]}
     each = enumerate(at.parameter_names)
@@ -76,7 +88,10 @@ def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
 
 
 def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
-    """The other way from `linearise`'s step of one parameter; None where its range ends there."""
+    """The hypothesis one step of its i-th parameter in the other direction than in `linearise`.
+
+    None where the parameter's range ends there.
+    """
     to = at.at(at.x - np.where(np.arange(len(at.x)) == i, at.steps, 0.0))
     return to if to.x[i] != at.x[i] else None
 
@@ -84,7 +99,13 @@ def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
 def evaluate_possible(
     models: Sequence[Model], count: int, errors: Callable[[Sequence[Model]], Array]
 ) -> Array:
-    """Errors (m, 6, count) of models; NaN where a model cannot move at all."""
+    """Errors (m, 6, count) of m models on one run; NaN for models that are impossible.
+
+    Args:
+        models: all of them. Impossible is one whose inertia is not positive definite, for example.
+        count: of the errors on each axis.
+        errors: gives those of the possible models.
+    """
     able = [m.possible for m in models]
     e = np.full((len(models), 6, count), np.nan)
     if any(able):
