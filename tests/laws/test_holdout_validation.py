@@ -58,7 +58,7 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     assert holdout.prefers(*models) is True
     assert holdout.prefers(*reversed(models)) is False
     assert holdout.prefers(models[0], models[0]) is None
-    passed, whole = holdout.judge(impossible)
+    passed, whole = holdout.validate(impossible)
     assert passed.best.hypothesis.terms == ()
     assert not whole
 
@@ -112,14 +112,14 @@ def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     right = Term(QuadraticDamping(surge=120.0), ("surge",))
     wrong = Term(LinearDamping(sway=150.0), ("sway",))
     selection = SearchResult(Workspace(), Found(Hypothesis(base, (right, wrong))), (), True)
-    passed, whole = HoldoutValidation(holdout, runs).judge(selection)
+    passed, whole = HoldoutValidation(holdout, runs).validate(selection)
     assert [t.id for t in passed.best.hypothesis.terms] == ["quadratic_damping"]
     assert not whole
     lost = replace(selection, workspace=Workspace(finite=False))
     assert HoldoutValidation(holdout, runs).keep_earning(lost).best is lost.best
     assert HoldoutValidation(holdout, runs).keep_earning(selection).best is not selection.best
     alone = SearchResult(Workspace(), Found(Hypothesis(base, (wrong,))), (), True)
-    passed, whole = HoldoutValidation(holdout, runs).judge(alone)
+    passed, whole = HoldoutValidation(holdout, runs).validate(alone)
     assert passed.best.hypothesis.terms == ()
     assert not whole
     assert Windows(holdout[0]).spans

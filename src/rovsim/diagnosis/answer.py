@@ -104,7 +104,7 @@ def settle(
     selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation
 ) -> SettledAnswer:
     """Validate a selection on the held-out stretches, and fit what passes to all train runs."""
-    selection, whole = holdout.judge(selection)
+    selection, whole = holdout.validate(selection)
     settled = _settle_values(selection, usable)
     fewer = holdout.keep_earning(selection) if settled.leaves_physics else selection
     if fewer.best is not selection.best:

@@ -1,4 +1,4 @@
-"""Which effects are missing: add the most likely one, refit all, try to swap, drop what is idle."""
+"""Which effects are missing: add the likeliest, refit all, try swaps, remove what is not needed."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
-ROUNDS = 3  # of trials, when none of the first matters
+ROUNDS = 3  # of trials, where none of the first additions is accepted
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
 # Of what the last addition explained: while more is sought, less is not worth a swap.
 MIN_SWAP_SHARE = 0.01
@@ -35,10 +35,17 @@ DETERMINED = 0.5  # scales: the standard deviation of a shape, by which two scal
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
-    """The best single addition, refitted and pruned; None when none beats chance and matters.
+    """Add the effect that explains most, refit and prune; None where no effect is accepted.
 
-    Where the vehicle file is loose, it is no special effect that the file explains; if nothing else
-    is left, several numbers of the file that only matter together.
+    An effect is accepted if it explains more than chance would and replays without it are
+    noticeably worse. Where the vehicle file is loose, a special effect is not accepted if all of
+    the file together explains the same; if nothing else is left, several numbers of the file may be
+    accepted that only matter together.
+
+    Args:
+        workspace: of the search.
+        current: the fit so far.
+        threshold: least gain of the score, see `SearchWorkspace.chance_limit`.
     """
     left, file = list_promising(workspace, current), LooseFile(workspace)
     loose = has_loose_file(current.hypothesis)
@@ -72,12 +79,19 @@ def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: f
 def try_swaps(
     workspace: SearchWorkspace, current: Fit, trials: int, swap: float = MIN_LR_OF_SWAP
 ) -> tuple[Fit, list[Rival]]:
-    """Replace any one term by another effect while that is more likely; then what comes close.
+    """Replace any one term by another effect, as long as that is likelier.
 
-    Names that should explain less than half of what the term does are not refitted, unless for that
-    they ask so much less that they seem likelier.
+    An effect that to first order explains less than half of what the term does is not refitted,
+    unless its smaller penalty makes up for that.
 
-    `swap`: the least difference of the scores.
+    Args:
+        workspace: of the search.
+        current: the fit so far.
+        trials: how many effects are refitted in the place of each term, at least.
+        swap: by how much the score has to be larger after a swap.
+
+    Returns:
+        The likeliest fit, and the effects that could stand in the place of each of its terms.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
     rests = workspace.remove_each(current)
@@ -94,17 +108,18 @@ def try_swaps(
                 if worse < -swap and not (loose and file.explains(trial, p.term.id)):
                     return try_swaps(workspace, prune(workspace, trial), trials, swap)
                 weight = file.weigh(Contender(current, term), Contender(trial, p.term), worse)
-                worse = max(0.0, weight)  # likelier only beside a loose file: not told apart
+                worse = max(0.0, weight)  # likelier, but not beside a loose file: undecided
             rivals.append(Rival(p.term.id, term.id, worse, trial))
     return current, rivals
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With effects that have modes in another one, where that is more likely.
+    """Try the other modes of each effect that has modes; keep one that is likelier.
 
-    A loop that holds an angle, but slowly, and more drag than there is do what a loop that holds a
-    rate does alone: neither of the two can be taken away or swapped by itself. So do a slow loop of
-    the same mode, and drag, so that its own start is tried again as well.
+    Swaps alone do not get there. A slow loop on board that holds an angle, together with too much
+    drag, moves the vehicle like a loop that holds a rate, and neither of the two can be removed or
+    swapped by itself. The same holds for a slow loop of the same mode together with drag, so the
+    effect's own mode is tried from its start again, too.
     """
     h = current.hypothesis
     for i, term in enumerate(h.terms):
@@ -115,14 +130,14 @@ def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def _fit_if_likelier(workspace: SearchWorkspace, start: Hypothesis, current: Fit) -> Fit | None:
-    """A start, fitted and pruned; None where it is not likelier than the current fit."""
+    """Fit and prune a start; None where that is not likelier than the current fit."""
     trial = prune(workspace, workspace.fit(start))
     likelier = workspace.score(trial) > workspace.score(current) + MIN_LR_OF_SWAP
     return trial if likelier else None
 
 
 def move_thresholds(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With each threshold elsewhere, where that is likelier beside what was found since."""
+    """Place each threshold anew beside the effects accepted since, where that is likelier."""
     for term in current.hypothesis.terms:
         moved = place_thresholds(workspace, current.hypothesis, term)
         if moved is not current.hypothesis:
@@ -131,10 +146,10 @@ def move_thresholds(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """With the shape of an effect free where the data determine it: how far from a wall it reaches.
+    """Free the shape of an effect where the runs determine it, such as how far a wall reaches.
 
-    Left as it usually is, it would have other effects make up for it, and its gain would seem surer
-    than it is.
+    A shape at its usual value would make other effects compensate for it, and the effect's gain
+    would seem surer than it is.
     """
     h = current.hypothesis
     for i, term in enumerate(h.terms):
@@ -149,9 +164,14 @@ def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 
 def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
-    """From the base to the model to which nothing can be added, swapped or taken away.
+    """Search from a fit of the base until nothing can be added, swapped or removed.
 
-    The workspace's noise and filters follow what is found.
+    The noise and the filters of the workspace follow what is accepted on the way.
+
+    Args:
+        workspace: the candidates, and the runs they are judged on.
+        base: a fit to begin with, usually of the base without any effect.
+        seed: of the draws that tell what chance explains.
     """
     workspace, current = _add_and_swap(*prefer_steady(workspace, base), seed)
     loose = suspect_loose_file(workspace, current)
@@ -169,7 +189,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
 def _add_and_swap(
     workspace: SearchWorkspace, current: Fit, seed: int
 ) -> tuple[SearchWorkspace, Fit]:
-    """Add and swap until nothing more beats chance."""
+    """Add effects, and swap after each addition, until no addition beats chance."""
     while len(current.hypothesis.terms) < workspace.settings.most_effects:
         more = add_best(workspace, current, workspace.chance_limit(current, seed))
         if more is None:
@@ -184,7 +204,7 @@ def _add_and_swap(
 
 
 def search_unnoticed(selection: SearchResult, seed: int) -> SearchResult:
-    """From where a search ended on, by effects too that hardly change the error in 2 s windows."""
+    """Continue a search with effects that hardly change the error in 2 s windows."""
     workspace = selection.workspace
     settings = workspace.settings.model_copy(update={"relevant": 0.0})
     return search(replace(workspace, settings=settings), selection.best, seed)

@@ -1,13 +1,13 @@
-"""Hold-out validation: what was chosen must replay stretches that took no part in choosing.
+"""Hold-out validation: the accepted effects must replay stretches that they were not chosen on.
 
-A likelihood can be wrong about what matters to a user; a replay is what users do. So the last part
-of every train run is kept apart. An effect without which these stretches are replayed better goes,
-and an answer that replays them worse than the model before is no answer.
+A likelihood can be wrong about what matters to a user, and a replay is what users do. So the last
+part of every train run is held out of the search. An effect is removed if these stretches are
+replayed better without it, and an answer that replays them worse than the base is refused.
 
-No value is fitted to them before the last fit to all runs. But they decide more than once, so that
-they are less and less fresh: which effects harm (`judge`), which earn nothing beside physics
-without a name (`keep_earning`), whether the cameras smooth (`refuses`), which of two answers
-(`prefers`), and whether a law holds (`keeps`).
+Before the last fit to all runs, no value is fitted to them. But they decide several things, and
+become less independent with each: which effects do harm (`validate`), which are of no use where
+unknown physics is left (`keep_earning`), whether the cameras smooth (`refuses`), which of two
+answers is better (`prefers`), and whether a law holds (`keeps`).
 """
 
 from dataclasses import dataclass, replace
@@ -40,13 +40,16 @@ Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 
 HOLDOUT_SHARE = 0.2  # of each run's time
 MIN_RUN_SECONDS = 60.0  # a fifth of less shows too few windows of 2 s
-SLIGHT_SHARE = 0.005  # of the error: what is let go one by one adds up to about WORSE_SHARE
-REFIT_SHARE = 0.1  # of the error: who does worse without a term, to first order, is not refitted
+SLIGHT_SHARE = 0.005  # of the error: several such losses add up to about WORSE_SHARE
+REFIT_SHARE = 0.1  # of the error: what is worse by more, to first order, is not refitted
 FOLDS = 4  # groups of runs that are left out, one after the other; single runs if there are fewer
 
 
 def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[ObservedRun]]:
-    """The runs to choose by, and those stretches of them that take no part in it."""
+    """Split train runs into what effects are chosen on, and the stretches that are held out.
+
+    The last fifth of each run is held out, unless the run is shorter than a minute.
+    """
     chosen, holdout = [], []
     for run in runs:
         time = run.motion.time
@@ -61,22 +64,30 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
 
 @dataclass(frozen=True, eq=False)
 class HoldoutValidation:
-    """The stretches that were kept apart; the whole runs tell how much each axis varies.
+    """Judges models by how they replay the held-out stretches.
 
-    Where the `current_drifts`, what all windows of a run have in common is by chance.
+    Attributes:
+        runs: the held-out stretches.
+        whole_runs: the train runs that they belong to; these say how much each axis varies.
+        current_drifts: whether the current wanders. What all windows of a run have in common may
+            then be chance, so a run counts as one window.
     """
 
     runs: Sequence[ObservedRun]
-    whole: Sequence[ObservedRun]
+    whole_runs: Sequence[ObservedRun]
     current_drifts: bool = False
 
     @cached_property
     def spread(self) -> Array:
-        """Standard deviation (6,) of the measured velocity."""
-        return np.fmax(measured_spread(run.motion for run in self.whole), MIN_SPREAD)
+        """Standard deviation (6,) of the measured velocity, m/s and rad/s."""
+        return np.fmax(measured_spread(run.motion for run in self.whole_runs), MIN_SPREAD)
 
-    def judge(self, selection: SearchResult) -> tuple[SearchResult, bool]:
-        """What passes, and whether that is all that was selected."""
+    def validate(self, selection: SearchResult) -> tuple[SearchResult, bool]:
+        """Remove effects that do harm; all of them where the rest is still worse than the base.
+
+        Returns:
+            The selection that passes, and whether nothing had to be removed.
+        """
         fit = selection.best
         while self.runs and fit.hypothesis.terms:
             weakest = self._find_harmful(selection, fit)
@@ -90,22 +101,22 @@ class HoldoutValidation:
         return replace(selection, best=fit), fit is selection.best
 
     def refuses(self, model: Model, before: Model) -> bool:
-        """Whether a model replays these stretches surely worse than the one before."""
+        """Whether a model surely replays the held-out stretches worse than another one."""
         if not self.runs:
             return False
         errors = self._errors([model, before])
         return find_sure_improvement(errors[0], errors[1]) > 0.0
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
-        """Whether one model errs less than the other by that share on all runs, held out or not."""
-        one, other = replace(self, runs=self.whole)._errors([more, less])
+        """Whether the error of `more` on all runs is less than that of `less` by that share."""
+        one, other = replace(self, runs=self.whole_runs)._errors([more, less])
         return ratio(one, other) < 1.0 - share
 
     def keeps(self, more: Model, less: Model) -> bool:
-        """Whether one model errs no more than the other on stretches that were kept apart.
+        """Whether `more` errs no more than `less` on the held-out stretches.
 
-        How sure that is, is asked elsewhere: what acts in one place shows in few of their windows,
-        perhaps in none.
+        Chance is not allowed for: what acts in one place alone shows in few of their windows or in
+        none, so these stretches cannot say how sure it is.
         """
         if not self.runs:
             return True
@@ -113,38 +124,41 @@ class HoldoutValidation:
         return ratio(one, other) <= 1.0
 
     def prefers(self, one: Model, other: Model) -> bool | None:
-        """Whether the first replays better; None if nothing was kept apart, or by chance."""
+        """Whether the first model surely replays better, or the second; None where neither does."""
         if not self.runs:
             return None
         return find_better(*self._errors([one, other]))
 
     def prefers_between_runs(self, one: Fit, other: Fit) -> bool | None:
-        """Whether the first replays whole runs better, at the values that replay the others best.
+        """Whether the first answer replays whole runs better, at values fitted to the other runs.
 
-        What is fitted as well by values that mean nothing elsewhere is lost in a run of another
-        kind. None where there is but one run, where both are lost, or by chance.
+        An answer whose values only suit the runs it was fitted to fails in a run of another kind.
+
+        Returns:
+            None where there is only one run, where both answers diverge, or where the difference
+            may be chance.
         """
-        groups = [self.whole[k::FOLDS] for k in range(min(FOLDS, len(self.whole)))]
+        groups = [self.whole_runs[k::FOLDS] for k in range(min(FOLDS, len(self.whole_runs)))]
         if len(groups) < 2:
             return None
         errors = []
         for group in groups:
-            models = [fit_without(fit, self.whole, group) for fit in (one, other)]
+            models = [fit_without(fit, self.whole_runs, group) for fit in (one, other)]
             errors.append(replace(self, runs=group)._errors(models))
         return find_less_lost(*np.concatenate(errors, axis=1))
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
-        """Where physics is left that no name explains: only what makes a difference there.
+        """Where unknown physics is left, keep only effects without which replays are surely worse.
 
-        A name then stands for part of what has none, unless replays are surely better for it. What
-        the vehicle file states counts together; then whatever of it is not sure by itself goes.
+        Any other effect may merely stand in for part of that physics. The file effects are first
+        judged together, then each by itself.
         """
         for split, least in ((_group, WORSE_SHARE), (_list_file_effects, SLIGHT_SHARE)):
             selection = self._drop_idle(selection, split, least)
         return selection
 
     def _drop_idle(self, selection: SearchResult, split: Split, least: float) -> SearchResult:
-        """Without groups of terms whose absence does not surely cost that share of the error."""
+        """Remove groups of terms one by one, unless the error is surely larger by that share."""
         kept = selection.best
         while self.runs and (groups := split(kept.hypothesis)):
             fewer, errors = self._do_without(selection, kept, groups)
@@ -160,7 +174,7 @@ class HoldoutValidation:
         return replace(selection, best=kept)
 
     def _find_harmful(self, selection: SearchResult, fit: Fit) -> Hypothesis | None:
-        """Without the effect whose absence helps most; None where each of them earns its place."""
+        """The hypothesis without the most harmful effect; None where no effect surely does harm."""
         fewer, errors = self._do_without(selection, fit, [(t,) for t in fit.hypothesis.terms])
         tried = len(errors) - 1
         improvements = [find_sure_improvement(errors[0], one, tried) for one in errors[1:]]
@@ -170,9 +184,13 @@ class HoldoutValidation:
     def _do_without(
         self, selection: SearchResult, fit: Fit, groups: Sequence[Sequence[Term]]
     ) -> tuple[list[Hypothesis], Array]:
-        """Hypotheses without each group of terms, and errors (1 + g, w), those with all first.
+        """Try to do without each of g groups of terms.
 
-        Refitted to first order, and in full where that comes close.
+        The other terms are refitted to first order, and in full where the error then is close.
+
+        Returns:
+            The hypotheses without each group, and the errors (1 + g, w) in each of w windows, of
+            which the first row is that of the fit itself.
         """
         h, fewer = fit.hypothesis, selection.workspace.drop(fit, groups)
         errors = self._errors([h.model, *(one.model for one in fewer)])
@@ -182,11 +200,10 @@ class HoldoutValidation:
         return fewer, self._errors([h.model, *(one.model for one in fewer)])
 
     def _errors(self, models: Sequence[Model]) -> Array:
-        """Mean squared error (m, w) of each window, every axis in units of how much it varies.
+        """Mean squared velocity error (m, w) of m models in each of w windows.
 
-        Of each run where the current wanders.
-
-        NaN where a model cannot move at all: a refit to first order may go that far.
+        Each axis is in units of its `spread`. Where the current wanders, a run is one window. NaN
+        for models that are impossible, as a refit to first order may make them.
         """
         parts: list[Array] = []
         for run in self.runs:
@@ -200,7 +217,7 @@ class HoldoutValidation:
 
 
 def _compare_axes(windows: Windows, models: Sequence[Model]) -> Array:
-    """Errors of the velocity (m, 6, n)."""
+    """Velocity errors (m, 6, n) of m models at the n compared samples of a run, m/s and rad/s."""
     return windows.compare(models).swapaxes(1, 2)
 
 

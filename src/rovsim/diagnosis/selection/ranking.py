@@ -1,4 +1,4 @@
-"""What was found, in order: each selected effect's worth, and every effect by itself."""
+"""Rank the accepted effects by the error they remove, and every effect as the only addition."""
 
 from dataclasses import dataclass, replace
 from typing import Collection, Sequence
@@ -25,7 +25,13 @@ CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside somethin
 
 @dataclass(frozen=True, eq=False)
 class Named:
-    """An effect that was found, how sure its values are by name, and how sure its name is."""
+    """An accepted effect.
+
+    Attributes:
+        term: the effect at its fitted values.
+        std: standard deviations of the fitted parameters, by name, in their units.
+        probability: of this effect among all that were tried in its place; None where unknown.
+    """
 
     term: Term
     std: dict[str, float]
@@ -34,14 +40,20 @@ class Named:
 
 @dataclass(frozen=True, eq=False)
 class Selected(Named):
-    """The same, and the share of the base's error that it removes."""
+    """An accepted effect, and the share of the base's error that it removes."""
 
     error_reduction: float
 
 
 @dataclass(frozen=True, eq=False)
 class Ranked:
-    """One effect by itself on top of the base."""
+    """An effect as the only addition to the base.
+
+    Attributes:
+        term: the effect at its fitted values.
+        error_reduction: share of the base's error that it removes.
+        probability: that it is the only missing effect, if at most one is.
+    """
 
     term: Term
     error_reduction: float
@@ -51,7 +63,13 @@ class Ranked:
 def rank_selected(
     base: Model, named: Sequence[Named], runs: Sequence[ObservedRun]
 ) -> list[Selected]:
-    """Effects that were found, the one that removes most error first, then the next beside it."""
+    """Order accepted effects: first the one that removes most error, then the next beside it.
+
+    Args:
+        base: the model without these effects.
+        named: the effects.
+        runs: on which the error is measured, in windows of 2 s.
+    """
     left, selected, model = list(named), [], base
     start = now = _score([base], runs)[0]
     while left:

@@ -1,4 +1,4 @@
-"""Where a search ended, and what else the effects it found could be."""
+"""Where a search ended: the effects that it accepted, and their rivals."""
 
 from dataclasses import dataclass, field
 from typing import Iterable
@@ -16,10 +16,15 @@ MIN_LR_APART = lr_statistic_of(odds=20.0)
 
 @dataclass(frozen=True)
 class Rival:
-    """An effect that could stand in for a selected one, and by how much it is less likely.
+    """An effect that could stand in the place of an accepted one.
 
-    `deviance_difference` includes penalties: 6 are odds of 20 to 1; at least that much where its
-    fit was given up. `fit` with it in the other's place, where it was refitted.
+    Attributes:
+        effect: id of the rival.
+        instead_of: id of the accepted effect.
+        deviance_difference: by how much less likely the rival is: the difference of the scores
+            (twice the log likelihood, less penalties). 6 means odds of 20 to 1. A lower limit where
+            the fit of the rival was given up.
+        fit: with the rival in the place of the effect; None where it was not refitted.
     """
 
     effect: str
@@ -29,7 +34,7 @@ class Rival:
 
 
 def keep_likeliest(rivals: Iterable[Rival]) -> tuple[Rival, ...]:
-    """Each that stands for the same once, as it is likeliest."""
+    """Of rivals with the same effect in the same place, keep the likeliest."""
     best: dict[tuple[str, str], Rival] = {}
     for one in rivals:
         known = best.setdefault((one.instead_of, one.effect), one)
@@ -40,11 +45,15 @@ def keep_likeliest(rivals: Iterable[Rival]) -> tuple[Rival, ...]:
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
-    """What a search found, its rivals, and the workspace as it was then.
+    """Where a search ended.
 
-    `reach`: how far a fit may go from where it starts, in scales. Without end where terms were
-    found one by one, each sure beside the others; where all that could be wrong was fitted at once,
-    what acts only together is kept near where it began.
+    Attributes:
+        workspace: of the search, as it was at its end.
+        best: the fit with all accepted effects.
+        rivals: effects that could stand in the place of accepted ones.
+        reach: how far a fit may go from its start, in scales of the parameters. There is no limit
+            where effects were accepted one by one. In a joint fit, parameters that only act
+            together are kept near their start.
     """
 
     workspace: SearchWorkspace
@@ -53,25 +62,25 @@ class SearchResult:
     reach: float = np.inf
 
     def fit(self, start: Hypothesis) -> Fit:
-        """Fit another hypothesis as this one was found."""
+        """Fit another hypothesis in the same way as the accepted one."""
         return self.workspace.fit(start, self.reach)
 
     def fit_unless_worse(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
-        """The same, but None as soon as it surely does not come near a score.
+        """As `fit`, but None as soon as the score surely stays far below another.
 
-        `current`: a fit whose derivatives it may begin with.
+        See `SearchWorkspace.fit_unless_worse`.
         """
         return self.workspace.fit_unless_worse(start, current, score, self.reach)
 
     def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
-        """Without what is not worth its penalty to a fit of the selection.
+        """Remove from a fit of the selection what is not worth its penalty.
 
-        What was fitted at once stays: none of it is sure by itself, and all is needed.
+        A joint fit stays as it is: none of its effects is sure by itself, but all are needed.
         """
         return prune(workspace, fit) if np.isinf(self.reach) else fit
 
     @property
     def named_rivals(self) -> list[Rival]:
-        """The rivals of what is still in the model."""
+        """The rivals of effects that are still in the model."""
         named = {term.id for term in self.best.hypothesis.terms}
         return [rival for rival in self.rivals if rival.instead_of in named]

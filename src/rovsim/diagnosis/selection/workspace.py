@@ -1,4 +1,4 @@
-"""The workspace of a search: the evidence, what it has fitted, and what looks worth trying next.
+"""The workspace of a search: the runs, what was fitted to them, and what is worth trying next.
 
 The penalty of a parameter is 2 log P for P columns to choose from (risk inflation criterion, Foster
 & George 1994): chance alone rarely pays it, so a family of many members is not favoured over a
@@ -27,15 +27,19 @@ from rovsim.estimation.remaining_noise import fit_remaining_noise
 from rovsim.estimation.sensitivities import Sensitivities, linearise_candidates
 from rovsim.estimation.white_columns import WhiteColumns
 
-HOPELESS_LR = 100.0  # what is less likely by e^50 need not be known better
+HOPELESS_LR = 100.0  # less likely by a factor of e^50: how much less need not be known
 
 
 @dataclass(frozen=True, eq=False)
 class Removed:
     """A hypothesis without one of its terms, judged to first order.
 
-    `gram` (1 + c, 1 + c) as of `WhiteColumns`; `ss_increase`: increase of the sum of squares;
-    `others`: all candidates for what the term took, best first.
+    Attributes:
+        hypothesis: without the term.
+        gram: (1 + c, 1 + c) of the innovations that it leaves and of the candidates' columns, see
+            `WhiteColumns.gram`.
+        ss_increase: by how much the sum of squared innovations is larger without the term.
+        others: all candidates as replacements of the term, the best first.
     """
 
     hypothesis: Hypothesis
@@ -46,7 +50,12 @@ class Removed:
 
 @dataclass(frozen=True, eq=False)
 class SearchWorkspace:
-    """Everything a search looks at: the runs, the candidates' columns, and one noise for all."""
+    """Everything that a search works with; all its fits have the same filters and the same noise.
+
+    Attributes:
+        columns: how each candidate would change the innovations of the runs, whitened.
+        settings: how the search decides.
+    """
 
     columns: WhiteColumns
     settings: SearchSettings
@@ -57,24 +66,24 @@ class SearchWorkspace:
 
     @property
     def bank(self) -> FilterBank:
-        """The filters that all fits have."""
+        """The runs, and the filters of all fits."""
         return self.columns.bank
 
     @property
     def noise(self) -> Noise:
-        """What all of them are judged under."""
+        """The noise under which all fits are made and compared."""
         return self.columns.noise
 
     @property
     def sensitivities(self) -> Sensitivities:
-        """What each candidate would change."""
+        """How each candidate would change the innovations."""
         return self.columns.sensitivities
 
     def update_after(self, current: Fit) -> "SearchWorkspace":
-        """The workspace whose filters, columns and noise suit what is now known to act.
+        """A workspace whose filters, columns and noise suit the effects accepted so far.
 
-        Columns take longest: they are made anew each time that twice as much was found. The same
-        where filters under the noise that was known do not hold the model.
+        Making the columns takes longest. They are only made anew when the number of accepted
+        effects has doubled since. The workspace stays as it is where the model would diverge.
         """
         at, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
         fresh = self.relinearise_if_changed(current) if len(at.terms) >= 2 * len(beside) else self
@@ -84,13 +93,13 @@ class SearchWorkspace:
         return fresh.with_noise(at, fit_remaining_noise(known, at, self.noise, rounds=1))
 
     def relinearise_if_changed(self, current: Fit) -> "SearchWorkspace":
-        """The workspace with columns beside all that was found, where that has changed them.
+        """A workspace whose candidates are linearised with the accepted effects in place.
 
-        The same where its filters do not hold that.
+        It stays as it is where these effects hardly change the columns, or the model diverges.
         """
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
-        known = names == set(self.columns.beside(at).beside)
-        if known or not self.columns.have_changed(current.linearised):
+        up_to_date = names == set(self.columns.beside(at).beside)
+        if up_to_date or not self.columns.have_changed(current.linearised):
             return self
         columns = self.columns.relinearised(at)
         if not columns.beside(at).finite:
@@ -98,10 +107,10 @@ class SearchWorkspace:
         return replace(self, columns=columns, _proposed={}, _removed={})
 
     def with_noise(self, at: Hypothesis, noise: Noise) -> "SearchWorkspace":
-        """The workspace whose filters suit a hypothesis and a noise.
+        """A workspace whose filters suit another hypothesis and noise.
 
-        Where axes drive each other, columns of another noise do not do: they are made anew, and the
-        noise is fitted to them.
+        Where axes drive each other, the columns cannot be converted to another noise. They are then
+        made anew, and the noise is fitted to what they leave.
         """
         bank = self.bank.redesign(at.model, noise)
         if not bank.coupled:
@@ -112,16 +121,22 @@ class SearchWorkspace:
         return SearchWorkspace(WhiteColumns(bank, fresh, noise), self.settings)
 
     def on_runs(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
-        """The same penalties, for fits to other runs; candidates are still judged by its own."""
+        """A workspace that fits to other runs, with the same candidates and the same penalty.
+
+        The candidates' columns remain those of the runs that they were made on.
+        """
         return SearchWorkspace(WhiteColumns(bank, self.sensitivities, noise), self.settings)
 
     @cached_property
     def penalty(self) -> float:
-        """What a free parameter costs, as a likelihood-ratio statistic."""
+        """Penalty of a free parameter, to be subtracted from a likelihood-ratio statistic."""
         return 2.0 * float(np.log(self.sensitivities.count))
 
     def fit(self, start: Hypothesis, reach: float = np.inf) -> Fit:
-        """Fit under the common noise, as far as `reach`; the same start is fitted once."""
+        """Fit a hypothesis under the common noise; the same start is fitted only once.
+
+        `reach` limits how far the parameters go from the start, in scales (see `estimation.fit`).
+        """
         key = start.key, reach
         if key not in self._fitted:
             self._fitted[key] = fit(start, self.bank, self.noise, reach)
@@ -130,9 +145,14 @@ class SearchWorkspace:
     def fit_unless_worse(
         self, start: Hypothesis, current: Fit, score: float, reach: float = np.inf
     ) -> Fit | None:
-        """The same, but None as soon as it surely scores `HOPELESS_LR` less than that.
+        """As `fit`, but None as soon as its score will surely be `HOPELESS_LR` below another.
 
-        `current`: a fit whose derivatives it may begin with.
+        Args:
+            start: the hypothesis to fit.
+            current: a fit whose derivatives are taken at first, as far as they have the same
+                parameters.
+            score: to compare with.
+            reach: see `fit`.
         """
         key, least = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
         if key not in self._fitted and least < self._given_up.get(key, np.inf):
@@ -149,17 +169,21 @@ class SearchWorkspace:
         return (start.key, np.inf) in self._fitted
 
     def score(self, fit: Fit) -> float:
-        """Its 2 log L, less the penalty of the free parameters, and an odd gain."""
+        """Twice the log likelihood of a fit, less its penalties: what fits are compared by.
+
+        There is a penalty for each free parameter, and one for a gain of the thrusters that is
+        far from the file's.
+        """
         return fit.two_log_likelihood - self._penalty_of(fit.hypothesis)
 
     def _penalty_of(self, at: Hypothesis) -> float:
-        """What a hypothesis costs."""
+        """The penalties of a hypothesis."""
         return self.penalty * sum(t.choices for t in at.terms) + doubt_gain(at)
 
     def remove_each(self, current: Fit) -> list[Removed]:
-        """The current hypothesis without each of its terms, the others refitted to first order.
+        """Without each term of the current hypothesis in turn, the others refitted to first order.
 
-        Made once, as swaps are tried one after the other.
+        The result is kept, since swaps are tried one after the other.
         """
         key = current.hypothesis.key
         if key not in self._removed:
@@ -180,21 +204,21 @@ class SearchWorkspace:
         return self.columns.gram(self._without(current, [(term,)])[0])
 
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
-        """The current hypothesis without each group of terms, the others refitted to first order.
+        """Without each group of terms in turn, the other terms refitted to first order.
 
-        Others stay as they are where the observer cannot hold the model without the group.
+        Where the model without the group diverges, the other terms keep their values.
         """
         return [self._step(seen) for seen in self._without(current, groups)]
 
     def _step(self, seen: Linearised) -> Hypothesis:
-        """Where the derivatives say that the errors are least."""
+        """The hypothesis at the values for which a Gauss-Newton step predicts the least errors."""
         if not seen.finite:
             return seen.hypothesis
         step = newton_step(gram(self.bank.flatten(seen.rows, self.noise)))
         return seen.hypothesis.at(seen.hypothesis.x + step)
 
     def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
-        """The current hypothesis without each group of terms, the derivatives as they were."""
+        """Without each group of terms in turn: innovations anew, derivatives of the current fit."""
         h, J = current.hypothesis, current.linearised.J
         rests = [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
         e = self.bank.evaluate([one.model for one in rests])
@@ -207,13 +231,13 @@ class SearchWorkspace:
         return linearised
 
     def _rank(self, G: Array) -> list[Proposal]:
-        """All candidates, best first; none where the observer cannot hold the model."""
+        """All candidates, the best first; none where the model diverges."""
         if not np.isfinite(G).all():
             return []
         return rank_proposals(G, self.sensitivities.blocks, self.penalty)
 
     def list_modes(self, term: Term) -> list[Term]:
-        """Starts of the same effect, if it has modes, with the same free values."""
+        """Starts of the same effect in its other modes, with the same parameters free."""
         if all(p.fitted for p in term.effect.parameters):
             return []
         starts = [block.candidate.term() for block in self.sensitivities.blocks]
@@ -224,9 +248,9 @@ class SearchWorkspace:
         ]
 
     def propose(self, current: Fit) -> list[Proposal]:
-        """All candidates, best first, judged to first order on top of what is there; made once.
+        """All candidates as additions to the current fit, judged to first order, the best first.
 
-        None where the observer cannot hold the current model.
+        None where the current model diverges.
         """
         if not current.is_finite:
             return []
@@ -236,17 +260,23 @@ class SearchWorkspace:
         return self._proposed[key]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
-        """Net decrease by the best candidate where all is chance, but for false alarms allowed."""
+        """The net decrease that the best candidate reaches by chance in all but the allowed cases.
+
+        From draws of noise alone; `settings.false_alarm` is the share of the draws that exceed it.
+        """
         G = self.columns.gram(current.linearised)[1:, 1:]
         if not np.isfinite(G).all():
-            return np.inf  # the observer cannot hold the model, and nothing can be told
+            return np.inf  # the model diverges, and nothing can be said of additions to it
         decreases = draw_chance_decreases(
             G, self.sensitivities.blocks, self.penalty, self.settings.draws, seed
         )
         return max(0.0, float(np.quantile(decreases, 1.0 - self.settings.false_alarm)))
 
     def find_relevant(self, fit: Fit, without: Sequence[Model]) -> Array:
-        """Whether some axis' error in 2 s windows is noticeably larger with each model (m,)."""
+        """For each of m smaller models, whether some axis' error in 2 s windows is clearly larger.
+
+        `settings.relevant` is the share by which it has to be larger than that of `fit`.
+        """
         rmse = score_windows([fit.hypothesis.model, *without], self.bank.runs).rmse
         measured = rmse[0] > 0.0
         # a model that cannot exist is infinitely worse
