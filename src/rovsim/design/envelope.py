@@ -1,6 +1,7 @@
 """The limits that a flight keeps to, and how far it is from keeping to them."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -15,11 +16,23 @@ MOVES = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are li
 SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
 
 
+class Extremes(NamedTuple):
+    """The largest `speed` m/s, `turn_rate` rad/s and `tilt` rad of a flight."""
+
+    speed: float
+    turn_rate: float
+    tilt: float
+
+
 @dataclass(frozen=True, eq=False)
 class Envelope:
-    """Limits of a flight: `box` (3, 2) m NED in which CO stays, infinite where nothing is known.
+    """The limits that a flight has to keep.
 
-    `swum` (3, 2) m NED is where it was recorded, NaN along an axis that nobody measured.
+    Attributes:
+        box: least and largest place (3, 2) of CO, m NED; infinite where no wall is known.
+        limits: of speed, turn rate and tilt.
+        swum: least and largest place (3, 2) that the train runs reached, m NED; NaN along an axis
+            that nobody measured.
     """
 
     box: Array
@@ -28,10 +41,15 @@ class Envelope:
 
     @staticmethod
     def within(setup: RecordingSetup, limits: FlightLimits, floats: bool) -> "Envelope":
-        """Walls, floor and surface less the clearance, and of these the depths that are wanted.
+        """The limits within the tank of a recording.
+
+        Args:
+            setup: with walls, floor and surface as far as they are known.
+            limits: the clearance to them, the depths that are wanted, and limits of the motion.
+            floats: whether the vehicle floats. Its depth is then not limited.
 
         Raises:
-            BadInput: they leave no room.
+            BadInput: the clearance and the depths leave no room.
         """
         tank = setup.site.tank
         box = tank + limits.clearance * np.array([1.0, -1.0])
@@ -48,28 +66,33 @@ class Envelope:
 
     @property
     def middle(self) -> Array:
-        """The place (3,) farthest from all walls; along an axis without, of where it swam."""
+        """The middle (3,) of the box, m NED; without walls, that of what the train runs reached."""
         known = np.isfinite(self.box).all(axis=1)
         inside = np.where(known[:, None], self.box, np.nan_to_num(self.swum))
         return np.asarray(inside.mean(axis=1))
 
     @property
     def longest(self) -> float:
-        """Heading in rad of the longer side of the tank."""
+        """Heading along the longer side of the tank, rad NED."""
         size = self.box[:2, 1] - self.box[:2, 0]
         return 0.5 * np.pi if size[1] > size[0] else 0.0
 
     def excess(self, paths: Array, each_alone: bool = False) -> float:
-        """By how much paths (s, k, 13) leave the limits: 0 if none does.
+        """By how much paths leave the limits; 0 if none does.
 
-        Of the place by `SURE` standard deviations about the mean of the paths, in m; of speed,
-        turn rate and tilt by the largest, as a share of the limit. `each_alone`: the paths are
-        those of rivals, and their spread says nothing.
+        The sum of two things: how far the place leaves the box, in m, where `SURE` standard
+        deviations about the mean of the paths have to stay inside; and by which share the largest
+        speed, turn rate and tilt exceed their limits.
+
+        Args:
+            paths: states (s, k, 13) of s paths.
+            each_alone: take the places as they are. Paths under rivals are not draws of one
+                uncertainty, so their standard deviation means nothing.
         """
         return float(sum(self._beyond(paths, each_alone)))
 
     def describe_excess(self, paths: Array) -> str:
-        """How paths (s, k, 13) leave the limits, in words; nothing if they do not."""
+        """How paths (s, k, 13) leave the limits, in words; empty if they do not."""
         place, *shares = self._beyond(paths, each_alone=False)
         if not np.isfinite(place):
             return "moves beyond all numbers"
@@ -80,7 +103,10 @@ class Envelope:
         return " and ".join(one for one, by in zip(told, (place, *shares), strict=True) if by > 0.0)
 
     def _beyond(self, paths: Array, each_alone: bool) -> tuple[float, ...]:
-        """By how much the place leaves the box, m, and speed, turn rate and tilt their limits."""
+        """By how much paths (s, k, 13) leave each limit; 0 where they do not.
+
+        The place in m, then speed, turn rate and tilt as shares of their limits.
+        """
         if not np.isfinite(paths).all():
             return (np.inf,) * 4
         place = paths[:, :, :3]
@@ -89,15 +115,15 @@ class Envelope:
             mean, spread = place.mean(axis=0), SURE * place.std(axis=0, ddof=1)
             low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
         beyond = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
-        ratios = [v / w - 1.0 for v, w in zip(reached(paths), self._most, strict=True)]
+        ratios = [v / w - 1.0 for v, w in zip(find_extremes(paths), self._most, strict=True)]
         return (float(beyond.sum()), *(max(r, 0.0) for r in ratios))
 
     @property
-    def _most(self) -> tuple[float, float, float]:
-        return self.limits.speed, self.limits.turn_rate, self.limits.tilt
+    def _most(self) -> "Extremes":
+        return Extremes(self.limits.speed, self.limits.turn_rate, self.limits.tilt)
 
     def holds(self, paths: Array) -> bool:
-        """Whether each of these paths (s, k, 13) stays in the box, and within the limits."""
+        """Whether all paths (s, k, 13) stay in the box and within the limits."""
         place = paths[:, :, :3]
         inside = ((place > self.box[:, 0]) & (place < self.box[:, 1])).all()
         return bool(inside and self.excess(paths) == 0.0)
@@ -120,9 +146,9 @@ def _require_room(box: Array, tank: Array, surface: float, limits: FlightLimits)
     )
 
 
-def reached(paths: Array) -> tuple[float, float, float]:
-    """Largest speed m/s, turn rate rad/s and tilt rad of paths (s, k, 13)."""
+def find_extremes(paths: Array) -> Extremes:
+    """The largest speed, turn rate and tilt of paths (s, k, 13)."""
     speed = np.linalg.norm(paths[..., 7:10], axis=-1).max()
     rate = np.linalg.norm(paths[..., 10:13], axis=-1).max()
     tilt = np.abs(to_euler(paths[..., 3:7])[..., :2]).max()
-    return float(speed), float(rate), float(tilt)
+    return Extremes(float(speed), float(rate), float(tilt))

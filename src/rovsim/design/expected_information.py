@@ -1,16 +1,17 @@
 """The information expected of a flight, beside the train runs: smaller intervals, longer odds.
 
-With H the information of the train runs about a hypothesis' parameters and J the derivatives of the
-flight's white innovations, H + J J^T is that of both. Where the first rival is true, the second one
-foresees the flight worse by what none of its parameters can take up:
+Let H be the information of the train runs about the parameters of a hypothesis, and J the
+derivatives of the flight's white innovations to these. Then H + J J^T is the information of both.
+If the first rival is true, the second one predicts the flight worse by what none of its parameters
+can compensate:
 
     min over x of |e + J^T x|^2 + x^T H x,
 
-e being its innovations there and x how far its parameters move from where the train runs left
-them: all that its effect has, since with the flight a diagnosis frees others than before it. What
-is left a diagnosis would take for noise, as far as it can: of each axis and octave, with power P
-beside n readings' worth of noise, not P but n log(1 + P / n) counts. Half of that is what the
-logarithm of the odds is expected to gain.
+where e are the innovations of the second rival, and x is how far its parameters move from their
+values after the train runs. All parameters of its effect may move, since a diagnosis that includes
+the flight may free other parameters than before. A diagnosis would take what is then left for
+noise, as far as it can: in each axis and octave, power P beside n readings' worth of noise does not
+count as P but as n log(1 + P / n). Half of the sum is the expected gain of the log odds.
 """
 
 from dataclasses import dataclass
@@ -32,17 +33,20 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised
 
 NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison
-THINNED = 4  # of so many readings one is asked how errors go on: 0.2 s apart
+THINNED = 4  # the error dynamics are averaged over every fourth reading: 0.2 s apart
 
 
 @dataclass(frozen=True, eq=False)
 class ExpectedInformation:
-    """Of one flight.
+    """The information that is expected of one flight.
 
-    `std_ratio` (j,) for each rival: standard deviation now over then of what is asked for; `std`
-    likewise then, scaled. `log_odds_gain` (r,): what the logarithm of the odds of each rival, were
-    it true, is expected to gain; empty without rivals. `likely` (r,): the rivals that count; of
-    others the gain is infinite where nobody asked for it.
+    Attributes:
+        std_ratio: (j,) for each rival: the standard deviation of each parameter that is asked about
+            without the flight, over that with it.
+        std: (j,) for each rival: the standard deviation with the flight, scaled.
+        log_odds_gain: (r,) expected gain of the log odds of each rival, if it is the true one;
+            empty where there is one hypothesis. Infinite for a rival whose gain was not computed.
+        likely: (r,) which rivals the train runs have not ruled out; only these count.
     """
 
     std_ratio: tuple[Array, ...]
@@ -52,9 +56,10 @@ class ExpectedInformation:
 
     @property
     def utility(self) -> float:
-        """What is to be as large as possible: the least of the gains that count, or information.
+        """What a design maximises.
 
-        Information in units of what the train runs hold, the geometric mean over what is asked for.
+        Between rivals, the least expected gain of the log odds. Else the information gained over
+        that of the train runs, as the geometric mean over the parameters that are asked about.
         """
         if len(self.log_odds_gain):
             return float(np.min(self.log_odds_gain[self.likely]))
@@ -63,7 +68,7 @@ class ExpectedInformation:
 
     @property
     def informative(self) -> bool:
-        """Whether it tells anything worth a flight about what is asked for."""
+        """Whether the flight tells more than a negligible amount about what is asked."""
         if len(self.log_odds_gain):
             return self.utility > NEGLIGIBLE
         return bool((self.std_ratio[0] ** 2 - 1.0 > NEGLIGIBLE).any())
@@ -76,12 +81,18 @@ def expect_information(
     setup: RecordingSetup,
     exact: bool = False,
 ) -> ExpectedInformation:
-    """Of a flight whose path under each rival is (r, k+1, 13).
+    """The information that is expected of a flight.
 
-    `exact`: the train runs are observed anew, with filters that suit them and the flight together,
-    as a diagnosis of all would. Else as they were seen without it, thrust is steady over each step
-    of the observer, and where rivals are told apart nothing is asked of their parameters, nor of
-    rivals that do not count.
+    Args:
+        paths: states (r, k+1, 13) of the flight under each rival.
+        commands: its command log.
+        prior: what the train runs tell.
+        setup: how the flight would be recorded.
+        exact: observe the train runs anew, with filters that suit them and the flight together, as
+            a diagnosis of all runs would. If not, a faster approximation is made: the train runs
+            keep the information that they have by themselves, thrust is constant over each step of
+            the observer, and between rivals the information about their parameters is left out, as
+            is everything about a rival that is ruled out.
     """
     if not exact:
         setup = setup.coarser
@@ -108,7 +119,7 @@ def expect_information(
 def _mix_error_dynamics(
     run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation
 ) -> tuple[AxisErrorDynamics, ...]:
-    """How errors go on in the train runs and a flight, each as long as it lasts."""
+    """The error dynamics of the train runs and the flight, averaged over the time of both."""
     some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
     own = np.array(estimate_errors(rival.hypothesis.model, [some]).by_axis)
     before, lasts = prior.seconds, float(run.reading_times[-1])
@@ -123,7 +134,7 @@ def _observe(
     error_dynamics: tuple[AxisErrorDynamics, ...],
     exact: bool,
 ) -> FilterBank:
-    """Filters for the flight, which is the last run, and where exact for the train runs."""
+    """Filters for the flight alone; where `exact` for the train runs, followed by the flight."""
     runs = (*prior.runs, run) if exact else (run,)
     run_filters = tuple(design_filters(prior.noise.white, error_dynamics, w) for w in runs)
     return FilterBank(runs, error_dynamics, run_filters, rival.hypothesis.model)
@@ -132,9 +143,11 @@ def _observe(
 def measure_information(
     bank: FilterBank, own: Linearised, rival: FittedHypothesis, prior: PriorInformation
 ) -> Array:
-    """Information (k, k) of the flight, which is the last run of the bank: it takes none away.
+    """Information (k, k) of the flight about a rival's scaled parameters.
 
-    Filters that suit all runs together may see less of the train runs than their own did.
+    The flight is the last run of the bank. The train runs are left out, since filters that suit all
+    runs together may show less of them than their own filters: the flight would take information
+    away.
     """
     if not len(own.hypothesis.x):
         return np.zeros_like(rival.information)
@@ -149,9 +162,9 @@ def _expect_log_odds(
     prior: PriorInformation,
     exact: bool,
 ) -> float:
-    """What the log odds against a rival, with all that it could free, gain where one is true.
+    """The expected gain of the log odds of the true rival against the other one.
 
-    Its parameters stay within the reach that a fit gives them.
+    The other rival has all its parameters free, within the reach that a fit gives them.
     """
     seen, held = bank.linearise(other.widest), other.widest_information
     if not seen.finite:
@@ -159,7 +172,7 @@ def _expect_log_odds(
     if not seen.finite:
         return np.inf
     beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
-    beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # what is known is judged already
+    beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # the train runs count already
     rows = [np.concatenate([e[None], J]) for e, J in zip(beside, seen.J, strict=True)]
     e, J = np.split(bank.flatten(rows, prior.noise), [1])
     e = e[0]
@@ -167,15 +180,19 @@ def _expect_log_odds(
     x = -solve(gram(J) + near, J @ e)
     left = (e + x @ J).reshape(6, -1)
     before = float(x @ near @ x)
-    more = 0 if exact else prior.readings  # readings that it leaves as they were
+    more = 0 if exact else prior.readings  # of the train runs, which are not in the bank
     return 0.5 * (before + surprise(left, 1.0 + more / left.shape[1]))
 
 
 def surprise(left: Array, lasting: float) -> float:
-    """How much less likely innovations (6, n) are under the noise that suits them, twice the log.
+    """What a misfit costs in twice the log likelihood, once the noise is fitted to it.
 
-    Noise of another spectrum takes up what is slow, or fast: in each octave the power that is left,
-    P beside n of noise, costs n log(1 + P / n). `lasting` times as long the noise is to hold.
+    Noise of another spectrum can explain what is slow or fast: in each octave, power P beside n
+    readings' worth of noise costs n log(1 + P / n).
+
+    Args:
+        left: the misfit, in whitened innovations (6, n) of the flight.
+        lasting: the same noise has to explain runs that are so many times as long as the flight.
     """
     n = left.shape[1]
     numbers = np.full(n // 2 + 1, 2.0)  # a frequency has a sine and a cosine

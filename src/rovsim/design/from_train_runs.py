@@ -77,7 +77,11 @@ def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
 
 
 def check_fitted(name: str, effect: type[Effect]) -> None:
-    """Whether a parameter, `effect.parameter`, can have a standard deviation at all."""
+    """Refuse a parameter, `effect.parameter`, that has no standard deviation, as it is not fitted.
+
+    Raises:
+        BadInput: the effect has no such parameter, or it is tried at a few values only.
+    """
     parameter = name.partition(".")[2]
     names = [p.name for p in effect.parameters if not p.discrete]
     able = f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
@@ -93,7 +97,7 @@ def check_fitted(name: str, effect: type[Effect]) -> None:
 
 
 def separate(model: Model) -> Hypothesis:
-    """A model as a hypothesis in which all is free that its file says was fitted."""
+    """A model as a hypothesis whose free parameters are those that its file says were fitted."""
     fitted = [one for one in model.added if one.std]
     kept = tuple(one for one in model.effects if one not in fitted)
     return Hypothesis(model.with_effects(kept), tuple(Term(one, tuple(one.std)) for one in fitted))
@@ -102,7 +106,7 @@ def separate(model: Model) -> Hypothesis:
 def _free(
     h: Hypothesis, name: str, runs: Sequence[ObservedRun], candidates: Sequence[Candidate]
 ) -> Hypothesis:
-    """With that parameter free as well, at the likeliest of the effect's starts."""
+    """Free one more parameter of a hypothesis, from the likeliest of its effect's starts."""
     effect, _, parameter = name.partition(".")
     check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
     own = next((t for t in h.terms if t.id == effect), None)
@@ -122,7 +126,10 @@ def _free(
 
 
 def _without(h: Hypothesis, *names: str) -> Hypothesis:
-    """Without what was added of these effects, fitted or not."""
+    """The hypothesis without these effects, whether they were fitted or not.
+
+    Effects that the vehicle has by itself stay.
+    """
     nominal = h.base.vehicle.effects()
     kept = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
     base = h.base.with_effects((*h.base.effects[: len(nominal)], *kept))
@@ -157,7 +164,7 @@ def _summarise(
     information = held = gram(bank.flatten(found.linearised.J, found.noise))
     if widest is not None:
         seen = bank.linearise(widest)
-        if seen.finite:  # else it cannot move with what nobody needs free
+        if seen.finite:  # else such a model diverges, and no more than what was fitted is free
             taking_up, held = widest, gram(bank.flatten(seen.J, found.noise))
     return FittedHypothesis(
         found.hypothesis, information, chosen, two_log_likelihood, taking_up, held
@@ -189,7 +196,7 @@ def _fit_rivals(
 
 
 def widen(h: Hypothesis, effect: str) -> Hypothesis:
-    """With all free that an effect can change from where it is: the train runs chose of these."""
+    """Free all parameters of one effect that have an influence at its present values."""
 
     def widened(term: Term) -> Term:
         able = term.effect.free_at(term.effect.given())
@@ -201,7 +208,7 @@ def widen(h: Hypothesis, effect: str) -> Hypothesis:
 def _propose(
     h: Hypothesis, runs: Sequence[ObservedRun], own: Sequence[Candidate]
 ) -> tuple[Term, float]:
-    """The start and the free parameters of an effect that promise most, and their penalty."""
+    """The start and free parameters of an effect that promise most, and the penalty of each."""
     found, bank = _fit(h, runs)
     seen = linearise_candidates(bank, found.hypothesis, own)
     workspace = SearchWorkspace(WhiteColumns(bank, seen, found.noise), SearchSettings())

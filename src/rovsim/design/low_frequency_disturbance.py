@@ -1,9 +1,10 @@
-"""What disturbs the vehicle for long in the train runs, and the model does not know of.
+"""Disturbances that last: what pushes the vehicle for long in the train runs, beyond the model.
 
-The disturbance that `noise.py` fits remembers 3 s at most and has no mean: a force that lasts (a
-buoyancy, a current, drag that the model lacks) would not be foreseen. Here it is measured: an
-observer whose disturbance hardly forgets follows the runs, and its estimates are averaged over
-blocks. A mean that the short disturbance does not explain lasts, and so does such a spread.
+The disturbance that `noise.py` fits has a correlation time of 3 s at most, and no mean. So it does
+not predict a force that lasts (a buoyancy, a current, drag that the model lacks). Such forces are
+estimated here: an observer with a much longer correlation time follows the runs, and its estimates
+are averaged over blocks. If the short disturbance does not explain the mean of the blocks, or their
+spread, a lasting disturbance is the cause.
 """
 
 from dataclasses import dataclass
@@ -21,16 +22,19 @@ from rovsim.estimation.observer.noise import Noise, RunFilters, design_filters
 from rovsim.estimation.observer.observed_run import BLOCK, ObservedRun, number_blocks
 
 LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
-CHANCE = 2.0  # standard errors: less is not told from the short disturbance
+CHANCE = 2.0  # standard errors: less may be the short disturbance
 LARGE, SURE = 2.0, 3.0  # of what passes by in a block, and standard errors: the model errs
 
 
 @dataclass(frozen=True, eq=False)
 class LowFrequencyDisturbance:
-    """Accelerations per axis, m/s2 and rad/s2, in the body's axes.
+    """A lasting disturbance: accelerations (6,) in the body's axes, m/s2 and rad/s2.
 
-    `mean` (6,) lasts as long as a flight, a part of size `spread` (6,) about a block. `large`
-    (6,): axes along which the mean is more than what passes by in a block, and surely so.
+    Attributes:
+        mean: the part that lasts as long as a flight.
+        spread: standard deviation of a part that lasts about as long as a block.
+        large: (6,) axes on which the mean surely is larger than what the short disturbance does to
+            the mean of a block.
     """
 
     mean: Array
@@ -39,12 +43,15 @@ class LowFrequencyDisturbance:
 
     @staticmethod
     def none() -> "LowFrequencyDisturbance":
-        """Of a model to which nothing is unknown but the short disturbance."""
+        """No lasting disturbance."""
         return LowFrequencyDisturbance(np.zeros(6), np.zeros(6), np.zeros(6, bool))
 
     @staticmethod
     def of_blocks(blocks: Array, seconds: float, noise: Noise) -> "LowFrequencyDisturbance":
-        """What lasts, of the mean disturbances (b, 6) of blocks of so many seconds each."""
+        """Estimate it from the mean disturbances (b, 6) of b blocks of `seconds` each.
+
+        `noise` says what the short disturbance alone would do to such means.
+        """
         if not len(blocks):
             return LowFrequencyDisturbance.none()
         chance = noise.disturbance_std * np.sqrt(
@@ -53,7 +60,7 @@ class LowFrequencyDisturbance:
         count, mean = len(blocks), blocks.mean(axis=0)
         error = chance / np.sqrt(count)
         varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
-        # of a variance of n + 1 numbers by chance: a standard error is sqrt(2 / n) of it
+        # a variance of n + 1 normal numbers has a standard error of sqrt(2 / n) times itself
         usual = chance**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
         return LowFrequencyDisturbance(
             np.where(np.abs(mean) > CHANCE * error, mean, 0.0),
@@ -62,7 +69,7 @@ class LowFrequencyDisturbance:
         )
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
-        """Accelerations (steps, 6) over steps of h s."""
+        """Draw accelerations (steps, 6) over steps of h s."""
         return self.mean + self.spread * gauss_markov.draw(steps, h / BLOCK, random)
 
 
@@ -72,13 +79,13 @@ def estimate_disturbance(
     noise: Noise,
     error_dynamics: Sequence[AxisErrorDynamics],
 ) -> LowFrequencyDisturbance:
-    """What pushes the vehicle for long in the train runs, and a model does not know of.
+    """Estimate the lasting disturbance in the train runs that a model lacks.
 
     Args:
         model: fitted to them.
         runs: the train runs.
         noise: of the readings, and the short disturbance.
-        error_dynamics: how errors of the six axes go on.
+        error_dynamics: how an error of the model grows or decays on each of the six axes.
     """
     slow = Noise(noise.disturbance_std, np.full(6, LASTING), noise.measurement_std)
     blocks: list[Array] = []
@@ -88,7 +95,7 @@ def estimate_disturbance(
 
 
 def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
-    """The disturbance (n, 6) that an observer finds at the readings."""
+    """The disturbance (n, 6) that the filters estimate at the readings, m/s2 and rad/s2."""
     e = np.nan_to_num(observe([model], run, filters)[0])
     found, decay = np.zeros(e.T.shape), filters.decay(np.array([run.period]))[0]
     for first, last in run.innovation_segments:
@@ -98,7 +105,7 @@ def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
 
 
 def _average(run: ObservedRun, push: Array) -> list[Array]:
-    """Means (6,) over blocks of at least half of the usual length."""
+    """Means (6,) of a push (n, 6) over blocks; those shorter than half a block are left out."""
     settled, number = push[run.settled], number_blocks([run])
     parts = (settled[number == k] for k in np.unique(number))
     return [own.mean(axis=0) for own in parts if len(own) * run.period > 0.5 * BLOCK]

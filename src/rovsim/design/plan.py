@@ -1,4 +1,4 @@
-"""A question about a campaign in, the flight that answers it best out."""
+"""Plan the flight that answers a question about a campaign best."""
 
 from dataclasses import dataclass
 from itertools import islice
@@ -41,7 +41,7 @@ from rovsim.simulation.batch import Batch
 
 # Scenarios while searching and in the end, and models that information is averaged over.
 SEARCHED, CHECKED, AVERAGED = 8, 40, 4
-FINALISTS = 4  # safe flights that are averaged over what is not known, the best first
+FINALISTS = 4  # safe flights, the best first, whose information is averaged over models
 # Share of the time that is over when a stage begins: means over the development seeds.
 STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
 
@@ -50,11 +50,21 @@ Stage = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """The flight, what it tells over what is not yet known, and the usual manoeuvres likewise.
+    """The planned flight, what it is expected to tell, and the usual manoeuvres beside it.
 
-    `axes` (j,) are those that inputs move. One of the `baselines` is None where it stays within the
-    limits at no amplitude. `paths` (s, k+1, 13) what could happen, the likeliest first, every
-    `step` s. `warnings`: what speaks against it.
+    Attributes:
+        flight: the flight of the largest utility.
+        expected: the information expected of it.
+        baselines: the usual manoeuvres by name, each with its information; None for one that leaves
+            the limits at every amplitude.
+        prior: what the train runs tell.
+        paths: states (s, k+1, 13) of the flight in s scenarios, the likeliest first.
+        step: time between two states of a path, s.
+        envelope: the limits of the flight.
+        start: where it begins (3,), m NED.
+        axes: (j,) that its inputs move, 0 to 5.
+        site: walls, and the axes of the recordings.
+        warnings: sentences on what speaks against the flight.
     """
 
     flight: CandidateFlight
@@ -82,16 +92,16 @@ def plan(
     """Find the flight of the largest utility.
 
     Args:
-        model: what is known so far.
+        model: the best model so far.
         runs: all usable runs of a campaign.
-        question: what is asked.
-        columns: axes of a log per axis; None: it is of thrusters.
+        question: what is asked, and the settings of the search.
+        columns: the axes (0 to 5) of a command log per axis; None for a log of thrusters.
         catalogue: all effects.
-        stage: told what begins.
+        stage: is told the name of each step as it begins.
 
     Raises:
-        BadInput: nothing that could be planned, no flight stays within the limits, or none tells
-            anything.
+        BadInput: the train runs or the vehicle allow no plan, no flight stays within the limits,
+            or none tells anything about the question.
     """
     stage("learning")
     train = prepare_train(
@@ -148,7 +158,7 @@ def _pose_problem(
 def _draw(
     prior: PriorInformation, count: int, setup: RecordingSetup, random: np.random.Generator
 ) -> Scenarios:
-    """What could happen: the likeliest of each rival first, then others."""
+    """Draw about `count` scenarios: the likeliest one of each rival first."""
     each = [rival.draw(max(2, count // len(prior.rivals)), random) for rival in prior.rivals]
     return draw_scenarios(each, prior, setup, random)
 
@@ -160,9 +170,19 @@ def _choose(
     question: Question,
     random: np.random.Generator,
 ) -> Plan:
-    """The best over what is not yet known, of those that surely stay within the limits.
+    """Choose the best flight, averaged over possible models, of those that surely stay safe.
 
-    A usual manoeuvre is taken where none is better.
+    A usual manoeuvre is chosen where no designed flight is better.
+
+    Args:
+        problem: with the scenarios of the search; new ones are drawn here.
+        baselines: the usual manoeuvres by name, each at several amplitudes, the best first.
+        found: numbers of the designed flights, the best first.
+        question: what is asked.
+        random: generator of scenarios and models.
+
+    Raises:
+        BadInput: no flight stays within the limits, or the best one tells nothing.
     """
     prior, setup = problem.prior, problem.setup
     scenarios = _draw(prior, CHECKED, setup, random)
@@ -200,13 +220,13 @@ def _choose(
 def _first_safe(
     problem: DesignProblem, tried: Sequence[CandidateFlight], scenarios: Scenarios
 ) -> CandidateFlight | None:
-    """The first that surely stays within the limits."""
+    """The first flight that stays within the limits in all scenarios; None where none does."""
     able = (one for one in tried if one.expected)
     return next((one for one in able if _paths(problem, one, scenarios) is not None), None)
 
 
 def _paths(problem: DesignProblem, one: CandidateFlight, scenarios: Scenarios) -> Array | None:
-    """What could happen (s, k+1, 13); None where it leaves the limits."""
+    """Paths (s, k+1, 13) of a flight in all scenarios; None where one leaves the limits."""
     start = problem.pilot.starts(np.array([one.heading]))[0]
     paths = scenarios.predict(problem.setup.drives(one.commands), start)
     return paths if problem.envelope.holds(paths) else None
@@ -215,7 +235,7 @@ def _paths(problem: DesignProblem, one: CandidateFlight, scenarios: Scenarios) -
 def _average(
     problem: DesignProblem, one: CandidateFlight, some: Sequence[Sequence[Model]]
 ) -> ExpectedInformation:
-    """Over models that could be true: the middle of each number."""
+    """The information expected of a flight: medians over `some` possible models of each rival."""
     prior, setup = problem.prior, problem.setup
     start, found = problem.pilot.starts(np.array([one.heading]))[0], []
     drives = setup.drives(one.commands)

@@ -1,4 +1,4 @@
-"""What is known before the flight: one hypothesis, or two rivals, as the train runs leave them."""
+"""What the train runs tell before the flight: about one hypothesis, or about two rivals."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,17 +15,20 @@ from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-RULED_OUT = 1000.0  # to one: a rival with longer odds against it need not be told apart
+RULED_OUT = 1000.0  # odds against a rival to one: beyond, no flight is needed to reject it
 
 
 @dataclass(frozen=True, eq=False)
 class FittedHypothesis:
-    """A hypothesis as the train runs leave it.
+    """A hypothesis with k free parameters, fitted to the train runs.
 
-    `information` (k, k) they hold about its scaled parameters, of which those `of_interest` (j,)
-    are asked for; `two_log_likelihood` with the penalty of its parameters. `widest`
-    has all parameters free with which a rival might take up a flight, `widest_information` (w, w)
-    is what they hold about these.
+    Attributes:
+        hypothesis: at its fitted values.
+        information: of the train runs about its scaled parameters (k, k).
+        of_interest: numbers (j,) of the parameters that are asked about.
+        two_log_likelihood: twice its log likelihood, less the penalty of its parameters.
+        widest: the same with all parameters free by which it might fit another rival's flight.
+        widest_information: of the train runs about the w scaled parameters of `widest` (w, w).
     """
 
     hypothesis: Hypothesis
@@ -46,21 +49,27 @@ class FittedHypothesis:
         return Hypothesis(self.hypothesis.model)
 
     def covariance(self, more: Array | float = 0.0, reach: float = REACH) -> Array:
-        """Of the scaled parameters (k, k), with further information (k, k).
+        """Covariance (k, k) of the scaled parameters.
 
-        `reach`, in scales: what nobody knows lies within it.
+        Args:
+            more: information (k, k) besides that of the train runs.
+            reach: standard deviation, in scales, of a parameter about which nothing is known.
         """
         own = np.eye(len(self.information))
         return solve(self.information + more + own / reach**2, own)
 
     def std(self, more: Array | float = 0.0) -> Array:
-        """Standard deviations (j,) of what is asked for, scaled."""
+        """Standard deviations (j,) of the parameters that are asked about, scaled.
+
+        `more` is information (k, k) besides that of the train runs.
+        """
         return np.sqrt(np.maximum(np.diag(self.covariance(more))[self.of_interest], 1e-300))
 
     def draw(self, count: int, random: np.random.Generator) -> list[Model]:
-        """Models that could be true, the likeliest first; none that cannot move.
+        """Draw `count` possible models from what the train runs tell, the likeliest model first.
 
-        What the runs left open lies within one scale, the size of a change worth looking for.
+        A parameter that the runs do not tell varies by one scale, the size of a change that is
+        worth looking for. A model that is impossible is replaced by the likeliest one.
         """
         h, root = self.hypothesis, _root(self.covariance(reach=1.0))
         found = [h.model]
@@ -77,9 +86,14 @@ def _root(covariance: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class PriorInformation:
-    """What is known before the flight: one hypothesis, or two rivals, under one noise.
+    """What is known before the flight.
 
-    `rival_names` names the rivals; `error_dynamics` are those of the filters.
+    Attributes:
+        runs: the train runs.
+        rival_names: ids of the two effects to be told apart; empty where there is one hypothesis.
+        rivals: the hypotheses with either effect, or the one hypothesis.
+        noise: under which all of them were fitted.
+        error_dynamics: how an error of the model grows or decays on each of the six axes.
     """
 
     runs: tuple[ObservedRun, ...]
@@ -90,17 +104,17 @@ class PriorInformation:
 
     @cached_property
     def seconds(self) -> float:
-        """Of the train runs."""
+        """How long the usable parts of the train runs last, s."""
         return float(sum(run.motion.usable.mean() * run.reading_times[-1] for run in self.runs))
 
     @cached_property
     def readings(self) -> int:
-        """Readings that count, of the train runs."""
+        """Number of settled readings of the train runs."""
         return int(sum(run.settled.sum() for run in self.runs))
 
     @cached_property
     def low_frequency(self) -> tuple[LowFrequencyDisturbance, ...]:
-        """What pushes the vehicle for long in the train runs, and each rival does not know of."""
+        """For each rival, the lasting disturbance in the train runs that its model lacks."""
         return tuple(
             estimate_disturbance(rival.hypothesis.model, self.runs, self.noise, self.error_dynamics)
             for rival in self.rivals
@@ -108,11 +122,11 @@ class PriorInformation:
 
     @property
     def deviance_difference(self) -> float:
-        """How much less likely the second rival is than the first."""
+        """By how much less likely the second rival is: twice the log odds, penalties included."""
         return self.rivals[0].two_log_likelihood - self.rivals[1].two_log_likelihood
 
     @property
     def likely(self) -> Array:
-        """Which rivals (r,) the train runs leave possible; without rivals the one hypothesis."""
-        found = np.array([rival.two_log_likelihood for rival in self.rivals])
-        return found > np.max(found) - 2.0 * np.log(RULED_OUT)
+        """Which rivals (r,) the train runs have not ruled out; always true for one hypothesis."""
+        scores = np.array([rival.two_log_likelihood for rival in self.rivals])
+        return scores > np.max(scores) - 2.0 * np.log(RULED_OUT)

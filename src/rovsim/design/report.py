@@ -6,7 +6,7 @@ from numpy import ndarray as Array
 from rovsim.core.odds import odds_of
 from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
-from rovsim.design.envelope import reached
+from rovsim.design.envelope import find_extremes
 from rovsim.design.expected_information import NEGLIGIBLE, ExpectedInformation
 from rovsim.design.instructions import instruct
 from rovsim.design.plan import Plan
@@ -117,7 +117,7 @@ def _compare(
 
 
 def _keep(plan: Plan, site: Site) -> Keeps:
-    speed, rate, tilt = reached(plan.paths)
+    speed, rate, tilt = find_extremes(plan.paths)
     tank, place = site.tank, plan.paths[:, :, :3]
     away = np.minimum(place - tank[:, 0], tank[:, 1] - place)
     known = np.isfinite(away).any() and not np.isnan(away).all()

@@ -1,4 +1,4 @@
-"""Commands to predicted paths, over all that is not yet known."""
+"""Predict the paths of a flight for all that is not yet known: models, disturbances, starts."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,10 +19,17 @@ from rovsim.simulation.rest import PLACED, TURNED
 
 @dataclass(frozen=True, eq=False)
 class Scenarios:
-    """What could happen: models, disturbances (s, k, 6) m/s2 that nobody foresees, starting errors.
+    """s ways in which a flight might go.
 
-    The first are the likeliest models, which nothing pushes but what lasts. `shift` (s, 3) m,
-    `turn` (s,) rad.
+    The first of each rival has its likeliest model, no random disturbance and no error of the
+    start; only the mean of the low-frequency disturbance acts in it.
+
+    Attributes:
+        models: s possible models.
+        disturbances: accelerations (s, k, 6) over k steps, m/s2 and rad/s2, body axes.
+        shift: error (s, 3) of the place of the start, m NED.
+        turn: error (s,) of the heading of the start, rad.
+        setup: how the flight would be recorded.
     """
 
     models: Sequence[Model]
@@ -32,7 +39,7 @@ class Scenarios:
     setup: RecordingSetup
 
     def split(self, count: int) -> tuple["Scenarios", "Scenarios"]:
-        """The first ones, and all others."""
+        """The first `count` scenarios, and all others."""
         parts = (slice(0, count), slice(count, None))
         first, rest = (
             Scenarios(self.models[p], self.disturbances[p], self.shift[p], self.turn[p], self.setup)
@@ -41,7 +48,7 @@ class Scenarios:
         return first, rest
 
     def predict(self, drives: Drives, start: Array) -> Array:
-        """Paths (s, k+1, 13) under one log, from near a state (13,)."""
+        """Predict states (s, k+1, 13) under one command log, from near a state (13,)."""
         models, edges = self.models, self.setup.edges
         each = zip(drives.of(models), self._wrenches, strict=True)
         pushed = [drive.pushed(push) for drive, push in each]
@@ -60,7 +67,7 @@ class Scenarios:
 
     @cached_property
     def _wrenches(self) -> list[Array]:
-        """Disturbances of each model as wrenches (k, 6) N, N m."""
+        """The disturbance of each scenario as a wrench (k, 6), N and N m."""
         each = zip(self.disturbances, self.models, strict=True)
         return [push @ model.M.T for push, model in each]
 
@@ -75,13 +82,16 @@ def draw_scenarios(
     setup: RecordingSetup,
     random: np.random.Generator,
 ) -> Scenarios:
-    """Disturbances as the recordings show them, of models that could be true.
+    """Draw scenarios for possible models, with disturbances as the train runs show them.
 
     Args:
-        each: models of each rival, the likeliest first.
-        prior: of the train runs: the noise, and what pushes for long.
-        setup: the steps of a path.
+        each: possible models of each rival, the likeliest first.
+        prior: what the train runs tell of the noise and of the low-frequency disturbance.
+        setup: how the flight would be recorded.
         random: generator.
+
+    Returns:
+        The likeliest scenario of each rival first, then all others.
     """
     drawn = [_draw_of(own, prior, k, setup, random) for k, own in enumerate(each)]
     parts = [one.split(1) for one in drawn]
@@ -101,7 +111,7 @@ def _draw_of(
     setup: RecordingSetup,
     random: np.random.Generator,
 ) -> Scenarios:
-    """Of the models of one rival: what passes by, and what lasts and it does not know of."""
+    """Draw scenarios for the models of one rival: noise-like and low-frequency disturbances."""
     count, steps, h = len(models), len(setup.edges) - 1, setup.step
     noise, slow = prior.noise, prior.low_frequency[rival]
     std = noise.disturbance_std * models[0].body.free

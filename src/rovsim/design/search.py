@@ -1,8 +1,8 @@
-"""The flight of the largest utility: first one axis at a time, then all together (SciPy).
+"""Search for the flight of the largest utility: one axis at a time, then all together (SciPy).
 
-Differential evolution (Storn & Price 1997) asks for no derivatives, which walls would spoil, and
-works on whole generations, which the engine flies side by side. A flight beyond the limits is worse
-than any within them, and the worse the farther beyond (Deb 2000).
+Differential evolution (Storn & Price 1997) needs no derivatives, which do not exist at walls, and
+evaluates whole generations, which the engine simulates side by side. A flight beyond the limits is
+worse than any flight within them, and the worse the farther beyond (Deb 2000).
 """
 
 from dataclasses import dataclass, field, replace
@@ -36,10 +36,17 @@ VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
 
 @dataclass(frozen=True, eq=False)
 class CandidateFlight:
-    """A flight: `inputs` (n, 6) from a heading in rad, its log, and what is expected of it.
+    """A flight that may be planned.
 
-    Of one beyond the limits, which it leaves by `excess`, nothing is. `numbers` are what it was
-    made of, `name` and `amplitude` those of a usual manoeuvre.
+    Attributes:
+        inputs: (n, 6) from -1 to 1, as a pilot's sticks.
+        heading: at its start, rad NED.
+        commands: its command log.
+        excess: by how much it leaves the limits, see `Envelope.excess`.
+        expected: the information expected of it; None beyond the limits.
+        numbers: (1 + 5 j,) in [0, 1] that the search made it of; empty for a usual manoeuvre.
+        name: of a usual manoeuvre.
+        amplitude: of a usual manoeuvre, in the horizontal plane and out of it.
     """
 
     inputs: Array
@@ -53,13 +60,21 @@ class CandidateFlight:
 
     @property
     def utility(self) -> float:
-        """To be as large as possible; negative beyond the limits."""
+        """What the search maximises; negative beyond the limits."""
         return self.expected.utility if self.expected else -self.excess
 
 
 @dataclass(frozen=True, eq=False)
 class DesignProblem:
-    """Which flights there are, and what judges them: limits, what could happen, what is known."""
+    """All that a flight is made with and judged by.
+
+    Attributes:
+        pilot: turns inputs into demands.
+        envelope: the limits.
+        scenarios: possible models and disturbances, that paths are predicted for.
+        prior: what the train runs tell.
+        setup: how the flight would be recorded.
+    """
 
     pilot: ModelPilot
     envelope: Envelope
@@ -75,7 +90,10 @@ class DesignProblem:
     def evaluate_all(
         self, inputs: Sequence[Array], headings: Sequence[float]
     ) -> Iterator[CandidateFlight]:
-        """Each of the flights: flown side by side, judged one after the other when asked for."""
+        """Evaluate flights, given by their inputs (n, 6) and headings in rad.
+
+        All are simulated side by side at once; each is then judged when the iterator reaches it.
+        """
         demands = self.pilot.fly(np.array(inputs), np.array(headings))
         starts = self.pilot.starts(np.array(headings))
         each = zip(inputs, headings, demands, starts, strict=True)
@@ -99,11 +117,14 @@ class DesignProblem:
 
     @cached_property
     def _parts(self) -> tuple[Scenarios, Scenarios]:
-        """The likeliest of each rival, and all others."""
+        """The likeliest scenario of each rival, and all other scenarios."""
         return self.scenarios.split(len(self.prior.rivals))
 
     def evaluate_numbers(self, x: Sequence[Array]) -> Iterator[CandidateFlight]:
-        """As `evaluate_all`, of numbers (1 + 5 j,) in [0, 1]: a heading, then five an axis."""
+        """As `evaluate_all`, for flights given as numbers (1 + 5 j,) in [0, 1].
+
+        The first is the heading; then come five for each axis, see `make_inputs`.
+        """
         seconds = self.setup.seconds
         inputs = [make_inputs(own[1:], self.axes, seconds) for own in x]
         tried = self.evaluate_all(inputs, [self.envelope.longest + np.pi * own[0] for own in x])
@@ -111,7 +132,7 @@ class DesignProblem:
 
 
 def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
-    """The usual manoeuvres, each at all amplitudes, the largest utility first."""
+    """Evaluate each usual manoeuvre at all amplitudes: by name, the largest utility first."""
     found, t = {}, ticks(problem.setup.seconds)
     levels = list(product(IN_PLANE, OUT_OF_PLANE))
     for name, baseline in BASELINES.items():
@@ -128,16 +149,24 @@ def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[Cand
 
 
 class Rated(NamedTuple):
-    """What stays in memory of each flight that was tried: its numbers (k,) and its rank."""
+    """What is kept of each flight that was tried: its numbers (k,), and a rank to be maximised."""
 
     numbers: Array
     rank: float
 
 
 def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[Array]:
-    """Numbers (1 + 5 j,) of the flights within the limits, by falling utility.
+    """Search for the flights of the largest utility.
 
-    A flight is made again of its numbers when it is needed: each takes megabytes.
+    A flight takes megabytes, so only its numbers are returned, which it can be made of again.
+
+    Args:
+        problem: what flights are made with and judged by.
+        settings: how many flights are tried in how many rounds.
+        seed: of the first generation and of the search.
+
+    Returns:
+        Numbers (1 + 5 j,) in [0, 1] of all flights within the limits, the largest utility first.
     """
     archive: list[Rated] = []
 
@@ -169,19 +198,19 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
 
 
 def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
-    """Flights, as numbers (k,) each, in parts of which memory holds the logs."""
+    """Divide flights, as numbers (k,) each, into parts small enough for memory to hold."""
     return [x[first : first + AT_ONCE] for first in range(0, len(x), AT_ONCE)]
 
 
 def _ranked(one: CandidateFlight) -> float:
-    """To be as large as possible; any flight within the limits above all beyond them."""
+    """The rank of a flight: any flight within the limits is above all flights beyond them."""
     if one.expected:
         return float(np.log(max(one.utility, 1e-12)))
     return BEYOND - min(one.excess, 1e6)
 
 
 def _one_axis_each(problem: DesignProblem) -> Array:
-    """Numbers (m, 1 + 5 j) of swings of one axis alone."""
+    """Numbers (m, 1 + 5 j) of m oscillations, each of one axis alone."""
     rows = []
     for k, (f, square, a) in product(
         range(len(problem.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
@@ -189,7 +218,7 @@ def _one_axis_each(problem: DesignProblem) -> Array:
         own = np.zeros((len(problem.axes), NUMBERS))
         own[:, 1] = 0.5
         own[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
-        # what goes aside does so along the longer side
+        # sway: the vehicle is turned so that it moves along the longer side of the tank
         heading = 0.5 if problem.axes[k] == 1 else 0.0
         rows.append(np.concatenate([[heading], own.ravel()]))
     return np.array(rows)
@@ -198,7 +227,10 @@ def _one_axis_each(problem: DesignProblem) -> Array:
 def _begin(
     archive: Sequence[Rated], problem: DesignProblem, population: int, random: np.random.Generator
 ) -> Array:
-    """The first generation: the best of each axis, alone and in pairs, and what chance adds."""
+    """The first generation (population, 1 + 5 j).
+
+    The best oscillations of each axis alone, then random combinations of two of these.
+    """
     best = []
     rows = np.array([one.numbers for one in archive])
     ranks = np.array([one.rank for one in archive])
