@@ -19,7 +19,7 @@ from rovsim.results.fitted import Correlation, FittedNoise
 from rovsim.simulation.bands import LEVEL, band_ends, predict_band, why_without_bands
 from rovsim.simulation.ensemble import Ensemble
 from rovsim.simulation.noise_draws import NoiseDraws
-from rovsim.simulation.replay import Case, find_spans, predict, predict_all
+from rovsim.simulation.replay import ReplayCase, find_spans, predict, predict_all
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.stepper import Stepper
@@ -55,7 +55,7 @@ def flown(world, random, seconds=60.0):
     noise = NoiseDraws.of(NOISE, random)
     (pushed,) = noise.draw_disturbance(np.diff(StepGrid.over(still, HOW.replay.step).edges), 1)
     whole = [(0, len(still.time) - 1)]
-    (happened,) = predict_all([Case(world, still, pushed)], whole, HOW)
+    (happened,) = predict_all([ReplayCase(world, still, pushed)], whole, HOW)
     eta, nu = happened.eta.copy(), happened.nu.copy()
     eta[0], nu[0] = still.eta[0], still.nu[0]
     true = replace(still, eta=eta, nu=nu, state_nu=nu, nu_dot=np.nan_to_num(happened.nu_dot))

@@ -1,9 +1,9 @@
-"""Bands: within what a replay may lie, given all that a model leaves open.
+"""Bands: the range in which a measured run should lie, given all that is uncertain in a model.
 
-The model is replayed many times over, each time as it may as well be (its values and names drawn
-from their posterior), from a start that was misread, under a disturbance that nobody foresees, and
-reported with the noise of the readings, all as fitted. What was measured is one more such draw if
-the model and its noise are right: a 90 % band then holds 90 % of it.
+The model is replayed many times. Each time its effects and their values are drawn from their
+posterior, the start has a random error, a random disturbance acts, and the result is reported with
+the noise of the readings, all as they were fitted. If the model and its noise are right, the
+measurement is one more such draw: a 90 % band then contains 90 % of it.
 """
 
 from dataclasses import replace
@@ -18,7 +18,7 @@ from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.noise_draws import NoiseDraws
 from rovsim.simulation.prediction import LEVEL, Band, Prediction
-from rovsim.simulation.replay import Case, Spans, predict_all
+from rovsim.simulation.replay import ReplayCase, Spans, predict_all
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.windows import predicted
@@ -26,12 +26,12 @@ from rovsim.simulation.windows import predicted
 # A draw falls below the i-th of n others with probability i / (n + 1): with 39 the ends of the band
 # are the second and the last but one.
 DRAWS = 39
-LEAD_IN = 5.0  # s before a part of a run: what thrusters and filters remember is over by then
+LEAD_IN = 5.0  # s before a part of a run: by then thrusters and filters have settled
 LONGEST = 300.0  # s at once: draws of longer ones would not fit into memory
 
 
 def why_without_bands(model: Model, motion: Motion) -> str | None:
-    """Why nobody knows how surely a model predicts a run; None where that is known."""
+    """Why a model has no band for a run, as the end of a sentence; None where it has one."""
     if model.uncertainty is None:
         return (
             "it was not fitted; models that rovsim add makes of a diagnosis know how sure they are"
@@ -51,9 +51,16 @@ def predict_band(
     spans: Spans,
     how: SimulationSettings,
 ) -> Band | None:
-    """The band of a model in some windows of a run; None where it cannot be known.
+    """The band of a model in some windows of a run; NaN in windows longer than `LONGEST`.
 
-    Windows longer than `LONGEST` have none.
+    Args:
+        model: with its uncertainty.
+        motion: the run.
+        spans: first sample or bin of each window, and its last one.
+        how: filter and derivative of the measurement, step length, and how commands are held.
+
+    Returns:
+        The band; None where there is none, see `why_without_bands`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -76,7 +83,7 @@ def predict_band(
 
 
 def _divide(spans: Spans, most: int) -> Iterator[list[tuple[int, int]]]:
-    """Windows in groups of at most so many samples, without those that are longer."""
+    """Group windows so that each group spans `most` samples at the most; leave out longer ones."""
     group: list[tuple[int, int]] = []
     for a, b in spans:
         if group and b - group[0][0] > most:
@@ -98,7 +105,7 @@ def _draw_band(
     disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
     again = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
     drawn = [model.draw(noise.random) for _ in range(DRAWS)]
-    cases = [Case(*one) for one in zip(drawn, again, disturbed, strict=True)]
+    cases = [ReplayCase(*one) for one in zip(drawn, again, disturbed, strict=True)]
     found = predict_all(cases, spans, how)
     reported = [_misread(own, motion, other) for own, other in zip(found, again, strict=True)]
     places = np.array([_place(own, motion, spans) for own in reported])
@@ -106,7 +113,11 @@ def _draw_band(
 
 
 def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
-    """A prediction with the errors of a measurement: at its start it is what was measured."""
+    """Add to a prediction the errors of a measurement.
+
+    The replay began at `again`, a measurement with other errors than `motion`; the difference of
+    the two is added, so that the prediction begins at what was measured.
+    """
     back = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
     shift = rotate(conjugate(again.eta[:, 3:]), motion.eta[:, :3] - again.eta[:, :3])
     place = found.eta[:, :3] + rotate(found.eta[:, 3:], shift)
@@ -115,7 +126,10 @@ def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
 
 
 def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
-    """Position and angles (n, 6); the angle to the measured ones is steady within each window."""
+    """Position m NED and angles rad (n, 6), without jumps of 2 pi within a window.
+
+    The angles are continued from the measured ones where each window begins.
+    """
     measured = to_euler(motion.eta[:, 3:])
     turned = short_way(to_euler(found.eta[:, 3:]) - measured)
     for window in spans:

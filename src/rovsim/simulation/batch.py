@@ -1,7 +1,7 @@
-"""The one way into the compiled engine: models, drives and starts to trajectories.
+"""The only way into the compiled engine: from models, drives and starts to trajectories.
 
-Replay, stepping, training pairs, budget, observer, tank and benchmarks all come through here; what
-the kernels take, and in which order, is known to this module and the engine alone.
+Replay, stepping, training pairs, the force budget, the observer, the tank and the benchmarks all
+use it. Only this module and the engine know which arguments the kernels take, and in which order.
 """
 
 from collections import Counter
@@ -26,6 +26,7 @@ from rovsim.dynamics.engine.types import (
     WrenchParameters,
 )
 from rovsim.dynamics.model import Model
+from rovsim.simulation.correction import Correction
 from rovsim.simulation.drive import Drive, Reads
 
 T = TypeVar("T")
@@ -33,10 +34,14 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Starts:
-    """Where trajectories begin: w for each of m models, all over the same steps.
+    """Where trajectories begin: w of them for each of m models.
 
-    `state` (m, w, 13) true ones at CO; `first` (w,) steps, or readings, from which on; `steps` (w,)
-    how many; `memory` (m, w, 6) velocity that the water remembers, empty where it never does.
+    Attributes:
+        state: true states (m, w, 13) at CO.
+        first: step (w,) at which each begins; its reading where readings correct it.
+        steps: how many steps (w,) each lasts; how many readings where these correct it.
+        memory: velocity (m, w, 6) that the water still has, m/s and rad/s; empty where no model has
+            a fluid memory.
     """
 
     state: Array
@@ -45,7 +50,7 @@ class Starts:
     memory: Array = field(default_factory=lambda: NO_MEMORY)
 
     def jobs(self, out: Array) -> Jobs:
-        """What kernels work off; the output of each begins at the rows `out`."""
+        """The jobs of a kernel, one for each trajectory, which writes from row `out` (m w,) on."""
         models, count = self.state.shape[:2]
         return Jobs(
             self.state.reshape(-1, 13),
@@ -57,39 +62,18 @@ class Starts:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Correction:
-    """Readings that a filter corrects models by.
-
-    `readings` of each model (k, 13): pose, and mean velocity since the reading before; `time`
-    (s+1,) s at which steps begin and end, `ends` (k,) those at which the readings hold; `seen`
-    (k, 6) 1 for the axes that each of them shows, `known` (5,) see `pose_error` of the
-    engine; `gains`
-    (3, 6) of pose, velocity and disturbance per unit of innovation; `decay` (s, 6) of the
-    disturbance over each step; `by_velocity`: by the velocities, and poses are taken as they are
-    read.
-    """
-
-    readings: Sequence[Array]
-    seen: Array
-    known: Array
-    time: Array
-    ends: Array
-    gains: Array
-    decay: Array
-    by_velocity: bool
-
-
 class Batch:
-    """Models of one vehicle side by side at one site.
+    """Models of one vehicle, simulated side by side at one site.
+
+    Its attribute `free` (13,) is 1 for the numbers of a state that can change, and 0 for velocities
+    along axes in which the vehicle cannot move.
 
     Args:
         models: m of them.
         site: walls, where an effect needs them.
-        candidates: wrench effects that other models of the same task have.
-        learned: with their residual, which is the same for all.
-
-    `free` (13,): 1 for the numbers of a state that can change, 0 for velocities that cannot.
+        candidates: wrench effects that other models of the same task may have. With them, one
+            engine serves all these models and is compiled once.
+        learned: whether the models' learned residual acts; it is the same for all.
 
     Raises:
         BadInput: models with different residuals.
@@ -124,13 +108,16 @@ class Batch:
     def trajectories(
         self, drives: Sequence[Drive], starts: Starts, time: Array, stride: int = 1
     ) -> list[list[Array]]:
-        """States (steps / stride + 1, 13) of each model from each start, the given one first.
+        """Simulate each model from each start.
 
         Args:
             drives: one for each model.
             starts: where to begin; `steps` are multiples of `stride`.
             time: (k+1,) s at which the integration steps begin and end.
             stride: steps from one returned state to the next.
+
+        Returns:
+            For each model and start the states (steps / stride + 1, 13), the given one first.
         """
         models, count = starts.state.shape[:2]
         rows = np.tile(starts.steps // stride + 1, models)
@@ -150,10 +137,16 @@ class Batch:
         return [paths[k * count : (k + 1) * count] for k in range(models)]
 
     def innovations(self, drives: Sequence[Drive], starts: Starts, correction: Correction) -> Array:
-        """What each model could not foresee (m, n, 6) of the readings, m or m/s, rad or rad/s.
+        """Run models along readings that correct them, without their learned residual.
 
-        Each start is at reading `first` and goes on over `steps` readings, n in all; a learned
-        residual is left out.
+        Args:
+            drives: one for each of m models.
+            starts: where to begin: at reading `first`, over `steps` readings, n in all.
+            correction: the readings and the filters.
+
+        Returns:
+            Innovations (m, n, 6), the part of each reading that a model did not predict: m and rad,
+            or m/s and rad/s where velocities are read.
         """
         models, count = len(starts.state), int(starts.steps.sum())
         stops = np.cumsum(np.tile(starts.steps, models))
@@ -182,9 +175,13 @@ class Batch:
         return out.reshape(models, count, 6)
 
     def accelerations(self, drive: Drive, times: Array, states: Array, memory: Array) -> Array:
-        """nu_dot (n, 6) of the first model at times (n,) s and states (n, 13).
+        """Body acceleration (n, 6) of the first model, m/s2 and rad/s2.
 
-        `memory` (n, 6) is what the water remembers then; empty: nothing.
+        Args:
+            drive: at the n instants.
+            times: (n,) since the start of the recording, s.
+            states: (n, 13) true ones at CO.
+            memory: velocity (n, 6) that the water still has; empty without a fluid memory.
         """
         out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self.free)
         self.engine.accelerations(
@@ -228,12 +225,12 @@ class Batch:
         return out
 
     def _world(self, drives: Sequence[Drive]) -> tuple[Any, ...]:
-        """Physics, commands, learned residual and walls, in the order that kernels take them in."""
+        """Physics, drives, learned residual and walls, in the order of the kernels' arguments."""
         inputs = self._inputs(drives)
         return self._constants, inputs, self._parameters, self._residual, self._place
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
-        """The drives of models as kernels take them; one that serves several is there once."""
+        """The drives as kernels take them; a drive that several models share is passed once."""
         own, row = _distinct(drives)
         first = own[0]
         acting = [drive.acting(self._reads) for drive in own]
@@ -260,11 +257,11 @@ def _refuse_unlike(models: Sequence[Model]) -> None:
 def _slots(
     models: Sequence[Model], candidates: Sequence[type[Wrench]]
 ) -> tuple[tuple[type[Wrench], ...], list[type[Wrench]]]:
-    """Wrench effects of the engine that serves the models, and those to attach to it.
+    """The wrench effects that an engine is compiled with, and those that are attached to it.
 
-    None where none acts; otherwise all of the package: an engine takes seconds to compile, and a
-    step hardly longer for those that a model lacks. Attached are all others, and what a model has
-    twice.
+    An engine takes seconds to compile, and effects that a model lacks hardly slow it down. So it
+    has either no wrench effect, where no model has one, or all of the package. Attached are a
+    user's own effects, and an effect that a model has a second time.
     """
     most = Counter(candidates)
     for model in models:
@@ -276,7 +273,7 @@ def _slots(
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
-    """For every slot whether the model has such an effect, 1 or 0, and its parameters."""
+    """For every slot 1 or 0, as the model has such an effect or not, then its parameters."""
     own = list(model.wrenches)
     parts = [np.zeros(0)]
     for cls in slots:
@@ -289,7 +286,7 @@ def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
 
 
 def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
-    """What the effects of an engine read; None if they read nothing."""
+    """What the effects of an engine read of a drive; None if they read nothing."""
     if not any(cls.reads() for cls in slots):
         return None
     actuators = len(model.body.places) + model.body.B.shape[1]

@@ -7,7 +7,8 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.engine.cache import cache_folder
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle.load import load_vehicle
-from rovsim.simulation.batch import Batch, Correction, Starts
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.correction import Correction
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.rest import rest_state
 

@@ -1,4 +1,4 @@
-"""What drives a model over integration steps, or at instants."""
+"""Forces and demands that drive a model: means over integration steps, or values at instants."""
 
 from dataclasses import dataclass, field, replace
 from typing import Callable, NamedTuple, Sequence
@@ -15,23 +15,30 @@ from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.step_grid import StepGrid
 
-KEPT = 1 << 26  # bytes: fifty drives of a minute, what one step of a fit needs
+KEPT = 1 << 26  # bytes: fifty drives of a minute each, as many as one step of a fit needs
 
 
 class Reads(NamedTuple):
-    """What the effects of an engine read: columns of actuators, and channels by name."""
+    """What the effects of an engine read of a drive.
+
+    `actuators` is the number of columns with the forces and commands of the actuators, `channels`
+    are names of what was logged beside the commands, such as a voltage.
+    """
 
     actuators: int
     channels: tuple[str, ...]
 
 
 class Actuation(NamedTuple):
-    """What commands make of thrusters over k steps, whatever body they push.
+    """What commands do to the actuators over k steps, before any body is considered.
 
-    `wrench` (k, 6) N and N m that commands are themselves; `force` (k, n) N of each component of
-    a thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `angle` (k, s) rad of each
-    control surface; `read` (k, r) where an effect reads them: forces and commands of the actuators,
-    then the channels of the model's thrust path.
+    Attributes:
+        wrench: that the commands are themselves (k, 6), N and N m.
+        force: of each component of each thruster (k, n), N. A thruster that turns has two.
+        demand: (k, 6) in [-1, 1]; NaN where none was logged.
+        angle: of each control surface (k, s), rad.
+        read: what effects read (k, r): forces and commands of the actuators, then the channels of
+            the model's thrust path; empty where no effect reads them.
     """
 
     wrench: Array
@@ -42,7 +49,7 @@ class Actuation(NamedTuple):
 
     @staticmethod
     def by(model: Model, thrust: Thrust) -> "Actuation":
-        """Of a thrust."""
+        """The actuation that a thrust is for the thrusters and surfaces of a model."""
         force = model.thrust_path.thrusters.resolved(thrust.force, thrust.cosine, thrust.sine)
         angle = thrust.angle
         if angle is None:
@@ -53,11 +60,11 @@ class Actuation(NamedTuple):
         return Actuation(thrust.wrench, force, thrust.demand, angle, read)
 
     def push(self, model: Model) -> Array:
-        """Wrench (k, 6) on a model, its autopilots' share included; linear in all that acts."""
+        """Wrench (k, 6) on a model with its autopilots, N and N m; linear in the actuation."""
         return np.asarray(self.wrench + model.actuated(self.force, self.demand))
 
     def drive(self, model: Model, duration: float) -> "Drive":
-        """What drives a model, in a run of that many s."""
+        """The drive of a model in a run of `duration` s."""
         return Drive(
             self.push(model),
             self.force,
@@ -69,10 +76,13 @@ class Actuation(NamedTuple):
         )
 
     def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
-        """Means over steps as long as `count` (s,) of these, and what each grows by over them.
+        """Join steps: `count` (s,) of them make each of s longer ones.
 
-        A force that is held over a long step loses when within it it acted; a line with the same
-        first moment does not.
+        A force that is held constant over a long step loses the time at which it acted in the step.
+        A straight line with the same first moment keeps it.
+
+        Returns:
+            Means over the longer steps, and by how much the lines rise over each of them.
         """
         bounds = np.append(0, np.cumsum(count))
         number = np.arange(bounds[-1])
@@ -85,13 +95,19 @@ class Actuation(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """Of one model: means over k steps, or at k instants. Body axes FRD at CO.
+    """What drives one model: means over k steps, or values at k instants. Body axes FRD at CO.
 
-    `wrench` (k, 6) N and N m of thrusters, autopilots and commands that are a wrench; `force`
-    (k, n) N of each thruster; `demand` (k, 6) in [-1, 1], NaN where none was logged; `duration` s
-    of the whole run. `ramp` (k, 6) is what the wrench grows by over each step; empty: nothing.
-    `angle` (k, s) rad of each control surface. `read` (k, r): where an effect reads them, forces
-    and commands of the actuators, then the `channels`; empty elsewhere.
+    Attributes:
+        wrench: of thrusters, autopilots, and commands that are a wrench (k, 6), N and N m.
+        force: of each component of each thruster (k, n), N.
+        demand: (k, 6) in [-1, 1]; NaN where none was logged.
+        duration: of the whole run, s.
+        ramp: by how much the wrench rises over each step (k, 6), N and N m; empty for constant
+            wrenches.
+        angle: of each control surface (k, s), rad.
+        read: what effects read (k, r): forces and commands of the actuators, then the `channels`;
+            empty where no effect reads them.
+        channels: names of the last columns of `read`.
     """
 
     wrench: Array
@@ -104,9 +120,10 @@ class Drive:
     channels: tuple[str, ...] = ()
 
     def acting(self, reads: Reads | None) -> Array:
-        """Forces and angles (k, n + s), then what effects read; zero what this model's do not.
+        """Forces and angles (k, n + s), then what the effects of an engine read.
 
-        As the engine takes them (`rovsim.dynamics.engine.reading`).
+        Zero for channels that this model does not have. The engine takes the columns in this order
+        (`rovsim.dynamics.engine.reading`).
         """
         own = np.hstack([self.force, self.angle]) if self.angle.size else self.force
         if reads is None:
@@ -121,39 +138,40 @@ class Drive:
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
-        """What a thrust does to a model."""
+        """The drive that a thrust is for a model, in a run of `duration` s."""
         return Actuation.by(model, thrust).drive(model, duration)
 
     def each(self, change: Callable[[Array], Array]) -> "Drive":
-        """Wrench, forces, demand, angles and what is read, all changed alike."""
+        """The same with one change applied to wrench, force, demand, angle and read."""
         names = ("wrench", "force", "demand", "angle", "read")
         changed = {name: change(getattr(self, name)) for name in names}
         return Drive(duration=self.duration, channels=self.channels, **changed)
 
     def at(self, steps: Array) -> "Drive":
-        """What acts in some of the steps (j,)."""
+        """The drive at some of the steps (j,)."""
         return self.each(lambda x: x[steps])
 
     def pushed(self, wrench: Array) -> "Drive":
-        """The same with a further wrench (k, 6)."""
+        """The same with a further wrench (k, 6), N and N m."""
         return replace(self, wrench=self.wrench + wrench)
 
     def idle(self) -> "Drive":
-        """The same demands while no thruster turns."""
+        """The same demands, while all thrusters stand still."""
         return replace(self, wrench=0 * self.wrench, force=0 * self.force, read=0 * self.read)
 
 
 class Drives:
-    """Drives of models under the commands of one run; the last ones are kept.
+    """Makes the drives of models under the commands of one run, and keeps the last ones.
 
-    Models that are driven alike share one: thrust takes as long to find as a short simulation.
+    Computing the thrust takes as long as a short simulation. So models whose thrust is the same
+    share one drive.
 
     Args:
-        commands: the log.
-        edges: ends (k+1,) s of the steps, over each of which thrust is steady.
-        between: two lines of the log.
-        parts: (s,) so many steps are then joined to each one.
-        kept: where they are kept, perhaps with those of other runs.
+        commands: the log of the run.
+        edges: (k+1,) at which the steps begin and end, s; thrust is constant over each step.
+        between: how commands go on from one line of the log to the next.
+        parts: (s,) how many of these steps are joined to one; None where none are.
+        kept: where drives are kept, perhaps together with those of other runs.
     """
 
     def __init__(
@@ -168,10 +186,10 @@ class Drives:
         self._cuts = StepCuts()
         self._parts = parts
         self._kept = Recent(KEPT) if kept is None else kept
-        self._own = object()  # of its keys: no other run has it
+        self._own = object()  # part of its keys, which no other run has
 
     def of(self, models: Sequence[Model]) -> list[Drive]:
-        """One for each model."""
+        """The drive of each model."""
         return [self._of(model) for model in models]
 
     def _of(self, model: Model) -> Drive:
@@ -189,13 +207,19 @@ class Drives:
         return replace(drive, ramp=growth[0].push(model)) if growth else drive
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
-        """Over the steps; where they are joined, also what each grows by."""
+        """Actuation over the steps; where these are joined, also by how much it rises over each."""
         found = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
         return (found,) if self._parts is None else found.joined(self._parts)
 
 
 def drive_by_log(model: Model, motion: Motion, grid: StepGrid, between: Between) -> Drive:
-    """What the logged commands of a run do to a model; `between` two logged lines.
+    """The drive of a model under the logged commands of a run.
+
+    Args:
+        model: the model.
+        motion: the run.
+        grid: over whose steps thrust is constant.
+        between: how commands go on from one line of the log to the next.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.

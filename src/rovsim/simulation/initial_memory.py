@@ -1,4 +1,4 @@
-"""What the water remembers of a measured motion, where a model has a fluid memory."""
+"""The state of a model's fluid memory at times of a measured motion."""
 
 from typing import Callable, Sequence
 
@@ -15,10 +15,13 @@ STEP = 0.01  # s; the velocity is taken as straight between two samples, for whi
 
 
 def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
-    """Remembered velocity (k, 6) at times (k,) of a true motion; empty without a memory.
+    """Velocity (k, 6) that the water of a model still has at times (k,) s of a true motion.
 
-    Gaps are bridged by interpolation: the water does not forget what nobody saw. Samples count too
-    that were seen and are left out of a comparison.
+    Gaps in the measurement are interpolated, since the water goes on moving in them. Samples that
+    are left out of comparisons are used as well, if they were measured.
+
+    Returns:
+        The velocity, m/s and rad/s; empty where the model has no fluid memory.
     """
     body = model.body
     known = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
@@ -40,10 +43,18 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
 def remembered_at(
     models: Sequence[Model], see: Callable[[Model], Motion], edges: Array, steps: Array
 ) -> Array:
-    """What the water remembers (m, w, 6) at some steps (w,) of a grid; empty if it never does.
+    """Velocity (m, w, 6) that the water of m models still has at steps (w,) of a grid.
 
-    `see`: the run's true motion as a model sees it; `edges` (k+1,) s those of the grid. Models that
-    see and forget alike remember the same, and it is found once.
+    Models whose memory depends on the same numbers share one computation.
+
+    Args:
+        models: m of them.
+        see: the true motion of the run, as a model sees it.
+        edges: (k+1,) at which the steps of the grid begin and end, s.
+        steps: (w,) of the grid.
+
+    Returns:
+        The velocities, m/s and rad/s; empty where no model has a fluid memory.
     """
     if not any(m.body.memory_decay for m in models):
         return NO_MEMORY
@@ -56,5 +67,5 @@ def remembered_at(
 
 
 def _name_memory(model: Model) -> tuple:
-    """All of a model that its memory of a motion depends on."""
+    """Key of all numbers of a model that the state of its fluid memory depends on."""
     return model.mocap_view.key, model.body.memory_decay, model.body.current.tobytes()

@@ -10,14 +10,19 @@ from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.run import RunInfo
 
-LEVEL = 0.9  # of what is measured that a band holds
+LEVEL = 0.9  # share of the measurement that a band should contain
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What a model predicts at motion.time: NaN where nothing, infinite once it diverged.
+    """What a model predicts at the n times of a motion, after the filter of the measurement.
 
-    `eta` (n, 7) pose, `nu` (n, 6) velocity, `nu_dot` (n, 6) acceleration, after the filter.
+    NaN where it predicts nothing, infinite from where it diverged.
+
+    Attributes:
+        eta: pose (n, 7): position m NED, quaternion body to world.
+        nu: body velocity (n, 6), m/s and rad/s.
+        nu_dot: body acceleration (n, 6), m/s2 and rad/s2.
     """
 
     eta: Array
@@ -26,11 +31,11 @@ class Prediction:
 
     @staticmethod
     def empty(count: int) -> "Prediction":
-        """Nothing, at `count` instants."""
+        """A prediction of nothing at `count` times."""
         return Prediction(*(np.full((count, columns), np.nan) for columns in (7, 6, 6)))
 
     def mark_diverged(self, at: slice) -> None:
-        """Make infinite what left the finite numbers, so that no score passes over it."""
+        """Replace what is not finite by infinity: scores skip NaN, but not infinity."""
         lost = ~np.isfinite(self.nu[at]).all(axis=1)
         for values in (self.eta, self.nu, self.nu_dot):
             values[at][lost] = np.inf
@@ -47,7 +52,7 @@ class Replay:
 
     @property
     def longest(self) -> float:
-        """Of its windows, s; 0 without any."""
+        """Length of its longest windows, s; 0 without windows."""
         return max((float(name) for name in self.horizons if name != OPEN_LOOP), default=0.0)
 
     def write(self, path: Path) -> None:
@@ -72,10 +77,12 @@ class Replay:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Lower and upper end, at motion.time; NaN where nothing is predicted.
+    """Lower and upper end of what a model predicts at the n times of a motion; NaN where nothing.
 
-    `nu` (2, n, 6) m/s, rad/s; `place` (2, n, 6): position NED m, then roll, pitch and yaw in rad,
-    counted on from the measured ones where each window begins.
+    Attributes:
+        nu: of the body velocity (2, n, 6), m/s and rad/s.
+        place: of the position m NED, then of roll, pitch and yaw in rad (2, n, 6). The angles are
+            continued from the measured ones where each window begins.
     """
 
     nu: Array
@@ -83,5 +90,5 @@ class Band:
 
     @staticmethod
     def empty(count: int) -> "Band":
-        """Nothing, at `count` instants."""
+        """A band that is NaN at `count` times."""
         return Band(np.full((2, count, 6), np.nan), np.full((2, count, 6), np.nan))

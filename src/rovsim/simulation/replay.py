@@ -1,7 +1,8 @@
 """Replay: drive a model with the logged commands, from measured states.
 
-Open loop starts once and is never corrected; windows of h seconds start anew every h. What comes
-back is aligned with the measurement and went through the same filter.
+An open-loop replay starts once and is never corrected; windows of h seconds start again from the
+measured state every h seconds. What comes back is aligned with the measurement, and went through
+the same filter.
 """
 
 from itertools import islice
@@ -29,7 +30,7 @@ from rovsim.simulation.unfiltered_motion import stage_outputs
 from rovsim.simulation.unmeasured_velocities import propagate_unmeasured_velocities
 from rovsim.simulation.windows import find_whole, find_windows
 
-Spans = Sequence[tuple[int, int]]
+Spans = Sequence[tuple[int, int]]  # first sample or bin of each window, and its last one
 
 
 def replay(
@@ -38,10 +39,17 @@ def replay(
     how: SimulationSettings,
     open_loop: bool = True,
 ) -> Replay:
-    """Replay one run open loop, unless that is not wanted, and in windows.
+    """Replay one run in windows, and in open loop as well unless told otherwise.
 
-    What comes back is what the motion capture would report of the model's motion. An unusable run
-    predicts nothing.
+    The result is what the motion capture would report of the model's motion; it is NaN throughout
+    for a run that cannot be used.
+
+    Args:
+        model: the model to drive.
+        motion: the run.
+        how: filter and derivative of the measurement, horizons, step length, and how commands are
+            held.
+        open_loop: whether to replay the whole run in one go, too.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -56,7 +64,7 @@ def by_horizon(
     how: SimulationSettings,
     open_loop: bool = True,
 ) -> Iterator[tuple[str, Prediction]]:
-    """The predictions of a replay, one after the other, with the names of their horizons.
+    """The predictions of `replay`, each made when it is asked for, with the name of its horizon.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -76,27 +84,49 @@ def find_spans(
 
 
 def predict(model: Model, motion: Motion, spans: Spans, how: SimulationSettings) -> Prediction:
-    """What the motion capture would report of a model in some windows of a run; see `predict_all`.
+    """Predict what the motion capture would report of one model; see `predict_all`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    return predict_all([Case(model, motion)], spans, how)[0]
+    return predict_all([ReplayCase(model, motion)], spans, how)[0]
 
 
-class Case(NamedTuple):
-    """A model and a run; `disturbed`: accelerations (k, 6) over the steps that come on top."""
+class ReplayCase(NamedTuple):
+    """A model to be replayed along a run.
+
+    Attributes:
+        model: the model.
+        motion: the run.
+        disturbed: further accelerations (k, 6) over the integration steps, m/s2 and rad/s2.
+    """
 
     model: Model
     motion: Motion
     disturbed: Array | None = None
 
 
-def predict_all(cases: Sequence[Case], spans: Spans, how: SimulationSettings) -> list[Prediction]:
-    """What the motion capture would report of models in some windows of a run.
+class Anchor(NamedTuple):
+    """Where a trajectory begins.
+
+    Attributes:
+        step: integration step of the grid.
+        samples: how many samples it lasts.
+        state: true state (13,) there.
+    """
+
+    step: int
+    samples: int
+    state: Array
+
+
+def predict_all(
+    cases: Sequence[ReplayCase], spans: Spans, how: SimulationSettings
+) -> list[Prediction]:
+    """Predict what the motion capture would report of several models in windows of a run.
 
     Args:
-        cases: of runs with one clock.
+        cases: models and runs; the runs have the same clock.
         spans: first sample or bin of each window, and its last one.
         how: filter and derivative of the measurement, step length, how commands are held.
 
@@ -113,19 +143,19 @@ def predict_all(cases: Sequence[Case], spans: Spans, how: SimulationSettings) ->
 def simulate(
     model: Model,
     motion: Motion,
-    starts: Sequence[tuple[int, int, Array]],
+    starts: Sequence[Anchor],
     settings: ReplaySettings,
     disturbed: Array | None = None,
 ) -> list[Array]:
-    """Simulate from several true states of one run, under its commands.
+    """Simulate a model from several states of one run, under its commands.
 
     Args:
         model: the model to drive.
-        motion: the run; true, as the model sees it.
-        starts: for each trajectory its first step, number of samples, and state (13,); in order of
-            time, and velocities that were not measured are the model's own.
+        motion: the run as the model sees it, see `undo_mocap_view`.
+        starts: of each trajectory, in order of time. Velocities that were not measured are replaced
+            by those that the model itself has by then.
         settings: step length and how commands are held.
-        disturbed: accelerations (k, 6) over the steps that come on top.
+        disturbed: further accelerations (k, 6) over the integration steps, m/s2 and rad/s2.
 
     Returns:
         For each start its states (samples + 1, 13), the given one first.
@@ -134,9 +164,9 @@ def simulate(
         BadInput: the run lacks what an effect of the model needs.
     """
     grid = StepGrid.over(motion, settings.step)
-    first = np.array([s[0] for s in starts], np.int64)
-    steps = np.array([s[1] for s in starts], np.int64) * grid.stride
-    state = np.array([s[2] for s in starts]).reshape(1, -1, 13)
+    first = np.array([step for step, _, _ in starts], np.int64)
+    steps = np.array([samples for _, samples, _ in starts], np.int64) * grid.stride
+    state = np.array([state for _, _, state in starts]).reshape(1, -1, 13)
     memory = remembered_at([model], lambda m: motion, grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings.commands)
     if disturbed is not None:
@@ -149,9 +179,9 @@ def simulate(
 
 
 def _predict_samples(
-    cases: Sequence[Case], spans: Spans, how: SimulationSettings
+    cases: Sequence[ReplayCase], spans: Spans, how: SimulationSettings
 ) -> list[Prediction]:
-    """Predictions at the samples of a uniform clock, through the filter of the measurement."""
+    """Predict at the samples of a uniform clock, through the filter of the measurement."""
     first = cases[0].motion
     signals = how.signals.suited(first)
     within = embed(first, spans, round(signals.reach / time_step(first.time)))
@@ -162,13 +192,13 @@ def _predict_samples(
 
 
 def _report_samples(
-    case: Case, within: Sequence[Embedded], settings: ReplaySettings
+    case: ReplayCase, within: Sequence[Embedded], settings: ReplaySettings
 ) -> list[Array]:
-    """Poses (k, 7) of each window, as reported."""
+    """Poses (k, 7) of each window, as the motion capture would report them."""
     model, motion, _ = case
     true, stride = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step).stride
     state, period = true.state, time_step(motion.time)
-    starts = [(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
+    starts = [Anchor(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
     stages = stage_outputs(model, motion)[1:, :, :14]
     simulated = simulate(model, true, starts, settings, case.disturbed)
     return [
@@ -180,7 +210,7 @@ def _report_samples(
 def _gather(
     count: int, within: Sequence[Embedded], derived: Iterable[tuple[Array, Array]]
 ) -> Prediction:
-    """A prediction at `count` samples, of poses and their derivatives in each window."""
+    """Put the poses of all windows and their derivatives into one prediction at `count` samples."""
     found = Prediction.empty(count)
     for w, (path, (nu, nu_dot)) in zip(within, derived, strict=True):
         at, own = slice(w.first + 1, w.last + 1), slice(1, w.last - w.first + 1)
@@ -189,8 +219,8 @@ def _gather(
     return found
 
 
-def _predict_bins(case: Case, spans: Spans, settings: ReplaySettings) -> Prediction:
-    """Means over the measurement's own bins, of a trajectory on fine steps; nothing is filtered."""
+def _predict_bins(case: ReplayCase, spans: Spans, settings: ReplaySettings) -> Prediction:
+    """Predict means over the measured bins, from a trajectory on finer steps, without a filter."""
     model, motion, disturbed = case
     found = Prediction.empty(len(motion.time))
     true, grid = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step)
@@ -199,7 +229,7 @@ def _predict_bins(case: Case, spans: Spans, settings: ReplaySettings) -> Predict
     first = [min(round((bins[a] - bins[0]) / grid.h), ends - 1) for a, _ in spans]
     last = [min(int(np.ceil((bins[b] - bins[0]) / grid.h)), ends) for _, b in spans]
     starts = [
-        (k, max(e - k, 1), interpolate_state(true, grid.edges[k]))
+        Anchor(k, max(e - k, 1), interpolate_state(true, grid.edges[k]))
         for k, e in zip(first, last, strict=True)
     ]
     for (a, b), (k, count, _), path in zip(

@@ -1,4 +1,4 @@
-"""What a model's acceleration misses at the measured state, sample by sample of a run.
+"""The acceleration that a model lacks at the measured states, sample by sample of a run.
 
 Teacher-forced: the model is evaluated where the vehicle was, a_res = a_real - a_sim.
 """
@@ -22,17 +22,22 @@ from rovsim.simulation.measured_states import (
     nearest_steps,
     undo_mocap_view,
 )
-from rovsim.simulation.replay import simulate
+from rovsim.simulation.replay import Anchor, simulate
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """What a residual may look at and should predict, n samples of one run.
+    """Inputs and targets of a learned residual, at n samples of one run.
 
-    `index` (n,) into motion.time; `nu` (n, 6), `attitude` (n, 4), `wrench` (n, 6) of the thrusters,
-    `a_sim` (n, 6) instantaneous acceleration of the model there, `a_res` (n, 6) what it misses.
+    Attributes:
+        index: (n,) of the samples or bins in `motion.time`.
+        nu: body velocity (n, 6), m/s and rad/s.
+        attitude: quaternion (n, 4) body to world.
+        wrench: of the thrusters (n, 6), N and N m, body axes.
+        a_sim: instantaneous acceleration (n, 6) of the model there, m/s2 and rad/s2.
+        a_res: the acceleration (n, 6) that it lacks, a_real - a_sim.
     """
 
     index: Array
@@ -43,16 +48,16 @@ class Samples:
     a_res: Array
 
     def features(self, settings: FeatureSettings) -> Array:
-        """Features X (n, d)."""
+        """Features X (n, d) of a learned residual."""
         return assemble(settings, self.nu, self.a_sim, self.wrench, self.attitude)
 
 
 def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
-    """Samples of one run at its usable instants.
+    """Compare a model with the measured acceleration at all usable instants of a run.
 
-    All in true axes at CO: where the model says that the motion capture sees another point or other
-    axes, the measurement is turned back first, so that tau_res = M a_res in a free replay. On axes
-    that were not measured nothing is missing.
+    Everything is in true body axes at CO. Where the model says that the motion capture sees another
+    point or other axes, the measurement is converted first, so that tau_res = M a_res holds in a
+    replay. On axes that were not measured, `a_res` is zero.
     """
     motion = undo_mocap_view(model, motion)
     make = _of_bins if motion.binned else _of_samples
@@ -61,7 +66,7 @@ def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples
 
 
 def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
-    """At each sample, under the thrust around it; the model's acceleration is filtered too."""
+    """Of a sampled run: the model's acceleration goes through the filter of the measurement."""
     drive = drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)
     smoothing, period = how.signals.suited(motion).filter, time_step(motion.time)
@@ -81,7 +86,7 @@ def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Sample
 
 
 def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
-    """At each bin's start; the model makes the same backward difference of means of two bins."""
+    """Of a binned run: model and measurement are backward differences of the means of two bins."""
     fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
     index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)[index]
@@ -99,15 +104,15 @@ def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
 def _differences_of_bins(
     model: Model, motion: Motion, settings: ReplaySettings, index: Array
 ) -> Array:
-    """Backward difference (n, 6) of the model's means over two bins, from the start of the first.
+    """Backward differences (n, 6) of the model's mean velocities over two bins, m/s2 and rad/s2.
 
-    `index` (n,) of the second bins.
+    `index` (n,) says which the second bins are. Each simulation starts where the first bin does.
     """
     grid, edges = StepGrid.over(motion, settings.step), np.append(motion.time, motion.end)
     nearest = nearest_steps(motion, grid)
     begins, ends = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
     starts = [
-        (int(b), int(e - b), interpolate_state(motion, grid.edges[b]))
+        Anchor(int(b), int(e - b), interpolate_state(motion, grid.edges[b]))
         for b, e in zip(begins, ends, strict=True)
     ]
     found = np.empty((len(index), 6))

@@ -11,9 +11,12 @@ from rovsim.measurement.signals.motion import Motion
 
 @dataclass(frozen=True, eq=False)
 class StepGrid:
-    """`edges` (k+1,) s between k steps of one length; `stride` steps make a sample.
+    """k integration steps of the same length.
 
-    `before`: s of the recording that lie before the first.
+    Attributes:
+        edges: (k+1,) at which they begin and end, s on the clock of the motion.
+        stride: steps from one sample to the next; 1 for a binned run.
+        before: time from the start of the recording to the first step, s.
     """
 
     edges: Array
@@ -27,12 +30,12 @@ class StepGrid:
 
     @property
     def time(self) -> Array:
-        """The same (k+1,), s since the start of the recording."""
+        """The edges (k+1,) as s since the start of the recording."""
         return self.edges - self.edges[0] + self.before
 
     @staticmethod
     def over(motion: Motion, step: float) -> "StepGrid":
-        """Steps no longer than `step` s over a run; those of a sampled run meet its samples."""
+        """Divide a run into steps no longer than `step` s; each sample falls on an edge."""
         if motion.binned:
             count = int(np.ceil((motion.end - motion.time[0]) / step - 1e-9))
             edges = motion.time[0] + step * np.arange(count + 1)

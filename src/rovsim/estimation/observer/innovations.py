@@ -10,7 +10,8 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.kalman import AxisErrorDynamics
 from rovsim.estimation.observer.noise import RunFilters
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.simulation.batch import Batch, Correction, Starts
+from rovsim.simulation.batch import Batch, Starts
+from rovsim.simulation.correction import Correction
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import true_states, undo_mocap_view
 
