@@ -11,7 +11,7 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.configuration import compose
 from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import ranking, tell_ranking, track
+from rovsim.application.tracking.runs import TrackedRun, ranking, tell_ranking, track
 from rovsim.application.tracking.study import StudyFiles, track_study
 from rovsim.apps.cli.main import override
 from rovsim.apps.cli.sweep import (
@@ -29,7 +29,8 @@ from synthetic_study import study
 
 def tracked(name):
     settings = TrackingSettings(uri="sqlite:///results/mlflow.db", artifacts="results/mlflow")
-    track(settings, experiment="tank", name=name, tags={}, params={"k": 5}, scores={}, files=[])
+    run = TrackedRun(experiment="tank", name=name, tags={}, params={"k": 5}, files=[])
+    track(settings, run)
     return settings
 
 
@@ -116,7 +117,7 @@ def test_a_place_that_keeps_nothing_is_one_message(uri, tmp_path, monkeypatch):
     (tmp_path / "text.db").write_text("no database\n" * 100)
     settings = TrackingSettings(uri=uri, artifacts="results/mlflow")
     with pytest.raises(BadInput, match="MLflow cannot keep"):
-        track(settings, experiment="a", name="b", tags={}, params={}, scores={}, files=[])
+        track(settings, TrackedRun(experiment="a", name="b", tags={}, files=[]))
 
 
 def test_an_experiment_that_another_machine_makes_meanwhile_is_taken(tmp_path, monkeypatch):

@@ -9,6 +9,6 @@ ranking_view  how MLflow shows a campaign
 """
 
 from rovsim.application.tracking.diagnosis import track_diagnosis
-from rovsim.application.tracking.runs import ranking, tell_ranking, track
+from rovsim.application.tracking.runs import TrackedRun, ranking, tell_ranking, track
 
-__all__ = ["ranking", "tell_ranking", "track", "track_diagnosis"]
+__all__ = ["TrackedRun", "ranking", "tell_ranking", "track", "track_diagnosis"]

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import track
+from rovsim.application.tracking.runs import TrackedRun, track
 from rovsim.core.mappings import leaves
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Step
@@ -36,31 +36,28 @@ def track_diagnosis(
     files = list(files)
     selected = "+".join(one.effect for one in found.selected) or "none"
     tags = {"model": base, "verdict": found.verdict, "selected": selected}
-    whole = track(
-        settings,
+    diagnosis = TrackedRun(
         experiment=experiment,
         name="diagnosis",
         tags=tags,
         params=leaves(params),
-        scores={},
         files=files,
         parent=parent,
         metrics=diagnosis_metrics(found),
     )
-    return {"diagnosis": whole} | {
-        step.model: track(
-            settings,
+    whole = track(settings, diagnosis)
+    runs = {"diagnosis": whole}
+    for step in found.ladder.steps:
+        of_step = TrackedRun(
             experiment=experiment,
             name=step.model,
             parent=whole,
             tags={"model": step.model, "residual": "none", "control": "none"},
-            params={},
-            scores={},
             files=[path for path in files if path.stem in OF_STEPS],
             metrics=step_metrics(step),
         )
-        for step in found.ladder.steps
-    }
+        runs[step.model] = track(settings, of_step)
+    return runs
 
 
 def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 import os
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Iterator, Mapping
 
@@ -30,48 +31,50 @@ PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes
 }
 
 
-def track(
-    settings: TrackingSettings,
-    *,
-    experiment: str,
-    name: str,
-    tags: Mapping[str, str],
-    params: Mapping[str, Any],
-    scores: Mapping[str, RunErrors],
-    files: Iterable[Path],
-    parent: str | None = None,
-    metrics: Mapping[str, float] | None = None,
-) -> str:
-    """Log one run and return its id.
+@dataclass(frozen=True, kw_only=True)
+class TrackedRun:
+    """What is logged as one MLflow run.
 
-    Args:
-        settings: where.
-        experiment: the campaign.
+    Attributes:
+        experiment: name of the campaign.
         name: of the run.
-        tags: model, residual, control.
-        params: hyperparameters.
-        scores: the model's errors, by run.
+        tags: model, residual and control.
         files: kept as artifacts.
-        parent: id of the run this one belongs to.
+        params: hyperparameters.
+        scores: errors of the model, by run of the campaign.
         metrics: further numbers.
+        parent: id of the MLflow run that this one belongs to.
+    """
+
+    experiment: str
+    name: str
+    tags: Mapping[str, str]
+    files: Iterable[Path]
+    params: Mapping[str, Any] = field(default_factory=dict)
+    scores: Mapping[str, RunErrors] = field(default_factory=dict)
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    parent: str | None = None
+
+
+def track(settings: TrackingSettings, run: TrackedRun) -> str:
+    """Log one run and return its id; `settings` say where.
 
     Raises:
-        BadInput: nothing can be kept there.
+        BadInput: MLflow cannot keep the run there.
     """
     with _told(settings.uri), FileLock(_lock(settings.uri)):
         client = _client(settings)
-        number = _experiment(client, settings, experiment)
-        labels = {**tags, "mlflow.runName": name}
-        run = client.create_run(
-            number, tags=labels | ({"mlflow.parentRunId": parent} if parent else {})
-        )
+        number = _experiment(client, settings, run.experiment)
+        tags = {**run.tags, "mlflow.runName": run.name}
+        tags |= {"mlflow.parentRunId": run.parent} if run.parent else {}
+        run_id = client.create_run(number, tags=tags).info.run_id
         try:
-            _log(client, run.info.run_id, params, metrics_of(scores) | dict(metrics or {}), files)
+            _log(client, run_id, run.params, metrics_of(run.scores) | dict(run.metrics), run.files)
         except BaseException:
-            client.set_terminated(run.info.run_id, "FAILED")
+            client.set_terminated(run_id, "FAILED")
             raise
-        client.set_terminated(run.info.run_id)
-        return run.info.run_id
+        client.set_terminated(run_id)
+        return run_id
 
 
 def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[str, float]:

@@ -6,7 +6,7 @@ from typing import Any, Mapping, Sequence
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
-from rovsim.application.tracking.runs import track
+from rovsim.application.tracking.runs import TrackedRun, track
 from rovsim.core.model_names import NOMINAL
 from rovsim.core.yaml_files import read_yaml
 from rovsim.results.comparison import Comparison
@@ -43,22 +43,14 @@ def track_study(
     written = {path.parent.name: path for path in files.models}
     figures = [path for path in files.kept if path.stem in OF_MODELS]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
-    parent = track(
-        settings,
-        experiment=campaign,
-        name="study",
-        tags={"model": "study"},
-        params={},
-        scores={},
-        files=files.kept,
-    )
+    study = TrackedRun(experiment=campaign, name="study", tags={"model": "study"}, files=files.kept)
+    parent = track(settings, study)
     diagnosed = track_diagnosis(
         settings, campaign, NOMINAL, diagnosis, diagnosing, of_steps, parent
     )
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
     for name, entry in Comparison.read(files.comparison).models.items():
-        runs[name] = track(
-            settings,
+        of_model = TrackedRun(
             experiment=campaign,
             name=name,
             parent=parent,
@@ -66,6 +58,7 @@ def track_study(
             metrics={"windows_2s": steps[name]} if name in steps else {},
             **_described(name, written.get(name), figures),
         )
+        runs[name] = track(settings, of_model)
     return runs
 
 

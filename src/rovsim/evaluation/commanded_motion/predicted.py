@@ -1,7 +1,9 @@
-"""Which velocity the logged commands ought to cause: each axis by itself, from rest.
+"""The velocity that the logged commands should cause: each axis by itself, from rest.
 
 Good enough to tell axes, clocks and files by correlation; no replay (no Coriolis, no gaps).
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -79,8 +81,20 @@ def righting(vehicle: Vehicle) -> Array:
     return np.asarray(stiffness)
 
 
-def _diagonals(vehicle: Vehicle) -> tuple[Array, Array, Array, Array]:
-    """Inertia, drag by speed and by its square, and restoring stiffness, (6,) each."""
+class _Diagonals(NamedTuple):
+    """Constants (6,) of the six axes, without what couples them: SI units.
+
+    `linear` and `quadratic` are drag coefficients; `stiffness` rights the vehicle at rest.
+    """
+
+    inertia: Array
+    linear: Array
+    quadratic: Array
+    stiffness: Array
+
+
+def _diagonals(vehicle: Vehicle) -> _Diagonals:
+    """The constants of each axis by itself, of a vehicle at rest; its stiffness at least 0."""
     dry, water = vehicle.rigid_body, vehicle.hydrodynamics
     moments = [getattr(dry.inertia, name) or 1.0 for name in ("Ixx", "Iyy", "Izz")]
     inertia = np.array([dry.mass] * 3 + moments) + np.diag(matrix(water.added_mass))
@@ -88,4 +102,4 @@ def _diagonals(vehicle: Vehicle) -> tuple[Array, Array, Array, Array]:
         np.diag(matrix(water.linear_damping)),
         np.diag(matrix(water.quadratic_damping)),
     )
-    return inertia, linear, quadratic, np.maximum(righting(vehicle), 0.0)
+    return _Diagonals(inertia, linear, quadratic, np.maximum(righting(vehicle), 0.0))

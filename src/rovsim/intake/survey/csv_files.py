@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Mapping
+from typing import Mapping, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -152,7 +152,7 @@ def _commands(
             axes=tuple(PILOT[c] for c in radio),
             auxiliary=voltage,
         )
-    kind, chosen, said = _kind(columns)
+    kind, chosen, said = _likely_commands(columns)
     forces = find_wrench(columns) if kind not in ("pwm", "demand") else {}
     if forces:
         value = np.stack([columns[name] for name in forces.values()], axis=1)
@@ -196,32 +196,42 @@ def _radio(columns: dict[str, Array]) -> dict[str, str]:
     return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
 
 
-def _kind(columns: dict[str, Array]) -> tuple[LoggedKind | None, list[str], str]:
-    """Kind, columns and how both are known."""
+class _LikelyCommands(NamedTuple):
+    """Columns that are likely commands; `kind` None where their numbers do not tell it.
+
+    `said` tells a person how both are known.
+    """
+
+    kind: LoggedKind | None
+    columns: list[str]
+    said: str
+
+
+def _likely_commands(columns: dict[str, Array]) -> _LikelyCommands:
+    """Find the columns that are likely commands, and their kind, by their names and numbers."""
     axes = [name for name in columns if name in AXES]
     if len(axes) > 1 or (axes and len(columns) == 1):
         if all(within(columns[name], "demand") for name in axes):
-            return "demand", axes, "named after axes, within -1 and 1"
+            return _LikelyCommands("demand", axes, "named after axes, within -1 and 1")
         if all(within(columns[name], "pwm") for name in axes):
-            return (
-                "demand",
-                axes,
-                "named after axes, pulses in us (-heave where long is up)",
-            )
-        return "wrench", axes, _wrench([columns[name] for name in axes])
+            said = "named after axes, pulses in us (-heave where long is up)"
+            return _LikelyCommands("demand", axes, said)
+        return _LikelyCommands("wrench", axes, _wrench([columns[name] for name in axes]))
     plain = {name: value for name, value in columns.items() if not has_other_unit(name)}
     pulses = [name for name in plain if within(columns[name], "pwm")]
     if pulses:
         given = [value[~pwm.absent(value)] for value in map(columns.__getitem__, pulses)]
         low, high = find_range(given)
-        return "pwm", ordered(pulses), f"all from {low:.0f} to {high:.0f}: pulses in us"
+        said = f"all from {low:.0f} to {high:.0f}: pulses in us"
+        return _LikelyCommands("pwm", ordered(pulses), said)
     shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
         if _rests_at_half([columns[name] for name in shares]):
-            return "normalized", ordered(shares), HALF
-        return "normalized", ordered(shares), "all within -1 and 1"
+            return _LikelyCommands("normalized", ordered(shares), HALF)
+        return _LikelyCommands("normalized", ordered(shares), "all within -1 and 1")
     numbered = [name for name in columns if re.search(r"\d$", name)]
-    return None, ordered(numbered), _sizes([columns[name] for name in numbered])
+    said = _sizes([columns[name] for name in numbered])
+    return _LikelyCommands(None, ordered(numbered), said)
 
 
 def _rests_at_half(values: list[Array]) -> bool:

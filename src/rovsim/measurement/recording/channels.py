@@ -5,7 +5,7 @@ at a time is NaN there.
 """
 
 from dataclasses import dataclass
-from typing import Iterator, Literal, Mapping
+from typing import Iterator, Literal, Mapping, NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -64,11 +64,22 @@ def measured(time: Array, value: Array) -> Channel:
     return Channel(time[some], value[some])
 
 
-def tidy(channels: Channels) -> tuple[dict[str, Channel], int, int]:
-    """Channels sorted by time, the first of equal times kept, empty ones left out.
+class TidyChannels(NamedTuple):
+    """Channels in order, and what had to be done for that.
 
-    Returns them with how many steps went back in time, and how many samples were left out.
+    Attributes:
+        channels: each sorted by time; empty channels are left out.
+        unsorted: how many steps went back in time.
+        duplicates: how many samples were left out, as an earlier one had the same time.
     """
+
+    channels: dict[str, Channel]
+    unsorted: int
+    duplicates: int
+
+
+def tidy_channels(channels: Channels) -> TidyChannels:
+    """Sort channels by time, and keep the first of samples with equal times."""
     tidied, unsorted, duplicates = {}, 0, 0
     for kind in KINDS:
         if kind not in channels or not len(channels[kind].time):
@@ -79,7 +90,7 @@ def tidy(channels: Channels) -> tuple[dict[str, Channel], int, int]:
         unsorted += int(np.sum(np.diff(time) < 0))
         duplicates += len(time) - len(keep)
         tidied[kind] = Channel(time[keep], value[keep])
-    return tidied, unsorted, duplicates
+    return TidyChannels(tidied, unsorted, duplicates)
 
 
 def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import LONG_STEP
 from rovsim.core.run import Commands, Logged
-from rovsim.measurement.recording.channels import Channels, tidy
+from rovsim.measurement.recording.channels import Channels, tidy_channels
 from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.repeated import without_repeated
@@ -28,7 +28,7 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
     """
     for time in (export.time[export.found], *(c.time for c in export.channels.values())):
         check_one_run(time, path)
-    channels, unsorted, duplicates = tidy(export.channels)
+    channels, unsorted, duplicates = tidy_channels(export.channels)
     counts = {**export.counts, "unsorted": unsorted, "duplicates": duplicates}
     if not export.found.any() and any(len(c.time) > 1 for c in channels.values()):
         return _of_channels(export, channels), counts

@@ -18,7 +18,7 @@ from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, TrackingSettings
-from rovsim.application.tracking import ranking, tell_ranking, track
+from rovsim.application.tracking import TrackedRun, ranking, tell_ranking, track
 from rovsim.apps.cli.complaint import warn
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
@@ -68,21 +68,17 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     pictures = draw(out, _shown(scored, said, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
-        track(
-            settings.tracking,
+        written = (file, out / ARRAYS, out / "comparison.json")
+        run = TrackedRun(
             experiment=data.campaign.name,
             name=settings.tracking.name or name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
             scores=found.models[FILE.stem].runs,
-            files=[
-                file,
-                out / ARRAYS,
-                out / "comparison.json",
-                *(path for one in pictures for path in one.files),
-            ],
+            files=[*written, *(path for one in pictures for path in one.files)],
             metrics=ranking(errors, corrected.name, base.name),
         )
+        track(settings.tracking, run)
     told = {said[model]: error for model, error in errors.items()}
     text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     text += tell_residual(errors[base.name], errors[corrected.name]) + tell_doubts(data.quality)

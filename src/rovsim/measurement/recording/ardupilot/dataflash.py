@@ -9,6 +9,7 @@ its type, its fields; type 128 (FMT) says length, name, types and names of the f
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy import ndarray as Array
@@ -38,6 +39,20 @@ class Format:
     length: int
     fields: np.dtype | None
     factors: dict[str, float]
+
+
+class _Index(NamedTuple):
+    """Where the messages of a log lie.
+
+    Attributes:
+        formats: layout of the messages by their type.
+        places: first byte of each message by its type.
+        skipped: how many bytes belong to no message.
+    """
+
+    formats: dict[int, Format]
+    places: dict[int, list[int]]
+    skipped: int
 
 
 def read_dataflash(path: Path) -> ArduPilotLog:
@@ -76,8 +91,8 @@ def _submarine(texts: bytes) -> bool | None:
     return None if said is None else said == b"ArduSub"
 
 
-def _index(raw: bytes) -> tuple[dict[int, Format], dict[int, list[int]], int]:
-    """Formats by type, places of the messages by type, and how many bytes were skipped."""
+def _index(raw: bytes) -> _Index:
+    """Find all messages in a log, and skip what is damaged."""
     formats = {FORMAT: Format("FMT", 89, None, {})}
     places: dict[int, list[int]] = defaultdict(list)
     at = end = 0  # where to look, and where the last message ended
@@ -92,7 +107,7 @@ def _index(raw: bytes) -> tuple[dict[int, Format], dict[int, list[int]], int]:
         places[raw[at + 2]].append(at)
         skipped += at - end
         at = end = at + form.length
-    return formats, places, skipped
+    return _Index(formats, places, skipped)
 
 
 def _learn(body: bytes, formats: dict[int, Format]) -> None:
