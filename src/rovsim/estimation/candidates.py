@@ -1,4 +1,4 @@
-"""What could be missing: every effect of the catalogue, from each of its starting values."""
+"""What may be missing: every effect of the catalogue, from each of its starting values."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -21,7 +21,13 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """An effect at the values a fit starts from; at its defaults it changes nothing."""
+    """An effect that may be missing, at the values that a fit starts from.
+
+    Attributes:
+        effect: its class; at its defaults it changes nothing.
+        start: with the values that a fit starts from.
+        free: names of the parameters that are fitted.
+    """
 
     effect: type[Effect]
     start: Effect
@@ -29,17 +35,17 @@ class Candidate:
 
     @property
     def absent(self) -> bool:
-        """Whether the start is the effect's absence: its columns can then be judged singly."""
+        """Whether the effect changes nothing at its start: each column is then judged by itself."""
         return not self.start.given()
 
     @property
     def thresholds(self) -> list[Parameter]:
-        """Free parameters that what happens is compared with."""
+        """Free parameters that are thresholds: values are tried, since derivatives tell nothing."""
         return [p for p in self.effect.parameters if p.tried and p.name in self.free]
 
     @property
     def sloped(self) -> tuple[str, ...]:
-        """Free parameters whose derivatives tell something: thresholds are tried instead."""
+        """Free parameters whose derivatives are of use: all but thresholds."""
         return tuple(k for k in self.free if k not in {p.name for p in self.thresholds})
 
     def term(self, free: Sequence[str] | None = None) -> Term:
@@ -50,12 +56,12 @@ class Candidate:
 def list_candidates(
     runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle
 ) -> list[Candidate]:
-    """All candidates that these runs of that vehicle could show."""
+    """All candidates that could act in these runs of a vehicle."""
     site, means = runs[0].motion.site, list_means(runs, vehicle)
     candidates = []
     for cls in catalogue.on(vehicle).values():
         if issubclass(cls, MeasurementFilter | StochasticCurrent):
-            continue  # told by camera.py and drifting_current.py
+            continue  # camera.py and drifting_current.py look for these
         if cls.requires not in means:
             continue
         for values in _list_starts(cls, site):
@@ -76,7 +82,7 @@ def _list_starts(cls: type[Effect], site: Site) -> list[dict[str, float]]:
 
 
 def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement]:
-    """By what effects could act in these runs of that vehicle."""
+    """Through what effects can act in these runs of a vehicle: thrusters, surfaces, demands, …"""
     commands = [one.motion.commands for one in runs if len(one.motion.commands.time)]
     kinds = {one.kind for one in commands}
     given: dict[Requirement, object] = {

@@ -1,4 +1,4 @@
-"""What the vehicle file states, as terms of a hypothesis that may all be wrong."""
+"""File effects: values that the vehicle file states, any of which may be wrong."""
 
 from typing import Sequence
 
@@ -21,7 +21,7 @@ PER_AXIS = (*DRAG, AddedMass, ConstantWrench)
 ONE_GAIN = ("all",)  # of all thrusters
 FILE_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ThrusterGain)
 FILE_EFFECT_IDS = frozenset(effect.id for effect in FILE_EFFECTS)
-SEVERAL = 3  # file effects: one or two may be all that is wrong
+SEVERAL = 3  # file effects: of fewer, the rest of the file may well be right
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
 # Flinders University, of the lighter vehicle with six thrusters), differ by 0.41 in its logarithm,
@@ -36,22 +36,23 @@ GAIN_SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN
 
 
 def has_loose_file(h: Hypothesis) -> bool:
-    """Whether so many file effects were selected that the vehicle file is off everywhere."""
+    """Whether so many file effects were accepted that the whole file is probably a little off."""
     return sum(term.id in FILE_EFFECT_IDS for term in h.terms) >= SEVERAL
 
 
 def mark_gain(h: Hypothesis) -> Array:
-    """Which free parameter (k,) is the gain of all thrusters."""
+    """Mask (k,) of the free parameter that is the common gain of all thrusters."""
     each = ((term.id, name) for term in h.terms for name in term.free)
     return np.array([one == (ThrusterGain.id, *ONE_GAIN) for one in each], bool)
 
 
 def doubt_gain(h: Hypothesis) -> float:
-    """How far the gain of all thrusters is from the file's, in twice a log likelihood.
+    """Penalty of a common gain of the thrusters that is far from the file's, in 2 log L.
 
-    Nothing where the file is not loose: a gain may be all that is wrong. Else a factor of all
-    forces and inertia is nearly free, and a gain of 1.6 may stand for a centre of buoyancy 4 mm
-    lower. Tails are Cauchy's, for a gain may have a fault.
+    There is none where the file is not loose: the gain may be all that is wrong. Where it is loose,
+    a common factor of all forces and inertias is nearly free, and a gain of 1.6 may be fitted where
+    the centre of buoyancy is 4 mm lower. The prior has the tails of a Cauchy distribution, since
+    thrusters may also be faulty.
     """
     if not has_loose_file(h):
         return 0.0
@@ -60,14 +61,17 @@ def doubt_gain(h: Hypothesis) -> float:
 
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
-    """How far the vehicle file may be off in what it states there, in scales of the parameter."""
+    """How far the vehicle file may be off in one of its values, in scales of the parameter."""
     if effect.id == ThrusterGain.id:
         return GAIN / parameter.scale
     return max(1.0, share_of_file(base, effect, parameter))
 
 
 def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
-    """How far such files are off, in proportion to what they state there, in scales; 0: nothing."""
+    """How far files are off in a value, as far as that is proportional to the value itself.
+
+    In scales of the parameter; 0 where the file states zero, or nothing is known.
+    """
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
     stated = 0.0 if bounds is None else -bounds.low
     return SHARE.get(effect.id, 0.0) * stated / parameter.scale
@@ -76,19 +80,21 @@ def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> fl
 def free_terms(
     base: Model, moved: Sequence[str], effects: Sequence[type[Effect]]
 ) -> tuple[Term, ...]:
-    """Effects, still absent, whose parameters are free; water neither drives nor lightens a body.
+    """Effects with free parameters, at values that change nothing.
+
+    Their bounds keep drag and added mass from becoming negative.
 
     Args:
-        base: the model they are added to.
-        moved: axes about which something can be said.
-        effects: which ones.
+        base: the model that they are added to.
+        moved: axes that moved; parameters of other axes are not free.
+        effects: their classes.
     """
     bounds = _physical_bounds(base)
     return tuple(Term(e(), _choose_free(e, moved), bounds.get(e.id, {})) for e in effects)
 
 
 def _physical_bounds(base: Model) -> dict[str, dict[str, Bounds]]:
-    """Of each change of drag or added mass: it leaves none below zero."""
+    """Bounds of each change of drag or added mass, by effect and axis: none becomes negative."""
     return {
         name: {a: Bounds(float(-x), np.inf) for a, x in zip(AXES, own, strict=True)}
         for name, own in base.body.stated.items()

@@ -1,4 +1,4 @@
-"""The noise of what a hypothesis leaves and no candidate explains."""
+"""The noise that is left when a hypothesis and all candidates explain what they can."""
 
 from dataclasses import replace
 from typing import Sequence
@@ -15,25 +15,31 @@ from rovsim.estimation.observer.noise_fit import NoiseFit
 from rovsim.estimation.sensitivities import Sensitivities
 
 DRAW = 0  # seed
-MIN_READINGS = 10_000  # the noise of fewer hangs on what was drawn; so more is drawn
+MIN_READINGS = 10_000  # of fewer, several remainders are drawn, or their noise would be chance
 ROUNDS = 10  # at most, where the noise is not yet known
-LOG_STD_TOLERANCE = 0.1  # changed by less, it is known
-MIN_LR_OF_OWN_NOISE = 1.0  # likelier by less, so is a hypothesis' own noise
+LOG_STD_TOLERANCE = 0.1  # of the disturbance: it has converged if it changes by less
+MIN_LR_OF_OWN_NOISE = 1.0  # a hypothesis' own noise has converged if the gain is less
 SHRINK = 1e-4  # of each column's own square: parallel candidates share
 
 
 def fit_remaining_noise(
     sensitivities: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = ROUNDS
 ) -> Noise:
-    """The noise of what a hypothesis leaves and no candidate explains, all acting together.
+    """Fit the noise to what is left when a hypothesis and all candidates act together.
 
-    It is close to the true one whatever is still missing: candidates are compared under it. What is
-    left depends on the noise in turn, so that this takes up to `rounds`; the last looks for slow
-    errors of the readings and for a current that wanders.
+    Whatever is still missing, this noise is close to the true one, so candidates are compared under
+    it. What is left depends on the noise in turn, so the fit is repeated.
 
-    Where axes hang together, a wrong noise of one can pass for an effect on another, and the two
-    then hold each other. So it is the noise of the hypothesis alone where that is likelier by more
-    than one for each column, which is what chance gives them.
+    Where axes drive each other, a wrong noise on one axis can look like an effect on another, and
+    each then supports the other. So the noise of the hypothesis alone is returned where it is
+    likelier by more than one for each column, which is what columns explain by chance.
+
+    Args:
+        sensitivities: the columns of all candidates.
+        at: the hypothesis.
+        noise: where the fit begins.
+        rounds: how often the fit is made, at most. The last one also looks for slow errors of the
+            readings and for a wandering current.
     """
     bank, e, columns = sensitivities.bank, sensitivities.base, sensitivities.columns
     if at.terms:
@@ -54,9 +60,9 @@ def fit_remaining_noise(
 
 
 def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
-    """The likeliest noise if nothing is missing from a model, with filters that suit it.
+    """Fit the noise on the assumption that a model lacks nothing, with filters that suit it.
 
-    Each round starts from the first guess: a level that once fell to zero does not come back.
+    Each round starts from the same guess, since a level that has fallen to zero would stay there.
     """
     first = replace(
         FIRST_NOISE,
@@ -82,11 +88,14 @@ def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
 def draw_remainder(
     bank: FilterBank, e: Sequence[Array], columns: Sequence[Array], noise: Noise
 ) -> list[Array]:
-    """Innovations (6, n) of each run less a likely combination of all columns (c, 6, n).
+    """Subtract from innovations (6, n) of each run a likely combination of columns (c, 6, n).
 
-    Drawn from all that the data allow: the best combination takes as many numbers' worth of noise
-    as there are columns, in short records nearly all of a slow disturbance. Short ones are drawn
-    several times, all runs after one another.
+    The combination is drawn from its posterior. The best one would be wrong here: it takes as many
+    degrees of freedom from the noise as there are columns, in short records nearly all of a slow
+    disturbance. Of short records several remainders are drawn.
+
+    Returns:
+        The remainder (6, n) of each run; all runs of the first draw, then those of the next.
     """
     target = bank.flatten([one[None] for one in e], noise)[0]
     white = bank.flatten(columns, noise)

@@ -1,10 +1,10 @@
-"""Values with which a model replays best, for a model that cannot be complete.
+"""Fit the values with which a model replays best, for a model that is known to be incomplete.
 
-The likelihood of the innovations takes all that is left for noise. Where it is physics that no name
-explains, the disturbance it allows for swallows slow errors, and the values that foresee the next
-reading best drift off in a replay. So they are fitted once more to what users see: velocity and
-acceleration in windows. How sure they are then comes from how the windows disagree, not from the
-noise (sandwich.py; windows are the clusters).
+The likelihood of the innovations takes everything that is left for noise. Where unknown physics is
+left, its disturbance absorbs slow errors, and the values that predict the next reading best make a
+replay drift away. So the values are fitted once more to what users see: velocity and acceleration
+in windows. How sure they are is then taken from how much the windows disagree, not from the noise
+(sandwich.py, with windows as clusters).
 """
 
 from dataclasses import dataclass, replace
@@ -32,18 +32,21 @@ MIN_SPREAD = 1e-3  # m/s, rad/s (and per s): an axis that hardly moves does not 
 
 @dataclass(frozen=True, eq=False)
 class Replays:
-    """Errors of velocity and acceleration in windows, each in units of how much it varies."""
+    """Errors of velocity and acceleration of replays, each over its standard deviation.
+
+    The replays start from the measured state in every window.
+    """
 
     runs: tuple[ObservedRun, ...]
 
     @cached_property
     def windows(self) -> list[Windows]:
-        """Those of each run."""
+        """The windows of each run."""
         return [Windows(run, WINDOW_SECONDS) for run in self.runs]
 
     @cached_property
     def spread(self) -> tuple[Array, Array]:
-        """Standard deviations (6,) of the measured velocity and acceleration."""
+        """Standard deviations (6,) of the measured velocity and of the measured acceleration."""
         nu = np.concatenate([run.motion.nu[run.motion.usable] for run in self.runs])
         nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable] for run in self.runs])
         return np.maximum(np.std(nu, axis=0), MIN_SPREAD), np.maximum(
@@ -51,7 +54,7 @@ class Replays:
         )
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
-        """Scaled errors (m, 6, n) of each run; NaN where a model cannot move at all."""
+        """Scaled errors (m, 6, n) of m models on each run; NaN for models that are impossible."""
         counts = [len(own.number) + int(np.sum(_follows(own))) for own in self.windows]
         return [
             evaluate_possible(models, count, partial(self._compare, own))
@@ -66,15 +69,15 @@ class Replays:
         return soften(np.concatenate(both, axis=1)).swapaxes(1, 2)
 
     def linearise(self, at: Hypothesis) -> Linearised:
-        """Errors of a hypothesis, and how they change with its parameters."""
+        """Errors of a hypothesis, and their derivatives to its parameters."""
         return linearise(at, self.evaluate)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
-        """Errors (..., 6, n) of all runs."""
+        """Errors (..., 6, n) of all runs, one run after the other; `noise` plays no part."""
         return np.concatenate(e, axis=-1)
 
     def number(self) -> Array:
-        """Number (n,) of the window that each error lies in, over all runs."""
+        """Number (n,) of the window that each error belongs to, counted over all runs."""
         parts, count = [], 0
         for windows in self.windows:
             own = windows.number + count
@@ -84,17 +87,29 @@ class Replays:
 
 
 def _follows(windows: Windows) -> Array:
-    """Whether each velocity but the first (n-1,) lies in the same window as the one before."""
+    """For each velocity but the first (n-1,), whether it is in the window of the one before."""
     return np.diff(windows.number) == 0
 
 
 def soften(x: Array) -> Array:
-    """Errors whose squares grow like |x| where they are large (soft L1: Triggs et al. 2000)."""
+    """Limit the influence of large errors: their squares then grow like |x| (soft L1).
+
+    Triggs et al. 2000, Bundle Adjustment - A Modern Synthesis.
+    """
     return np.sign(x) * np.sqrt(2.0 * (np.sqrt(1.0 + x**2) - 1.0))
 
 
 def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
-    """The same terms at the values that make windows smallest, and how sure these are."""
+    """Fit the parameters of a hypothesis to replays.
+
+    Args:
+        fit: of the innovations; its values are the start.
+        bank: the runs, and the filters of that fit.
+
+    Returns:
+        The hypothesis at the values that replay best, with their covariance, and the noise that
+        its innovations then have.
+    """
     source = Replays(bank.runs)
     seen = _fit(fit, source)
     covariance = estimate_covariance_of_few(
@@ -108,7 +123,7 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
 
 
 def fit_without(fit: Fit, runs: Sequence[ObservedRun], left_out: Sequence[ObservedRun]) -> Model:
-    """The same terms at the values that replay the other runs best."""
+    """The model of a fit at the values that replay all runs best but those that are left out."""
     others = tuple(run for run in runs if all(run is not one for one in left_out))
     return _fit(fit, Replays(others)).hypothesis.model
 

@@ -1,8 +1,9 @@
-"""What each candidate would change in the innovations, to first order, from each of its starts.
+"""Sensitivities: how each candidate would change the innovations, to first order.
 
-The observer keeps every model close to the measurement, so these columns depend little on which
-other effects the model has. But a marker that is not where it should be, a clock that drifts or
-loops on board change them all: then they are made anew beside what was found.
+Each candidate has columns: derivatives of the innovations to its parameters, from each of its
+starts. The filters keep every model close to the measurement, so the columns depend little on which
+other effects the model has. But a misplaced marker, a clock that drifts or a loop on board changes
+all columns. They are then made anew with the accepted effects in place.
 """
 
 from dataclasses import dataclass, replace
@@ -17,16 +18,19 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.residual_source import Linearised, step_back
 
-FAINT = 0.1  # standard deviations that a whole scale moves all readings together
-SLOPE = 0.5  # of a difference: less of it stays if taken both ways, and it is curvature
+FAINT = 0.1  # standard deviations by which a whole scale moves all readings together
+SLOPE = 0.5  # of a one-sided difference: if the central one keeps less, it is curvature
 
 
 @dataclass(frozen=True, eq=False)
 class CandidateColumns:
-    """Which columns are a candidate's.
+    """Which columns belong to a candidate.
 
-    `secant` is the change from absence to its start, None where it starts from its absence;
-    `derivatives`, one for each of its free parameters but thresholds.
+    Attributes:
+        candidate: the effect, at one of its starts.
+        secant: column with the whole change from the effect's absence to its start; None where it
+            starts from its absence.
+        derivatives: columns with the derivatives to its free parameters, thresholds left out.
     """
 
     candidate: Candidate
@@ -36,10 +40,15 @@ class CandidateColumns:
 
 @dataclass(frozen=True, eq=False)
 class Sensitivities:
-    """`base` innovations (6, n) of each run, and `columns` (c, 6, n), as this filter bank saw them.
+    """The columns of all candidates, and the innovations that they would change.
 
-    `blocks` say which columns belong to which candidate, `base_model` what the search starts from,
-    `beside` the ids of the effects that the columns were made beside.
+    Attributes:
+        base_model: the model that the search starts from.
+        bank: the filters that innovations and columns come from.
+        base: innovations (6, n) of each run, of the model that the columns were made at.
+        columns: (c, 6, n) of each run.
+        blocks: which columns belong to which candidate.
+        beside: ids of the effects that this model has besides those of `base_model`.
     """
 
     base_model: Model
@@ -51,7 +60,7 @@ class Sensitivities:
 
     @property
     def candidates(self) -> list[Candidate]:
-        """All that have columns."""
+        """All candidates that have columns."""
         return [block.candidate for block in self.blocks]
 
     @property
@@ -61,14 +70,14 @@ class Sensitivities:
 
     @property
     def finite(self) -> bool:
-        """Whether the observer holds the model that they were made at."""
+        """Whether the model that the columns were made at did not diverge."""
         return all(np.isfinite(one).all() for one in self.base)
 
 
 def linearise_candidates(
     bank: FilterBank, base: Hypothesis, candidates: Sequence[Candidate]
 ) -> Sensitivities:
-    """Columns of all candidates around a hypothesis, but for those the observer cannot hold."""
+    """Make the columns of all candidates at a hypothesis; without those that make it diverge."""
     absent = bank.innovations(base.model)
     blocks: list[CandidateColumns] = []
     parts: list[list[Array]] = []
@@ -84,10 +93,10 @@ def linearise_candidates(
 
 
 def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
-    """Columns of the same candidates beside all that a hypothesis has.
+    """Make the columns of the same candidates anew, with all effects of a hypothesis in place.
 
-    Those of an effect that it has are made beside the others. Zero where the observer cannot hold
-    the model.
+    Those of an effect that the hypothesis has itself are made beside its other effects. Columns are
+    zero where the model diverges.
     """
     rests: dict[str, tuple[Hypothesis, list[Array]]] = {}
     parts = []
@@ -106,7 +115,7 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
-    """The candidate's columns, from this one on."""
+    """Number the candidate's columns, beginning at `first`."""
     if candidate.absent:
         return CandidateColumns(candidate, None, tuple(range(first, first + len(candidate.sloped))))
     own = range(first + 1, first + 1 + len(candidate.sloped))
@@ -116,20 +125,20 @@ def _place(candidate: Candidate, first: int) -> CandidateColumns:
 def _columns(
     bank: FilterBank, base: Hypothesis, candidate: Candidate, absent: Sequence[Array]
 ) -> list[Array]:
-    """The secant, if the start is not the effect's absence, and the derivatives (c, 6, n)."""
+    """The candidate's columns (c, 6, n) of each run: its secant, if any, then derivatives."""
     seen = bank.linearise(Hypothesis(base.model, (candidate.term(candidate.sloped),)))
     columns = _silence_curvature(bank, seen)
     if not candidate.absent:
         each = zip(seen.e, absent, seen.J, strict=True)
         columns = [np.concatenate([(there - without)[None], J]) for there, without, J in each]
-    return [own.astype(np.float32) for own in columns]  # six digits are enough for columns
+    return [own.astype(np.float32) for own in columns]  # six digits are enough
 
 
 def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
-    """Derivatives (k, 6, n) of each run, zero where a difference shows no slope.
+    """Derivatives (k, 6, n) of each run, set to zero where the difference is only curvature.
 
-    In the plane a small tilt acts by its square. What that leaves of a difference is faint, but as
-    random as the readings: scaled to one, it would explain all their noise.
+    A small tilt of a vehicle that moves in a plane acts by its square. Its one-sided difference is
+    faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
     back = {i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
@@ -149,9 +158,9 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
 
 
 def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:
-    """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations that are read.
+    """Lengths (c,) of columns (c, 6, n), in standard deviations of the innovations.
 
-    What turns a vehicle about an axis that is held changes innovations there, and nobody sees it.
+    Only axes that were read count: along others, nobody sees that innovations change.
     """
     squares = [
         np.sum((run.innovation_mask.T * own / np.sqrt(filters.variance)[:, None]) ** 2, axis=(1, 2))

@@ -1,8 +1,8 @@
-"""The candidates' columns under one noise, white, beside what was found so far.
+"""The candidates' columns, whitened under one noise, with the accepted effects in place.
 
-Columns found with the filters of one noise can be turned into those of another. Loops on board take
-demands from the mixer, so that thrusters push something else beside them: there all columns are
-made anew, once for these loops.
+Columns of one noise can be converted to those of another. But loops on board take demands from the
+mixer, so that thrusters push differently beside them. All columns are then made anew, once for each
+set of loops.
 """
 
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.residual_source import Linearised
 from rovsim.estimation.sensitivities import Sensitivities, linearise_beside
 
-# Of the square of a derivative: if one has turned by more, what was found has changed columns.
+# Of the square of a derivative: if one has turned by more, the accepted effects changed columns.
 # Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
 CHANGED_SQUARE = 0.1
 # Of a column's own square, in six digits: what free parameters leave less of is theirs.
@@ -36,7 +36,13 @@ class _White(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class WhiteColumns:
-    """`sensitivities` are those beside the base, then beside what was found."""
+    """The candidates' columns under one noise.
+
+    Attributes:
+        bank: the runs, and filters that suit the noise.
+        sensitivities: the columns as they were last linearised, beside the loops of the base.
+        noise: under which the columns are white.
+    """
 
     bank: FilterBank
     sensitivities: Sensitivities
@@ -50,7 +56,7 @@ class WhiteColumns:
         return WhiteColumns(bank, self.sensitivities, noise, self._beside)
 
     def beside(self, at: Hypothesis) -> Sensitivities:
-        """The candidates' columns beside the loops of a hypothesis."""
+        """The columns beside the loops on board that a hypothesis has; made once for such loops."""
         loops = _list_loops(at.model)
         if loops == _list_loops(self.sensitivities.base_model):
             return self.sensitivities
@@ -59,7 +65,7 @@ class WhiteColumns:
         return self._beside[loops]
 
     def relinearised(self, at: Hypothesis) -> "WhiteColumns":
-        """The columns beside all that a hypothesis has."""
+        """The columns made anew with all effects of a hypothesis in place."""
         loops, fresh = _list_loops(at.model), self._made_beside(at)
         if loops == _list_loops(self.sensitivities.base_model):
             return WhiteColumns(self.bank, fresh, self.noise, self._beside)
@@ -71,9 +77,9 @@ class WhiteColumns:
         return linearise_beside(bank, at, self.sensitivities)
 
     def have_changed(self, seen: Linearised) -> bool:
-        """Whether the derivatives by what was found are others than they were without it.
+        """Whether the accepted effects have changed their own derivatives, and so perhaps others.
 
-        Where axes drive each other columns are made anew with every noise, and not here.
+        Always False where axes drive each other: the columns are then made anew with every noise.
         """
         h = seen.hypothesis
         if self.bank.coupled:
@@ -98,14 +104,14 @@ class WhiteColumns:
         return self._white[loops]
 
     def sizes(self, at: Hypothesis) -> Array:
-        """Lengths (c,) of the candidates' columns, white, beside the loops of a hypothesis."""
+        """Lengths (c,) of the whitened columns, beside the loops on board of a hypothesis."""
         return np.sqrt(np.diag(self._whiten(at).gram))
 
     def gram(self, seen: Linearised) -> Array:
         """Gram matrix (1 + c, 1 + c) of the innovations and the candidates' columns.
 
-        What the free parameters can explain is projected out of both. Made once, as a fit is asked
-        for proposals, for swaps and beside a loose file.
+        What the free parameters of the hypothesis can explain is projected out of both. The result
+        is kept, since proposals, swaps and a loose file all need it.
         """
         if seen not in self._grams:
             self._grams[seen] = self._multiply(seen)
@@ -131,7 +137,7 @@ def _turned(a: Array, b: Array) -> float:
 
 
 def _list_loops(model: Model) -> tuple:
-    """Which demands loops on board take, and in which mode; empty where there are none."""
+    """Key of the loops on board: the demands that they take, and their modes; empty without any."""
     return tuple(
         (
             loop.mixer_demand(np.eye(6)).tobytes(),

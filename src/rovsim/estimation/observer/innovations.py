@@ -68,8 +68,8 @@ def _between(run: ObservedRun, a: Array) -> Array:
 class ErrorDynamics(NamedTuple):
     """How small errors of a model grow or decay, linearised and averaged over measured states.
 
-    Errors of the position stand along the body's axes, or along level axes where the whole attitude
-    was not measured (`ObservedRun.pose_measured`).
+    Errors of the position stand along the body's axes, or along level axes where only parts of the
+    pose were measured (`ObservedRun.pose_measured`).
 
     Attributes:
         damping: -d nu_dot / d nu (6, 6), 1/s.

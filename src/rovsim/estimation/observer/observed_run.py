@@ -1,4 +1,4 @@
-"""A run as the observer sees it: readings of the motion capture before any filter."""
+"""A run as the observer sees it: readings of the motion capture, before the filter."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -35,10 +35,16 @@ BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are indep
 class ObservedRun(Steps):
     """One run, ready to be observed.
 
-    It starts at the first reading of each of the `segments`, at the state of that sample, and reads
-    up to the last. `drives` are of models over the steps of the observer, `replay_drives` over
-    those of a replay; `wrenches` are those that the models of a diagnosis may have, `free_axes`
-    (6,) those in which the vehicle can move at all.
+    In each of the `segments`, a model starts at the measured state of the first reading, and is
+    corrected by all readings up to the last one.
+
+    Attributes:
+        motion: the run, filtered and differentiated.
+        drives: of models over the steps of the observer.
+        replay_drives: of models over the steps of a replay.
+        wrenches: the wrench effects that models of the same task may have.
+        free_axes: (6,) in which the vehicle can move at all.
+        current_may_drift: whether a wandering current may be looked for.
     """
 
     motion: Motion
@@ -49,16 +55,16 @@ class ObservedRun(Steps):
     current_may_drift: bool = True
 
     def limited(self, kept: Array) -> "ObservedRun":
-        """The same run of which only some samples or bins (n,) are usable."""
+        """The same run, of which only the samples or bins in a mask (n,) are usable."""
         return replace(self, motion=replace(self.motion, usable=self.motion.usable & kept))
 
     def since_start(self, edges: Array) -> Array:
-        """Ends of steps as s since the start of the recording, of which this may be a part."""
+        """Times of the run as s since the start of the recording, of which it may be a part."""
         return self.motion.commands.since_start(edges)
 
     @cached_property
     def segments(self) -> tuple[tuple[int, int], ...]:
-        """First and last reading of every usable stretch that is long enough."""
+        """Numbers of the first and the last reading of every stretch that is long enough."""
         return tuple(
             (-(-a // self.group), b // self.group - 1)
             for a, b in self.motion.segments()
@@ -67,14 +73,15 @@ class ObservedRun(Steps):
 
     @cached_property
     def reading_samples(self) -> Array:
-        """Sample or bin (k,) of the motion at which each reading holds."""
+        """Sample or bin (k,) of the motion that each reading is of: the middle of its group."""
         return np.arange(len(self.reading_steps)) * self.group + self.group // 2
 
     def read(self, view: MocapView) -> Array:
-        """Readings (k, 13), one a group, as `view` turns them.
+        """Readings (k, 13), one for each group of frames, converted by `view`.
 
-        A group's mean, but for what the curve of the motion adds to it; its middle where sums are
-        read: their noise adds up, and a mean would carry it into the next.
+        A reading is the mean of its group, corrected for the curvature of the motion. Where sums of
+        velocities are read, it is the middle frame: their noise adds up, and a mean would make the
+        noise of one reading depend on that of the next.
         """
         return self._read_as_reported if view.key == NO_CHANGE.key else self._read(view)
 
@@ -95,7 +102,7 @@ class ObservedRun(Steps):
 
     @property
     def _summed(self) -> Array:
-        """Which of the seven numbers of a pose are sums."""
+        """Mask (7,) of the numbers of a pose that are sums of velocities."""
         summed = self.reading_kinds == SUM
         return np.append(summed[:3], np.repeat(summed[3:].any(), 4))
 
@@ -109,12 +116,12 @@ class ObservedRun(Steps):
 
     @cached_property
     def step_lengths(self) -> Array:
-        """How long each step (s,) takes, s."""
+        """Length (s,) of each step of the observer, s."""
         return np.diff(self.since_start(self.edges))
 
     @cached_property
     def reading_times(self) -> Array:
-        """When each reading (k,) holds, s since the first step."""
+        """Time (k,) of each reading, s since the first step."""
         return self.edges[self.reading_steps] - self.edges[0]
 
     @cached_property
@@ -124,7 +131,10 @@ class ObservedRun(Steps):
 
     @property
     def pose_measured(self) -> Array:
-        """What was measured (5,), as the engine's `pose_error` asks for it."""
+        """What was measured (5,), 1 or 0: x, y, z, yaw, and whether only parts of the pose were.
+
+        The engine's `pose_error` takes it in this form.
+        """
         measured = self.motion.measured
         if measured is None:
             return np.array([1.0, 1.0, 1.0, 1.0, 0.0])
@@ -132,12 +142,12 @@ class ObservedRun(Steps):
 
     @property
     def axes(self) -> Array:
-        """Axes (6,) that were measured, and in which the vehicle can move."""
+        """Mask (6,) of the axes that were measured, and in which the vehicle can move."""
         return np.asarray(find_measured(self.motion.measured) & self.free_axes)
 
     @cached_property
     def reading_mask(self) -> Array:
-        """Which axes (k, 6) each reading shows."""
+        """Mask (k, 6) of the axes that each reading shows."""
         count, measured = len(self.reading_steps), self.motion.measured
         if measured is None:
             return np.tile(self.free_axes, (count, 1))
@@ -146,7 +156,7 @@ class ObservedRun(Steps):
 
     @cached_property
     def reading_kinds(self) -> Array:
-        """What is read of each axis (6,), numbered as in `axis_kernels`: poses, means or sums."""
+        """Kind of the readings of each axis (6,): poses, means or sums, see `axis_kernels`."""
         if self.motion.binned:
             return np.full(6, BIN_MEAN)
         measured = self.motion.measured
@@ -154,7 +164,7 @@ class ObservedRun(Steps):
 
     @cached_property
     def axis_periods(self) -> Array:
-        """Mean time (6,) between two readings of each axis, s; the readings' own where none is."""
+        """Mean time (6,) between two readings of each axis, s; `period` for an axis without any."""
         count = self.reading_mask.sum(axis=0)
         each = self.period * len(self.reading_mask) / np.maximum(count, 1)
         return np.where(count > 0, each, self.period)
@@ -166,36 +176,36 @@ class ObservedRun(Steps):
 
     @cached_property
     def innovation_segments(self) -> Array:
-        """First row and last + 1 (s, 2) of the innovations that belong to each segment."""
+        """First innovation of each segment, and the first one after it (s, 2)."""
         length = np.array([b - a for a, b in self.segments], np.int64)
         stops = np.cumsum(length)
         return np.column_stack([stops - length, stops])
 
     @cached_property
     def time(self) -> Array:
-        """Instant of each innovation, s since the start of the run."""
+        """Time (n,) of each innovation, s since the first step."""
         parts = [self.reading_times[a + 1 : b + 1] for a, b in self.segments]
         return np.concatenate([np.empty(0), *parts])
 
     def overlapping(self, begin: float, end: float) -> Array:
-        """From which readings (n,) a step to the next lies partly between two times, as `time`."""
+        """Mask (n,) of innovations from which on one period overlaps the time `begin` to `end`."""
         return np.asarray((self.time < end) & (self.time + self.period > begin))
 
     @cached_property
     def innovation_mask(self) -> Array:
-        """Which axes (n, 6) each innovation belongs to."""
+        """Mask (n, 6) of the axes that the reading behind each innovation shows."""
         parts = [self.reading_mask[a + 1 : b + 1] for a, b in self.segments]
         return np.concatenate([np.empty((0, 6), bool), *parts])
 
     @cached_property
     def innovation_samples(self) -> Array:
-        """Sample or bin of the motion that each innovation belongs to."""
+        """Sample or bin (n,) of the motion that each innovation belongs to."""
         parts = [self.reading_samples[a + 1 : b + 1] for a, b in self.segments]
         return np.concatenate([np.arange(0), *parts]) - (1 if self.motion.binned else 0)
 
     @cached_property
     def settled(self) -> Array:
-        """Which innovations count: those after the observer has forgotten its start."""
+        """Mask (n,) of the innovations that count: from when the filters have settled."""
         kept = np.zeros(len(self.time), bool)
         settling = SETTLING if self.axes[self.free_axes].all() else SETTLING_UNREAD
         for (first, last), (a, _) in zip(self.innovation_segments, self.segments, strict=True):
@@ -211,13 +221,13 @@ def prepare_run(
     free: Array,
     kept: Recent | None = None,
 ) -> ObservedRun:
-    """A run as the observer sees it; without usable stretches it has no segments.
+    """Prepare a run for the observer; without usable stretches it has no segments.
 
     Args:
-        stage: its poses on a uniform clock, before the filter; binned recordings as they are.
+        stage: its poses on a uniform clock, before the filter; a binned recording as it is.
         motion: the same run, filtered and differentiated.
         settings: the longest integration step, and how commands are held.
-        catalogue: effects that may act in it.
+        catalogue: the effects that may act in it.
         free: axes (6,) in which the vehicle can move.
         kept: where its drives are kept, perhaps with those of other runs.
     """
@@ -239,14 +249,17 @@ def prepare_run(
 
 
 def _lasts(motion: Motion, a: int, b: int) -> bool:
-    """Whether the stretch from sample or bin a to b - 1 is long enough."""
+    """Whether the stretch from sample or bin a to b - 1 is long enough to be observed."""
     if motion.binned:
         return bool(motion.time[b - 1] - motion.time[a] > MIN_STRETCH_SECONDS)
     return bool((b - a) * time_step(motion.time) > MIN_STRETCH_SECONDS)
 
 
 def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK) -> Array:
-    """Number of the block of time that each settled innovation lies in, over all runs."""
+    """Number (n,) of the block of time of each settled innovation, counted over all runs.
+
+    A block lasts `seconds`, and belongs to one run.
+    """
     parts, count = [np.arange(0)], 0
     for one in runs:
         number = (one.time[one.settled] / seconds).astype(int)

@@ -1,7 +1,7 @@
-"""The runs a model is judged by: what they can show, and whether that is enough."""
+"""The runs that a model is judged by: what they can show, and whether that is enough."""
 
 from dataclasses import dataclass, field, replace
-from typing import Mapping, Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -16,11 +16,15 @@ SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
 
 @dataclass(frozen=True, eq=False)
 class UsableRuns:
-    """Runs with something to observe, and s of settled readings.
+    """The runs that have a usable stretch, and what they can show. Axes go by name.
 
-    `still` axes that were measured, and none of them moved; `unmeasured` those nobody measured,
-    `locked_axes` those in which the vehicle cannot move. `lost`: s from which on a run is not
-    followed.
+    Attributes:
+        runs: these runs.
+        still: axes that were measured, along which the vehicle hardly moved.
+        unmeasured: axes that nobody measured.
+        locked_axes: axes in which the vehicle cannot move.
+        seconds: of settled readings in all runs.
+        lost: by run id, the time in s from which on a run is left out, as the model diverges.
     """
 
     runs: tuple[ObservedRun, ...]
@@ -37,22 +41,22 @@ class UsableRuns:
 
     @property
     def moved(self) -> tuple[str, ...]:
-        """Axes about which something can be said."""
+        """Axes that were measured and moved: only about these something can be said."""
         silent = (*self.still, *self.unmeasured, *self.locked_axes)
         return tuple(axis for axis in AXES if axis not in silent)
 
     def where_no_water_wanders(self) -> "UsableRuns":
-        """The same runs, in which that is not looked for."""
+        """The same runs, in which no wandering current is looked for."""
         return replace(self, runs=tuple(replace(run, current_may_drift=False) for run in self.runs))
 
 
 def select_usable(
     train: Sequence[ObservedRun], lost: Mapping[str, float] | None = None
 ) -> UsableRuns:
-    """The train runs that have a usable stretch; `lost` are s from which on one is not followed."""
+    """Select the train runs that have a usable stretch; for `lost` see `UsableRuns`."""
     runs = tuple(run for run in train if len(run.segments))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
-    free, measured, moved = _ask(runs)
+    free, measured, moved = _find_axes(runs)
     still, unmeasured, locked = measured & free & ~moved, free & ~measured, ~free
     return UsableRuns(runs, _name(still), _name(unmeasured), _name(locked), seconds, lost or {})
 
@@ -61,11 +65,19 @@ def _name(axes: Array) -> tuple[str, ...]:
     return tuple(np.array(AXES)[axes].tolist())
 
 
-def _ask(runs: Sequence[ObservedRun]) -> tuple[Array, Array, Array]:
-    """Axes (6,) free to move, measured in some run, and moved in some."""
+class _Axes(NamedTuple):
+    """Axes (6,) in which the vehicle can move, that were measured, and that moved, in any run."""
+
+    free: Array
+    measured: Array
+    moved: Array
+
+
+def _find_axes(runs: Sequence[ObservedRun]) -> _Axes:
+    """What the axes do in these runs."""
     free, measured, moved = (np.zeros(len(AXES), bool) for _ in range(3))
     for run in runs:
         free |= run.free_axes
         measured |= find_measured(run.motion.measured)
         moved |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
-    return free, measured, moved
+    return _Axes(free, measured, moved)
