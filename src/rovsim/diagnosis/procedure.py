@@ -108,7 +108,7 @@ def _summarise(explained: Explanation) -> TrainDiagnosis:
     named = [*camera, *(doubt_lead(terms) if camera else terms)]
     stand_ins = find_stand_ins(named, law.beside) if law else set()
     named = doubt_names(named, stand_ins)
-    proposed = law if law and law.whole else None
+    proposed = law if law and law.complete else None
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:

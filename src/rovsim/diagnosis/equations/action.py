@@ -1,4 +1,4 @@
-"""Where a law acts, how strongly, and whether something is left there."""
+"""On which axis a law acts, how strongly, and whether structure is left there."""
 
 from typing import NamedTuple, Sequence
 
@@ -18,14 +18,19 @@ from rovsim.simulation.measured_states import undo_mocap_view
 
 
 class Action(NamedTuple):
-    """RMS of each term in N or N m, and the axis where they stand out most from the disturbance."""
+    """How strongly a law acts.
+
+    Attributes:
+        sizes: RMS of each of its terms, N or N m.
+        axis: on which the whole law stands out most from the disturbance.
+    """
 
     sizes: tuple[float, ...]
     axis: str
 
 
 def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
-    """Of the law of a fitted hypothesis, where runs were measured."""
+    """How strongly the law of a fitted hypothesis acts at the measured states of runs."""
     bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
     each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
     whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
@@ -33,14 +38,14 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
     return Action(tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.disturbance_std))])
 
 
-def is_half(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
-    """Whether something is left on the axis of a law, `margin` times what chance allows."""
+def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
+    """Whether a fit leaves structure on an axis: more than `margin` times what chance allows."""
     left = find_structure(fit, bank)
     return any(one.axis == axis and one.times_limit > margin for one in left)
 
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
-    """Accelerations (k, n, 6) that each effect adds to a model where a run was measured."""
+    """Accelerations (k, n, 6) that k effects add to a model at the measured states of a run."""
     state = undo_mocap_view(model, run.motion).state[run.innovation_samples]
     known = np.isfinite(state).all(axis=1)
     index, states = run.innovation_samples[known], state[None, known]

@@ -1,4 +1,4 @@
-"""A law on top of what was selected, fitted."""
+"""A law that was fitted together with the effects beside it."""
 
 from dataclasses import dataclass, replace
 from typing import Iterable
@@ -10,9 +10,13 @@ from rovsim.estimation.observer.hypothesis import Term
 
 @dataclass(frozen=True, eq=False)
 class FittedLaw:
-    """A law on top of a hypothesis, fitted; `score` with the penalty of each of its numbers.
+    """A law that was fitted together with the effects beside it.
 
-    `rivals`: equations of laws that were tried in its place, and by how much less likely each is.
+    Attributes:
+        form: what the law is made of.
+        fit: of the law and these effects.
+        score: twice the log likelihood, less all penalties.
+        rivals: equations that were tried in its place, and by how much less likely each is.
     """
 
     form: Form
@@ -26,8 +30,10 @@ class FittedLaw:
         return get_law(self.fit.hypothesis)
 
     def beats(self, others: Iterable["FittedLaw"]) -> "FittedLaw":
-        """The same, with others as its rivals."""
-        ranked = sorted(others, key=lambda one: one.score)  # of the same equation the likeliest
+        """The same law, with other laws added to its rivals."""
+        ranked = sorted(
+            others, key=lambda one: one.score
+        )  # the likeliest of an equation comes last
         differences = {one.form.equation: self.score - one.score for one in ranked}
-        differences.pop(self.form.equation, None)  # from another place it came here
+        differences.pop(self.form.equation, None)  # the same law, fitted from another start
         return replace(self, rivals=(*self.rivals, *differences.items()))

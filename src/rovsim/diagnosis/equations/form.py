@@ -1,7 +1,7 @@
-"""A form of law: of what it is made, what it says, how it is written, and how it is made simpler.
+"""A form of law: what it is made of, what it says, how it is written, and how it is simplified.
 
-Some laws are products of what acts at the same instant, others remember. To the search, and to who
-reads what it found, they are alike.
+Some laws are products of states at the same instant, others have a memory or depend on the thrust.
+The search, and whatever shows its results, treats all forms alike.
 """
 
 from abc import ABC, abstractmethod
@@ -23,7 +23,19 @@ class Part:
 
 @dataclass(frozen=True)
 class Number:
-    """One parameter of a written effect: in which unit, and how sure; its range and its default."""
+    """One parameter of a law, as it is written into the file of an effect.
+
+    Attributes:
+        name: of the parameter.
+        unit: SI, as the catalogue writes it.
+        symbol: LaTeX.
+        value: fitted.
+        std: standard deviation of the value.
+        scale: size of a change that is worth looking for.
+        low: least possible value; None where there is none.
+        high: greatest possible value; None where there is none.
+        default: value when it is not given; None where that is zero.
+    """
 
     name: str
     unit: str
@@ -37,51 +49,64 @@ class Number:
 
 
 def stated(value: float) -> float | None:
-    """A bound, if it is one."""
+    """A bound of a parameter; None where it is infinite."""
     return value if isfinite(value) else None
 
 
 class Form(ABC):
-    """What a law is made of; its values are those of the law itself, a term of a hypothesis."""
+    """What a law is made of; its values are in the law itself, which is a term of a hypothesis."""
 
     @property
     @abstractmethod
     def parts(self) -> tuple[Part, ...]:
-        """Its terms."""
+        """The terms of the law."""
 
     @property
     @abstractmethod
     def equation(self) -> str:
-        """In LaTeX."""
+        """The law in LaTeX."""
 
     @property
     @abstractmethod
     def meaning(self) -> str:
-        """In a sentence."""
+        """The law in a sentence."""
 
     @abstractmethod
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
-        """The free parameters of the law in the units of its equation; `std` of each by name."""
+        """The free parameters of a law in the units of its equation.
+
+        `std` holds their standard deviations by name, in the units of the law's effect.
+        """
 
     @abstractmethod
     def divide(self, law: Term) -> list[Effect]:
-        """Each of its terms by itself, as an effect."""
+        """Each term of a law by itself, as an effect."""
 
     @abstractmethod
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
-        """Python source of the law as an effect with that id; `story`: where it comes from."""
+        """Python source of the law as an effect.
+
+        Args:
+            name: id of the effect.
+            law: with its fitted values.
+            numbers: its parameters.
+            story: one line on where it comes from.
+        """
 
     def follow(self, h: Hypothesis) -> Hypothesis:
-        """The hypothesis with the law suited to what it stands beside."""
+        """Adapt the law to the other terms of the hypothesis, where it depends on them."""
         return h
 
     @abstractmethod
     def simplify(self, h: Hypothesis) -> list[tuple["Form", Hypothesis]]:
-        """The forms with one term less, and the hypothesis with the law so changed."""
+        """All forms with one term less, each with the hypothesis whose law is changed like that."""
 
 
 def split_law(h: Hypothesis) -> tuple[Hypothesis, Term | None]:
-    """A hypothesis without its law, and the law: the one effect that no catalogue lists."""
+    """Split a hypothesis into one without a law, and the law; None where it has none.
+
+    The law is the one effect that no catalogue lists.
+    """
     for i, term in enumerate(h.terms):
         if not term.effect.listed:
             return h.without(i), term
@@ -89,7 +114,7 @@ def split_law(h: Hypothesis) -> tuple[Hypothesis, Term | None]:
 
 
 def get_law(h: Hypothesis) -> Term:
-    """The law of a hypothesis that has one."""
+    """The law of a hypothesis that must have one."""
     found = split_law(h)[1]
     assert found is not None
     return found

@@ -1,4 +1,4 @@
-"""Laws fitted beside hypotheses, and what they are worth."""
+"""Fit laws beside the effects of a hypothesis, and judge what they are worth."""
 
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence, TypeVar
@@ -23,9 +23,11 @@ Key = TypeVar("Key")
 
 @dataclass(frozen=True, eq=False)
 class LawFits:
-    """Fits laws on top of hypotheses, about what was selected.
+    """Fits laws beside the effects of hypotheses.
 
-    `candidates`: so many terms there are to choose from, which sets the penalty of a number.
+    Attributes:
+        selection: where the search ended; its runs, filters and noise are used.
+        candidates: number of terms to choose from, which sets the penalty of a law's parameter.
     """
 
     selection: SearchResult
@@ -33,30 +35,34 @@ class LawFits:
 
     @property
     def workspace(self) -> SearchWorkspace:
-        """That of what was selected."""
+        """The workspace of the search."""
         return self.selection.workspace
 
     @property
     def runs(self) -> tuple[ObservedRun, ...]:
-        """What laws are fitted to."""
+        """The runs that laws are fitted to."""
         return tuple(self.workspace.bank.runs)
 
     @property
     def penalty(self) -> float:
-        """What a number of a law costs."""
+        """Penalty of a free parameter of a law, as a likelihood-ratio statistic."""
         return 2.0 * float(np.log(self.candidates))
 
     @property
     def chance(self) -> float:
-        """What the best of all terms explains by chance, with its penalty (Bonferroni's bound)."""
+        """What the best of all terms gains by chance, less its penalty (Bonferroni's bound)."""
         return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.penalty)
 
     def fit_unless_worse(
         self, form: Form, h: Hypothesis, current: Fit, score: float
     ) -> FittedLaw | None:
-        """A law, fitted with all else; None as soon as it surely does not come near a score.
+        """Fit a law and all else; None as soon as its score surely stays far below another.
 
-        `current`: a fit whose derivatives it may begin with.
+        Args:
+            form: of the law.
+            h: a hypothesis with the law.
+            current: a fit whose derivatives are taken at first.
+            score: to compare with.
         """
         start = form.follow(h)
         fitted = self.selection.fit_unless_worse(start, current, score + self._extra_penalty(start))
@@ -65,7 +71,10 @@ class LawFits:
     def fit_each(
         self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit, score: float = -np.inf
     ) -> dict[Key, FittedLaw]:
-        """Laws beside what is there, likeliest first; none far behind the others, or a score."""
+        """Fit several laws, the likeliest first in what is returned.
+
+        Laws that stay far behind the others, or far below `score`, are left out.
+        """
         fitted: dict[Key, FittedLaw] = {}
         for key, (form, h) in laws.items():
             best = max((score, *(one.score for one in fitted.values())))
@@ -78,11 +87,17 @@ class LawFits:
         return FittedLaw(form, fitted, score)
 
     def _extra_penalty(self, h: Hypothesis) -> float:
-        """What the numbers of a law cost more than those of the catalogue."""
+        """By how much the penalty of a law exceeds that of an effect with as many parameters."""
         return (self.penalty - self.workspace.penalty) * get_law(h).choices
 
     def is_worth(self, more: FittedLaw, less: Fit, score: float) -> bool:
-        """Whether it explains more than chance, and users would see it in some axis' windows."""
+        """Whether a law explains more than chance, and replays without it are clearly worse.
+
+        Args:
+            more: with the law.
+            less: without the law.
+            score: of `less`.
+        """
         if more.score - score < self.chance:
             return False
         return bool(self.workspace.find_relevant(more.fit, [less.hypothesis.model])[0])
@@ -90,9 +105,10 @@ class LawFits:
     def find_likeliest(
         self, laws: Mapping[Key, tuple[Form, Hypothesis]], beside: Fit
     ) -> FittedLaw | None:
-        """The likeliest of laws to which nothing is added, if it is worth anything.
+        """The likeliest of several complete laws, with the others as its rivals.
 
-        None either where all stay far behind what was selected: such a law never takes its place.
+        None where it is not worth its penalty beside the fit `beside`, or where all laws stay far
+        behind the accepted effects, so that none could take their place.
         """
         selected = self.workspace.score(self.selection.best)
         best, *others = self.fit_each(laws, beside, selected).values() or (None,)
@@ -103,5 +119,5 @@ class LawFits:
     def project(
         self, fit: Fit, candidates: Sequence[Any], middle: Array, wrenches: Wrenches = push
     ) -> Columns:
-        """All candidate terms against what a fit leaves; see `columns.project`."""
+        """Columns of candidate terms and what a fit leaves; see `columns.project`."""
         return project(candidates, fit, self.workspace.bank, middle, wrenches)

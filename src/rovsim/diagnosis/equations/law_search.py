@@ -1,4 +1,4 @@
-"""From what is left to an equation, or to none."""
+"""Search for the law that explains most of what the accepted effects leave."""
 
 from dataclasses import replace
 from typing import Iterator, Sequence
@@ -6,7 +6,7 @@ from typing import Iterator, Sequence
 import numpy as np
 
 from rovsim import AXES
-from rovsim.diagnosis.equations.action import find_action, is_half
+from rovsim.diagnosis.equations.action import find_action, leaves_structure
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
@@ -20,16 +20,18 @@ from rovsim.estimation.candidates import list_means
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
-HALF_LAW_MARGIN = 2.0  # times what chance allows: no fit to all runs brings so much below it
-THRUST_LAWS_TRIED = 4  # those that explain most to first order
-NEAR = 0.5  # of what products explain: laws of the thrust that may reach so much are fitted
+HALF_LAW_MARGIN = 2.0  # times what chance allows: a fit to all runs does not change so much
+THRUST_LAWS_TRIED = 4  # laws of the thrust that are fitted: those best to first order
+NEAR = 0.5  # of what products explain: a law of the thrust that may reach less is not fitted
 
 
 def search_laws(selection: SearchResult) -> FittedLaw | None:
-    """The likeliest law beside what was selected, or in place of it; None where all may be chance.
+    """Search for the likeliest law beside the accepted effects, or in their place.
 
-    None either where an axis in which the vehicle can move is read now and then, or never: filters
-    have another clock there.
+    Returns:
+        The law with its rivals. None where chance may explain all laws, where the accepted effects
+        without a law are likelier, or where some axis in which the vehicle can move is not read at
+        every reading, for its filter then runs at another rate.
     """
     runs, fit = selection.workspace.bank.runs, selection.best
     terms = list_terms(runs)
@@ -45,7 +47,7 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     laws += [law for start in starts for law in _fit_memory_laws(fits, start)]
     grown = [law for law in laws if law is not None]
     if all(_is_surely_half(fits, one) for one in _keep_close(grown)):
-        return None  # which effects it can spare need not be known
+        return None  # so nothing needs to be known of the effects that a law makes unnecessary
     finished = sorted((_finish(fits, one) for one in grown), key=lambda one: -one.score)
     if not finished or finished[0].score <= selection.workspace.score(fit):
         return None
@@ -59,7 +61,7 @@ def is_seen(selection: SearchResult) -> bool:
 
 
 def _fit_memory_laws(fits: LawFits, start: Hypothesis) -> Iterator[FittedLaw | None]:
-    """Of each form with a memory the likeliest, if it is worth anything."""
+    """For each form with a memory the likeliest law; None for a form that explains too little."""
     axes = np.logical_and.reduce([run.axes for run in fits.runs])
     moving = [AXES[i] for i in np.flatnonzero(axes)]
     means = list_means(fits.runs, start.base.vehicle)
@@ -73,7 +75,7 @@ def _fit_memory_laws(fits: LawFits, start: Hypothesis) -> Iterator[FittedLaw | N
 
 
 def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
-    """The likeliest law of the thrust, where it may come near to what products explain."""
+    """The likeliest law of the thrust; None where products of states explain far more."""
     fit = fits.selection.fit(start)
     score = fits.workspace.score(fit)
     terms = list_thrust_terms(fits.runs, fit.hypothesis.model)
@@ -92,19 +94,19 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
 
 
 def _keep_close(grown: Sequence[FittedLaw]) -> list[FittedLaw]:
-    """Laws that may be the likeliest once they are finished."""
+    """Laws that may be the likeliest once they are simplified."""
     most = max((one.score for one in grown), default=0.0)
     return [one for one in grown if one.score > most - HOPELESS_LR]
 
 
 def _is_surely_half(fits: LawFits, grown: FittedLaw) -> bool:
-    """Whether a law leaves so much on its own axis that it cannot hold."""
+    """Whether a law leaves so much structure on its own axis that it cannot be complete."""
     action = find_action(grown.form, grown.fit, fits.runs)
-    return is_half(action.axis, grown.fit, fits.workspace.bank, HALF_LAW_MARGIN)
+    return leaves_structure(action.axis, grown.fit, fits.workspace.bank, HALF_LAW_MARGIN)
 
 
 def _finish(fits: LawFits, grown: FittedLaw) -> FittedLaw:
-    """Without effects of the catalogue that the law has made idle, and terms it can spare."""
+    """Remove effects that the law has made unnecessary, and terms that it does not need."""
     current = grown
     while True:
         h, form = current.fit.hypothesis, current.form
@@ -114,12 +116,12 @@ def _finish(fits: LawFits, grown: FittedLaw) -> FittedLaw:
         best = max(filter(None, tried), key=lambda one: one.score, default=None)
         if best is None or best.score < current.score:
             return current
-        # rivals of a term that went are rivals of nothing
+        # a law with a term less has no rivals yet: those of the longer law competed with that term
         current = replace(best, rivals=current.rivals if best.form is form else ())
 
 
 def _list_idle(fits: LawFits, fit: Fit) -> list[int]:
-    """Effects of the catalogue that to first order are not needed: others surely stay."""
+    """Effects of the catalogue (by number) that may be unnecessary, judged to first order."""
     h, idle = fit.hypothesis, []
     for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
         most = HOPELESS_LR + 2.0 * fits.workspace.penalty * len(own)

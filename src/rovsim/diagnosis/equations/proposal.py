@@ -1,4 +1,4 @@
-"""A law that holds: its values on all runs, what it is worth, and how it is written."""
+"""Propose a law for what the accepted effects leave: whether one holds, and what it is worth."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,7 +6,7 @@ from typing import Callable, NamedTuple, Sequence
 
 from rovsim.core.extras import installed
 from rovsim.core.model_names import PROPOSED
-from rovsim.diagnosis.equations.action import find_action, is_half
+from rovsim.diagnosis.equations.action import find_action, leaves_structure
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.law_search import search_laws
@@ -27,10 +27,15 @@ MIN_ERROR_REDUCTION = 0.05  # of the error of replays: less is not worth an equa
 
 
 class Catalogued(NamedTuple):
-    """The best that the catalogue can do, of the `whole` runs, and of what it was `chosen` by."""
+    """The best models without a law: effects of the catalogue alone.
 
-    whole: Model
-    chosen: Model
+    Attributes:
+        on_all_runs: with values fitted to all train runs.
+        on_chosen: with values fitted to the stretches that the effects were chosen on.
+    """
+
+    on_all_runs: Model
+    on_chosen: Model
 
 
 Polish = Callable[[Fit], tuple[Fit, FilterBank]]
@@ -38,13 +43,18 @@ Polish = Callable[[Fit], tuple[Fit, FilterBank]]
 
 @dataclass(frozen=True, eq=False)
 class ProposedLaw:
-    """A law of this form, fitted with all else to all train runs.
+    """A law, fitted to all train runs together with the effects that act beside it.
 
-    `error_reduction`: share of the base's error in 2 s windows that it removes on top of all else;
-    `sizes` N or N m, RMS of each term; `axis` on which it acts most; `rivals`: equations that were
-    tried in its place, and by how much less likely each is; `beside`: effects of the catalogue that
-    act with it; `whole`: whether nothing but noise is left on its axis. Half a law is no equation
-    to propose, and tells all the same which names it makes unnecessary.
+    Attributes:
+        form: what the law is made of.
+        fit: of the law and these effects.
+        error_reduction: share of the base's error in 2 s windows that the law removes in addition.
+        sizes: RMS of each of its terms, N or N m.
+        axis: on which it stands out most from the disturbance.
+        rivals: equations that were tried in its place, and by how much less likely each is.
+        beside: the effects that act beside it.
+        complete: whether nothing but noise is left on its axis. A law that leaves more is not
+            proposed, but it still shows which accepted effects are unnecessary.
     """
 
     form: Form
@@ -54,16 +64,16 @@ class ProposedLaw:
     axis: str
     rivals: tuple[tuple[str, float], ...]
     beside: tuple[Named, ...]
-    whole: bool = True
+    complete: bool = True
 
     @property
     def law(self) -> Term:
-        """The law, as the engine knows it."""
+        """The law as a term of the hypothesis."""
         return get_law(self.fit.hypothesis)
 
     @property
     def model(self) -> Model:
-        """All that was found, with the law."""
+        """The base with all accepted effects and the law."""
         return self.fit.hypothesis.model.called(f"+{PROPOSED}")
 
     @cached_property
@@ -87,21 +97,20 @@ def propose_law(
     polish: Polish,
     camera: Sequence[Named],
 ) -> ProposedLaw | None:
-    """An equation for what is left; None where none holds.
+    """Propose a law for what the accepted effects leave; None where no law holds.
 
-    A law holds if it gains more than the best of so many terms would by chance, if it helps on
-    blocks it was not fitted to, if the runs are replayed better with it than by the best that the
-    catalogue can do, and the stretches that were kept apart no worse. It is `whole` if nothing is
-    left on its axis but noise.
+    A law holds if it explains more than the best of all candidate terms would by chance, if it
+    helps on blocks of time that it was not fitted to, if all runs are replayed better with it than
+    with effects of the catalogue alone, and the held-out stretches no worse.
 
     Args:
-        selection: what the search selected.
-        best: models of catalogued effects that a law must better.
+        selection: where the search ended.
+        best: the best models without a law.
         base: the model that is diagnosed.
-        holdout: stretches that were kept apart.
+        holdout: judges replays of the held-out stretches.
         runs: all train runs.
-        polish: fits once more to all runs.
-        camera: what the camera does, as an effect, where it does something.
+        polish: fits a hypothesis once more to all of them.
+        camera: the filter of the cameras as an effect; empty where they do not smooth.
     """
     if not installed("equations"):
         return None
@@ -112,14 +121,14 @@ def propose_law(
     if not fit.is_finite:
         return None
     action = find_action(judged.form, fit, runs)
-    whole = not is_half(action.axis, fit, bank)
+    complete = not leaves_structure(action.axis, fit, bank)
     bare = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
     start, before, after = (or_nan(e) for e in errors)
     beside = (*camera, *(one for one in name_terms(fit, ()) if one.term.effect.listed))
     share = (before - after) / start
     return ProposedLaw(
-        judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside, whole
+        judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside, complete
     )
 
 
@@ -130,6 +139,6 @@ def _holds(
     if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
         return False
     law = judged.fit.hypothesis.model
-    return holdout.improves(law, best.whole, MIN_ERROR_REDUCTION) and holdout.keeps(
-        law, best.chosen
+    return holdout.improves(law, best.on_all_runs, MIN_ERROR_REDUCTION) and holdout.keeps(
+        law, best.on_chosen
     )
