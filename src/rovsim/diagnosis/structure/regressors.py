@@ -1,4 +1,4 @@
-"""What a force nobody named might vary with, and whether the remainder does."""
+"""Functions of state, place and time that an unknown force may follow, tested on the remainder."""
 
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
@@ -24,14 +24,14 @@ INDEPENDENT = 1e-6  # of a column's power: less is what was fitted already
 
 
 def earlier_states(run: ObservedRun) -> Array:
-    """States (n, 13) as measured a little before each reading; zero where nothing was measured."""
+    """States (n, 13) measured `EARLIER` s before each reading; zero where nothing was measured."""
     past = max(1, round(EARLIER / run.period))
     at = np.clip(run.innovation_samples - past, 0, len(run.motion.time) - 1)
     return np.nan_to_num(run.motion.state[at])
 
 
 def tabulate(run: ObservedRun) -> dict[str, Array]:
-    """Functions (n,) of state, place and time at the readings of one run, by their names."""
+    """Values (n,) of all functions at the readings of one run, by the name a person reads."""
     state = earlier_states(run)
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
@@ -44,7 +44,7 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
         table[f"attitude ({name})"] = x - np.mean(x)
     for name, x in zip(("north", "east", "down"), np.swapaxes(R, 1, 2)[:, :, 0].T, strict=True):
         table[f"heading ({name})"] = x
-    # water that streams otherwise in another place, or a force there, seen from a body that turns
+    # a flow or a force that differs from place to place, in the axes of a body that turns
     for heading, side in product(("north", "east"), repeat=2):
         along = table[f"place along {side}"] * table[f"heading ({heading})"]
         table[f"place along {side} times heading ({heading})"] = along
@@ -52,7 +52,7 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
 
 
 def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
-    """Functions (n,) of the velocities (n, 6) alone."""
+    """Values (n,) of functions of the velocities (n, 6) alone."""
     table = {}
     for i, axis in enumerate(AXES):
         v = nu[:, i]
@@ -73,10 +73,13 @@ def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Dependence:
-    """How much of what is left on an axis goes with a function of state, place or time.
+    """How much of the remainder on an axis follows one function of state, place or time.
 
-    `statistic`: chi-square of what it explains; `size`: RMS of that push in m/s2 or rad/s2;
-    `taken`: the share of the function's power that parameters which were fitted could have taken.
+    Attributes:
+        name: of the function.
+        statistic: chi-square of what it explains.
+        size: RMS of that push, m/s2 or rad/s2.
+        taken: share of the function's power that the fitted parameters could have explained.
     """
 
     name: str
@@ -88,7 +91,7 @@ class Dependence:
 def find_dependence(
     residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
 ) -> Iterator[Structure]:
-    """Functions of state, place and time, each with one factor for all runs."""
+    """Functions that the remainder follows beyond chance, each with one factor for all runs."""
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
     for one in list_dependences(residual, tables):
         yield from residual.weigh(one.name, size=one.size, statistic=one.statistic, limit=limit)
@@ -97,7 +100,7 @@ def find_dependence(
 def list_dependences(
     residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
 ) -> Iterator[Dependence]:
-    """The same, all of them, whether beyond chance or not."""
+    """How far the remainder follows each of the functions, whether that is beyond chance or not."""
     target, fitted = np.concatenate(residual.white), residual.fitted
     basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
     blocks = number_blocks(residual.runs) if residual.of_channels else None
@@ -114,13 +117,13 @@ def list_dependences(
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
         if blocks is not None:
-            # where errors last longer than the noise has it, what agrees with them agrees by chance
+            # errors that last longer than the noise model says agree with many functions by chance
             statistic /= find_inflation(own * (target - factor * own), power, blocks)
         yield Dependence(name, statistic, part, 1.0 - power / whole)
 
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
-    """v through a first-order lag, stretch by stretch."""
+    """A velocity (n,) through a first-order lag of `memory` s, in each stretch anew."""
     lag, out = LowPass((memory,)), np.empty_like(v)
     for first, last in run.innovation_segments:
         stretch = v[first:last, None]

@@ -1,4 +1,4 @@
-"""What is left on one axis after the best model, and how a push there would show in it."""
+"""What a fit leaves on one axis, and how a further push on that axis would show in it."""
 
 from dataclasses import dataclass
 from typing import Iterator, Sequence
@@ -21,21 +21,25 @@ from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-FALSE_ALARM = 0.002  # of all looks together, for each kind of structure
-MATTERS = 0.25  # of the disturbance's standard deviation: less does not show in any score
+FALSE_ALARM = 0.002  # of all tests of one kind of structure together
+MATTERS = 0.25  # of the disturbance's standard deviation: less changes no score
 # Disturbances of axes that nobody measured reach the others through couplings of the motion, and
 # sums of channels err together: what is left is not quite white. Of development recordings replayed
 # with the true model, three of 36 had a structure at 1.0 to 1.3 times the limit of white noise.
 CHANNELS = 1.5  # times the limit, where channels were measured and not full poses
-NOTICED = 1.0  # standard deviations: less of a push nobody sees, and to take it out costs readings
+NOTICED = 1.0  # standard deviations: to remove a smaller push would cost more than it does harm
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Something the remainder varies with.
+    """Something that the remainder depends on by more than chance.
 
-    `share` of the remaining disturbance's power; `times_limit`: its statistic, over what chance
-    allows; `moment`: it is a single push, for which no effect can stand in.
+    Attributes:
+        axis: by name.
+        what: the remainder depends on, as a person reads it.
+        share: of the remaining disturbance's power.
+        times_limit: its test statistic, over the limit that chance allows.
+        moment: whether it is a single push, in whose place no effect can be accepted.
     """
 
     axis: str
@@ -47,11 +51,18 @@ class Structure:
 
 @dataclass(frozen=True, eq=False)
 class AxisResidual:
-    """Whitened settled innovations (n_run,) of one axis, and the filter that made each run white.
+    """What a fit leaves on one axis.
 
-    `fitted` (k, n), over all runs, are their derivatives to what was fitted, whose directions are
-    not judged again; `disturbance_std` in m/s2 or rad/s2; `undecided` (n_run,): where nobody knows
-    whether a thruster turned; `unlogged` (n_run,): where thrusters follow a command that was lost.
+    Attributes:
+        axis: by name.
+        white: whitened settled innovations (n_run,) of each run.
+        fitted: derivatives (k, n) of these, over all runs, to the k fitted parameters. What lies
+            along them was explained already, and is not tested again.
+        runs: the runs.
+        filters: of each run, that whitened it.
+        disturbance_std: m/s2 or rad/s2.
+        undecided: mask (n_run,) of each run: where nobody knows whether a thruster turned.
+        unlogged: mask (n_run,) of each run: where thrusters follow a command that was lost.
     """
 
     axis: str
@@ -65,7 +76,7 @@ class AxisResidual:
 
     @property
     def of_channels(self) -> bool:
-        """Whether channels were measured in some run, and not full poses."""
+        """Whether in some run only channels were measured, not full poses."""
         return any(run.motion.measured is not None for run in self.runs)
 
     @property
@@ -73,21 +84,21 @@ class AxisResidual:
         return CHANNELS if self.of_channels else 1.0
 
     def respond(self, pushes: Sequence[Array]) -> Array:
-        """How pushes (n_run,) on the runs would show (n,) over all of them."""
+        """How pushes (n_run,) in m/s2 or rad/s2 would show in the whitened innovations (n,)."""
         each = zip(pushes, self.filters, self.runs, strict=True)
         return np.concatenate([respond(push, f, run) for push, f, run in each])
 
     def weigh(
         self, what: str, *, size: float, statistic: float, limit: float, moment: bool = False
     ) -> Iterator[Structure]:
-        """A structure where it is beyond chance, and large enough beside the disturbance.
+        """Yield a structure if it is beyond chance, and not negligible beside the disturbance.
 
         Args:
-            what: it varies with.
+            what: the remainder depends on.
             size: RMS of the push, m/s2 or rad/s2.
             statistic: chi-square of what it explains.
-            limit: what chance allows this to be.
-            moment: it is a single push.
+            limit: that chance allows, for white innovations.
+            moment: whether it is a single push.
         """
         limit *= self._margin
         if statistic > limit and size > MATTERS * self.disturbance_std:
@@ -96,7 +107,7 @@ class AxisResidual:
 
 
 def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
-    """How a push (n,) on one axis shows in the settled innovations of one run."""
+    """How a push (n,) on one axis, m/s2 or rad/s2, shows in a run's whitened innovations (m,)."""
     b, a = f.response
     out = np.empty(len(run.time))
     for first, last in run.innovation_segments:
@@ -105,9 +116,9 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
 
 
 def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
-    """What a fit leaves, axis by axis, without what a gap in the command log may have done.
+    """Split what a fit leaves by axis, and remove what gaps in the command log may have caused.
 
-    Axes that not every reading shows are left out: their filters have another clock.
+    Axes that some readings do not show are left out, for their filters run at another rate.
     """
     J = bank.whiten(fit.linearised.J, fit.noise)
     white = _split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
@@ -138,9 +149,15 @@ def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
 
 
 def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -> Array:
-    """Without what the vehicle did while the log does not say what it was told.
+    """Remove from whitened innovations what the vehicle did while lines of the log were lost.
 
-    Where it may have been `off` (g,) by enough to be noticed over lost lines (g, 2).
+    Args:
+        w: innovations (n,) of one axis of a run.
+        f: the filter of that axis.
+        run: the run.
+        lost: begin and end (g, 2) of each gap in the log, s since the first step.
+        off: by how much (g,) the acceleration may have been wrong in each, m/s2 or rad/s2. A gap
+            that made too small a difference is left as it is.
     """
     columns = []
     for (begin, end), by in zip(lost, off, strict=True):

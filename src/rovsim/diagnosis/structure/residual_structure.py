@@ -1,9 +1,9 @@
-"""What is left after the best model: does it still vary with something?
+"""Test whether what the best model leaves still depends on something.
 
-Shapes nobody named push on one axis: functions of state, command, place and time, spectral lines
-(also such as grow with speed squared), single kicks. How each would show in the innovations follows
-from the filter of its axis. One that explains more than chance allows, and enough to matter, is
-physics the catalogue does not have.
+Unknown forces on each axis are tried: functions of state, place and time, periodic forces (also
+such as grow with the speed squared), sudden pushes and single kicks. The filter of the axis says
+how each would show in the innovations. A force that explains more than chance allows, and enough to
+matter, is physics that the catalogue does not have.
 """
 
 from rovsim.diagnosis.structure.regressors import find_dependence, tabulate
@@ -15,7 +15,7 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 
 
 def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:
-    """Structures in the innovations of the final model beyond chance, most surprising first."""
+    """Structures in the innovations of a fit that are beyond chance, the most surprising first."""
     tables = [tabulate(run) for run in bank.runs]
     structures: list[Structure] = []
     for residual in split_by_axis(fit, bank):

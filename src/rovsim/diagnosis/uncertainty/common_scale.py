@@ -1,11 +1,11 @@
-"""One factor that thrust, inertia and drag share, where nothing of known size fixes it.
+"""A factor common to thrust, inertia and drag, where nothing of known size determines it.
 
 Newton's law holds as well for s M, s D, s g and s τ: a vehicle that is heavier, has more drag and
-stronger thrusters, all by the same factor, moves alike. Only what is not free fixes the factor: the
-weight beside a known centre of buoyancy, the dry mass, the thrust curve. Where inertia and drag
-were selected and the gain of the thrusters was not, their values are right up to the gain that was
-assumed. So the gain is freed once more, within what a vehicle file's is known to, and what it
-leaves open widens the intervals of all that would go with it.
+stronger thrusters, all by the same factor, moves in the same way. Only what is not fitted
+determines the factor: the weight beside a known centre of buoyancy, the dry mass, the thrust curve.
+Where inertia and drag were accepted and the gain of the thrusters was not, their values are only as
+right as the gain that was assumed. So the gain is freed once more, within the accuracy of vehicle
+files, and the intervals of all values that would follow it are widened.
 """
 
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.uncertainty.nuisance_parameters import leave_open
+from rovsim.diagnosis.uncertainty.nuisance_parameters import free_nuisance
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.estimation.file_effects import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
 from rovsim.estimation.fit import Fit
@@ -23,15 +23,17 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 INERTIA = ("added_mass", "payload")
 GAIN_NAME = f"{ThrusterGain.id}.{ONE_GAIN[0]}"
-UNKNOWN = 0.03  # relative standard deviation: a scale that is known better misleads nobody
-GOES_ALONG = 0.5  # of a value's variance comes from the scale
+UNKNOWN = 0.03  # relative standard deviation: a scale that is known better is not reported
+GOES_ALONG = 0.5  # of a value's variance: if more comes from the scale, the value is listed
 
 
 @dataclass(frozen=True)
 class CommonScale:
-    """A factor that the runs leave open: its relative `std`, and what goes along with it.
+    """A common factor that the runs do not determine.
 
-    `parameters` are `effect.parameter`.
+    Attributes:
+        std: its relative standard deviation.
+        parameters: as `effect.parameter`, whose values follow it.
     """
 
     std: float
@@ -39,11 +41,14 @@ class CommonScale:
 
 
 def include_scale(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
-    """A fit whose intervals hold the common scale as well, and the scale where it is unknown.
+    """Widen the intervals of a fit by what is unknown of the common scale.
 
     Args:
         fit: the final fit.
-        runs: those it was fitted to.
+        runs: that it was fitted to.
+
+    Returns:
+        The fit, and the scale; None where that is known.
     """
     if not _may_share(fit.hypothesis, runs):
         return fit, None
@@ -56,15 +61,15 @@ def include_scale(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSca
 
 
 def describe_fitted_scale(fit: Fit) -> CommonScale | None:
-    """The scale of a fit in which the gain of all thrusters is free; None where it is known."""
+    """The scale of a fit in which the common gain of the thrusters is free; None if it is known."""
     gain = fit.hypothesis.parameter_names.index(GAIN_NAME)
     variance = float(fit.covariance[gain, gain])
     return describe_scale(fit, variance, fit.covariance[gain] / variance)
 
 
 def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
-    """Variance of the gain once it is free, and how the parameters (k,) follow it, all scaled."""
-    opened = leave_open(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
+    """Free the gain: its variance, and how the k parameters follow it (k,), all scaled."""
+    opened = free_nuisance(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
     if opened is None:
         return 0.0, np.zeros(len(fit.std))
     told = max(float(opened.information[0, 0]), 0.0)
@@ -72,7 +77,13 @@ def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
 
 
 def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | None:
-    """The scale where it is unknown: `variance` of the gain, and how parameters (k,) follow it."""
+    """The scale of a fit; None where it is known.
+
+    Args:
+        fit: with intervals that include the scale.
+        variance: of the gain, scaled.
+        along: how the k parameters follow the gain (k,), scaled.
+    """
     names, std = fit.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(fit.covariance), 1e-300)
     moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
@@ -80,7 +91,7 @@ def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | Non
 
 
 def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:
-    """Whether inertia and drag were fitted to commands whose force nobody measured."""
+    """Whether inertia and drag were fitted, under commands whose force was not measured."""
     named = {term.id for term in h.terms}
     logged = {run.motion.commands.kind for run in runs}
     return (

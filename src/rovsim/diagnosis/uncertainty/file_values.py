@@ -1,22 +1,22 @@
-"""All of a vehicle file that is off, fitted together with what was selected.
+"""Fit all values of a loose vehicle file together with the accepted effects.
 
-What was selected was fitted as if the rest of the file were right. Where several of its effects
-were selected it is not, and what was left as it was draws the others away: thrust, inertia and
-drag share a factor that little but such numbers fixes. So in the end all that the file states is
-fitted, each number beside what is known of such files (`estimation/file_effects.py`). Then
-what is not sure, or nobody would miss, is left out again, at the gain that was found: the others
-take what it did, and their intervals stay those of all together. The gain itself stays where it is
-surely not what the file says, although replays without it are as good: the others were all off by
-one factor.
+The accepted effects were fitted as if the rest of the file were right. In a loose file it is not,
+and values that were not fitted pull the fitted ones away: thrust, inertia and drag share a factor
+that hardly anything else determines. So in the end all values of the file are fitted, with what is
+known of such files as a prior (`estimation/file_effects.py`). Then values are set back to the
+file's if they are not surely different, or if replays do not become worse. The other values follow,
+at the gain that was found, and their intervals stay those of the fit of all values. The gain itself
+is kept if it surely differs from the file's, although replays without it are as good: all other
+values would then be wrong by one factor.
 
-A file may also be wrong in a few things alone. Where the runs find all other drag and added mass to
-be what the file says, far closer than such files are known to be, it is right elsewhere, and what
-was selected stands. That is asked of all of them at once: Savage and Dickey's ratio of densities
-(Dickey 1971, Ann. Math. Stat. 42, 204), how much likelier the file's values are after the runs than
-before. What a file states as zero, as the ballast's place, is right in most files, and tells
-nothing of the others. The more was selected, the less is it likely that just the rest is right: as
-many numbers may be wrong as there are, each count as likely before, and all sets of one count alike
-(Scott & Berger 2010, Ann. Stat. 38, 2587).
+A file may also be wrong in a few values alone. If the runs find all other drag and added mass to be
+what the file says, far closer than such files usually are, the rest of the file is right, and the
+accepted effects stay as they are. This is decided for all of these values at once by Savage and
+Dickey's density ratio (Dickey 1971, Ann. Math. Stat. 42, 204): how much likelier the file's values
+are after the runs than before. Values that a file states as zero, such as the place of the ballast,
+are not used: they are right in most files. The more values were accepted, the less likely it is
+that just the rest is right: any number of values may be wrong, each number is as likely before the
+runs, and so are all sets of the same number (Scott & Berger 2010, Ann. Stat. 38, 2587).
 """
 
 from dataclasses import replace
@@ -40,16 +40,16 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.windows import score_windows
 
-TOLD = 0.7  # of what was known before: runs that leave more of it have told nothing
-MISSED = 0.01  # more error in 2 s windows, as a share: less, nobody would see
+TOLD = 0.7  # of the standard deviation before the runs: if more is left, they told nothing
+MISSED = 0.01  # share of the error in 2 s windows: if it grows by less, a value is not needed
 
 
 def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
-    """Whether the runs find the rest of a file right, beside what was selected of it.
+    """Whether the runs show that the rest of a file is right, beside the accepted effects.
 
     Args:
-        whole: all of the file, fitted.
-        selected: what was selected, as it was fitted.
+        whole: fit of all values of the file.
+        selected: the accepted effects, at their fitted values.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
     each = [(type(t.effect), p) for t in h.terms for p in t.parameters]
@@ -69,12 +69,15 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
 def settle_whole_file(
     whole: Fit, selected: Hypothesis, bank: FilterBank
 ) -> tuple[Fit, CommonScale | None]:
-    """The effects that were selected, others that would be missed, and the common scale.
+    """Keep the accepted effects, and file effects without which replays are worse.
 
     Args:
-        whole: all of the file, fitted.
-        selected: what was selected, as it was fitted.
-        bank: that of `whole`.
+        whole: fit of all values of the file.
+        selected: the accepted effects, at their fitted values.
+        bank: the filters of `whole`.
+
+    Returns:
+        The final fit, and the common scale; None where that is known.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
     untold = new & (whole.std > TOLD * know_file(selected, h).std)
@@ -97,9 +100,9 @@ def settle_whole_file(
 
 
 def _name_gain(whole: Fit) -> set[str]:
-    """The gain of all thrusters, if it is surely not what the file says.
+    """Id of the thrusters' gain, if its common value surely is not the file's; else nothing.
 
-    No replay would miss it: all others, wrong by its inverse, would make up for it.
+    Replays cannot decide this: all other values, wrong by its inverse, would compensate.
     """
     gain = mark_gain(whole.hypothesis)
     sure = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM, 1)
@@ -107,7 +110,7 @@ def _name_gain(whole: Fit) -> set[str]:
 
 
 def _share_gains(h: Hypothesis) -> Array:
-    """What each parameter (k,) has in the mean gain of the thrusters."""
+    """Weight of each of k parameters in the mean gain of the thrusters (k,)."""
     count = h.base.vehicle.thruster_count
     own = [f"{ThrusterGain.id}.{name}" for name in name_gains(count)]
     single = np.isin(h.parameter_names, own) / max(1, count)
@@ -115,9 +118,9 @@ def _share_gains(h: Hypothesis) -> Array:
 
 
 def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
-    """Without some parameters (k,); the others take what they did, but for the gain, which stays.
+    """Set the parameters of a mask (k,) back to the file's values; the others follow.
 
-    To first order: the mean of the others once those are known.
+    To first order: the others take their conditional mean. The common gain stays as it is.
     """
     h, V = whole.hypothesis, whole.covariance
     step = np.where(gone, h.absence - h.x, 0.0)
@@ -128,7 +131,7 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
 
 
 def _is_sure(whole: Fit, own: Array) -> bool:
-    """Whether some parameters (k,) are not what the file says, at the gain that was found."""
+    """Whether the parameters of a mask (k,) surely differ from the file, at the gain found."""
     h, V = whole.hypothesis, whole.covariance
     own = own & ~mark_gain(h)
     across = V[np.ix_(own, mark_gain(h))]
@@ -138,6 +141,6 @@ def _is_sure(whole: Fit, own: Array) -> bool:
 
 
 def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
-    """Their errors in 2 s windows; infinite where a model diverges."""
+    """Normalised errors of hypotheses in windows of 2 s; infinite where a model diverges."""
     errors = score_windows([one.model for one in hypotheses], bank.runs).normalised
     return [np.inf if error is None else error for error in errors]

@@ -1,4 +1,4 @@
-"""What values say of themselves: some are known only together, some might as well be absent."""
+"""Which fitted values are only known together with others, and which may as well be absent."""
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
@@ -12,7 +12,10 @@ DOUBT = 0.01  # chance of values as far from absence
 
 
 def group_joint_parameters(fit: Fit) -> list[list[str]]:
-    """Groups of parameters, as `effect.parameter`, the largest group first."""
+    """Groups of parameters that are only known together, the largest group first.
+
+    Parameters are named `effect.parameter`. In a group all are unsure, and strongly correlated.
+    """
     names, std = fit.hypothesis.parameter_names, np.maximum(fit.std, 1e-12)
     unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
     correlation = fit.covariance / np.outer(std, std)
@@ -23,9 +26,10 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
 
 
 def find_doubtful(fit: Fit) -> int | None:
-    """The term whose values are the likeliest to be those of its absence; None if none may be.
+    """The term that is the likeliest to be absent, by its number; None where all are surely there.
 
-    What is known only together with others is not doubtful: without it they would seem sure.
+    Terms that are only known together with others are not considered: without one, the others
+    would seem sure.
     """
     h = fit.hypothesis
     together = {name.split(".")[0] for group in group_joint_parameters(fit) for name in group}

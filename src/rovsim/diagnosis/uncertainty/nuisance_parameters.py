@@ -1,8 +1,8 @@
-"""What a fit would not know if further parameters were free, to first order.
+"""How much less sure a fit would be if further parameters were free, to first order.
 
-With H the information about all of them, s those fitted and n the further ones: the fitted follow
-by A = -H_ss^-1 H_sn where the further ones are not what was assumed, and the runs tell
-H_nn + H_ns A of these (Schur's complement).
+Let H be the information about all parameters, s the fitted ones and n the further ones. If the
+further ones differ from what was assumed, the fitted ones follow by A = -H_ss^-1 H_sn. The runs
+hold the information H_nn + H_ns A about the further ones (Schur's complement).
 """
 
 from dataclasses import dataclass
@@ -19,10 +19,13 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 
 @dataclass(frozen=True, eq=False)
-class LeftOpen:
-    """How the fitted (k,) follow further parameters (n,), `along` (k, n), all scaled.
+class NuisanceParameters:
+    """n further parameters beside k fitted ones, all scaled.
 
-    The runs give these `information` (n, n) and a `score` (n,); information^-1 score is likeliest.
+    Attributes:
+        along: how the fitted ones follow the further ones (k, n).
+        information: of the runs about the further ones (n, n).
+        score: slope (n,) of the log likelihood; their likeliest change is information^-1 score.
     """
 
     along: Array
@@ -30,8 +33,16 @@ class LeftOpen:
     score: Array
 
 
-def leave_open(fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> LeftOpen | None:
-    """What is open with more parameters free; None where the observer cannot hold such a model."""
+def free_nuisance(
+    fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]
+) -> NuisanceParameters | None:
+    """Linearise a fit with further parameters free; None where such a model diverges.
+
+    Args:
+        fit: with its k parameters.
+        freed: the same hypothesis with n further parameters free.
+        runs: that it was fitted to.
+    """
     bank = FilterBank.design(runs, fit.hypothesis.model, fit.noise)
     seen = bank.linearise(freed)
     if not seen.finite:
@@ -43,4 +54,6 @@ def leave_open(fit: Fit, freed: Hypothesis, runs: Sequence[ObservedRun]) -> Left
     rows = as_rows(J)
     H, slope = gram(rows), rows @ e.ravel()
     along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])
-    return LeftOpen(along, H[np.ix_(n, n)] + H[n][:, s] @ along, -slope[n] - along.T @ slope[s])
+    return NuisanceParameters(
+        along, H[np.ix_(n, n)] + H[n][:, s] @ along, -slope[n] - along.T @ slope[s]
+    )

@@ -1,10 +1,11 @@
-"""A vehicle file that is off in several ways is off in others, too little to be found.
+"""A loose vehicle file: its other values are probably wrong, too, by too little to be found.
 
-What was selected was fitted as if all the rest of the file were right. Where several of its effects
-were selected, the rest is taken for known as such files are (`estimation/file_effects.py`),
-and what that leaves open is added to the intervals: how far the rest is open beside the runs, and
-how far the runs draw it from what the file says. The gain of the thrusters is part of the rest: a
-mass that was left as it is would fix the common scale, and is as little known.
+The accepted effects were fitted as if the rest of the file were right. If several file effects were
+accepted, the rest is only known as well as such files are (`estimation/file_effects.py`). The
+intervals are then widened by two things: what the runs and this knowledge leave open of the rest,
+and how far the runs move it from what the file says. The gain of the thrusters belongs to the rest.
+If it did not, a mass that was not fitted would seem to determine the common scale, although it is
+no better known.
 """
 
 from dataclasses import replace
@@ -20,7 +21,7 @@ from rovsim.diagnosis.uncertainty.common_scale import (
     describe_scale,
     include_scale,
 )
-from rovsim.diagnosis.uncertainty.nuisance_parameters import leave_open
+from rovsim.diagnosis.uncertainty.nuisance_parameters import free_nuisance
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.least_squares import solve
@@ -28,18 +29,21 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 
 def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScale | None]:
-    """A fit whose intervals hold what the rest of the vehicle file may be off by, and the scale.
+    """Widen the intervals of a fit by what is unknown of the rest of the file, and of the scale.
 
-    Where less than several of its effects were selected, they hold the common scale alone.
+    Where the file is not loose, by what is unknown of the common scale alone.
 
     Args:
         fit: the final fit.
-        runs: those it was fitted to.
+        runs: that it was fitted to.
+
+    Returns:
+        The fit, and the common scale; None where that is known.
     """
     h = fit.hypothesis
     freed = free_rest(h)
     further = [name for name in freed.parameter_names if name not in h.parameter_names]
-    opened = leave_open(fit, freed, runs) if has_loose_file(h) and further else None
+    opened = free_nuisance(fit, freed, runs) if has_loose_file(h) and further else None
     if opened is None:
         return include_scale(fit, runs)
     spread = list_spreads(h, freed)
