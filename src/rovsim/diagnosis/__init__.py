@@ -1,17 +1,19 @@
 """Which physical effects a model lacks, how sure that is, and what is left unexplained.
 
-selection        which effects explain that: candidates, search, fits, what else they could be
-structure        is there structure in what is left?
-uncertainty      how sure values are
-checks           what is asked of the runs and of values
-equations        a law for what is left, where one holds
-answer           what was selected, validated, at its final values, and what that leaves
-explanation      what explains the runs: observed, searched, settled
-procedure        the same, finished and named: a whole diagnosis
-train_diagnosis  what comes of it
+The order is that of reading: what comes first does not need what follows.
+
+settings         how a diagnosis decides
+selection        which effects of the catalogue are accepted, and their rivals
+structure        tests whether what is left is noise
+uncertainty      widens intervals by what else may be wrong, such as the rest of the vehicle file
+checks           what the runs could not show, and values that make no sense
+equations        a law for what is left, where one holds; else the force in time
+answer           the accepted effects, validated, at their final values, and what they leave
+explanation      observes, searches and validates, again where an assumption was wrong
+train_diagnosis  all that was found on the train runs
+procedure        a whole diagnosis of the train runs: from explanation to train_diagnosis
 advice           what to record next
-result           what is written of it
-of_campaign      a campaign in, all that is reported out; test runs are opened here, once
-settings         how thorough
-apply            a model with the effects that were found
+result           the same as `diagnosis.json`
+of_campaign      diagnoses a campaign; opens the test runs, once, for the reported errors
+apply            makes a model file with the effects that a diagnosis found
 """

@@ -1,4 +1,4 @@
-"""A model and a campaign's runs in, everything that `rovsim diagnose` reports out."""
+"""Diagnose a model on a campaign: everything that `rovsim diagnose` reports."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,9 +37,12 @@ STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
-    """A diagnosis, and the conditions under which the model that was diagnosed fails.
+    """What a diagnosis of a campaign gives.
 
-    `effect_file`: source of the effect that it proposes, if it does.
+    Attributes:
+        diagnosis: as `diagnosis.json`.
+        where: conditions under which the base fails, as `where.json`.
+        effect_file: Python source of the law that is proposed; None where none is.
     """
 
     diagnosis: Diagnosis
@@ -47,7 +50,7 @@ class Diagnosed:
     effect_file: str | None = None
 
     def write(self, path: Path) -> None:
-        """Write the diagnosis, and beside it the effect that it proposes; an older one goes."""
+        """Write the diagnosis, and the proposed law beside it; without one, remove an older law."""
         law = law_beside(path)
         if self.effect_file is None:
             law.unlink(missing_ok=True)
@@ -66,7 +69,13 @@ def diagnose_campaign(
 ) -> Diagnosed:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors.
 
-    `failing` is told under which conditions the base fails as soon as that is known, at once.
+    Args:
+        runs: of the campaign.
+        base: the model that is diagnosed.
+        settings: how the diagnosis decides, and how runs are filtered and replayed.
+        catalogue: the effects that may be missing.
+        stage: is told the name of each step as it begins.
+        failing: is told under which conditions the base fails, as soon as that is known.
     """
     stage("reading")
     searched, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
@@ -89,7 +98,7 @@ def diagnose_campaign(
 def _look(
     base: Model, runs: Runs, settings: DiagnosisSettings
 ) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
-    """Where the base fails, and where train runs stand still; each run is sampled once."""
+    """Find where the base fails, and where vehicles stand still; each run is sampled once."""
     search = ConditionSearch(base, set(runs.splits.values()), settings)
 
     def sampled() -> Iterator[tuple[Motion, Samples]]:
@@ -107,10 +116,12 @@ def _look(
 def _climb(
     diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
 ) -> tuple[Ladder, Sequence[str]]:
-    """The base, the effects one after the other, and the noise floor, on the test runs.
+    """Make the ladder: errors of the base and with one effect more each, on the test runs.
 
-    Where a law is proposed, it and what is beside it come last, before the noise floor. Also the
-    test runs in which the base runs away.
+    A proposed law, with the effects beside it, comes after all effects; the noise floor is last.
+
+    Returns:
+        The ladder, and ids of the test runs in which the base diverges.
     """
     models, how = _list_models(diagnosis), settings.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
@@ -136,10 +147,10 @@ def _floor(
     catalogue: Catalogue,
     reached: float | None,
 ) -> float | None:
-    """What a perfect model would score; None where that cannot be estimated.
+    """The noise floor: the error of a perfect model; None where it cannot be estimated.
 
-    Part of what is taken for noise may be structure: a floor above what was reached, by more than
-    chance, is none.
+    Part of what is taken for noise may be physics. If the floor is above the error `reached`, by
+    more than chance, it is wrong.
     """
     if diagnosis.fit is None or reached is None:
         return None

@@ -1,8 +1,8 @@
-"""What is asked of the runs and of an answer's values.
+"""Checks of the runs, and of the values of an answer.
 
-standstills    does the vehicle stand still although the model would move?
-commanded      what could have been commanded, and never was?
-observability  which effects could these runs not show?
-wrong_units    which values are so far off that a unit may be wrong?
-noise_floor    what would a perfect model score?
+standstills    stretches in which the vehicle stands still although the model would move
+commanded      thrusters or axes that were never commanded
+observability  effects that these runs could not show
+wrong_units    values so far from the vehicle file that a unit may be wrong
+noise_floor    the error that a perfect model would have
 """

@@ -1,17 +1,17 @@
-"""An equation for what no effect of the catalogue explains, or the force in time where none is.
+"""A law for what no effect of the catalogue explains, or the force in time where none holds.
 
-form         what a law is, whatever it is made of
-products     laws that are sums of products of what acts at the same instant
-with_memory  laws that remember: a wake by axis, play of the thrusters
+effect_file  writes a law as a Python file that can be read and edited
+form         what every form of law can do
+fitted_law   a law that was fitted together with the effects beside it
+products     laws that are sums of products of states at the same instant
+with_memory  laws with a memory: a wake for each axis, play of the thrusters
 with_thrust  laws of the thrust: along one axis it pushes along another, or with the motion
-action       where a law acts, and whether something is left there
-effect_file  a law as a file that can be read and edited
-fitted_law   a law on top of what was selected
-law_fits     laws fitted beside hypotheses, and what they are worth
-law_search   the likeliest law: products, laws with a memory, laws of the thrust
-masked       a law that names of the catalogue stand in for
-proposal     whether it holds, and what it is worth
-disturbance  the force in time, where none does
-spectrum     how fast that force is
-describe     either of them as `diagnosis.json` says it
+action       on which axis a law acts, and whether structure is left there
+law_fits     fits laws, and judges what they are worth
+law_search   searches all forms for the likeliest law
+masked       finds a law that accepted effects stand in for
+proposal     whether a law holds, and what it is worth
+spectrum     how the power of a force is spread over frequencies
+disturbance  the force in time, where no law holds
+describe     a law or a force in time as `diagnosis.json` has it
 """

@@ -1,19 +1,19 @@
-"""Which effects explain what a model could not foresee.
+"""Which effects of the catalogue explain what the model does not predict.
 
-proposals            what each should explain, and what chance would seem to
-promising            which of them are worth a fit
-workspace            the runs, the columns, one noise for all; what is fitted already
-thresholds           where they may lie, which derivatives do not tell
-pruning              without what is not worth its penalty
-forward_selection    add, refit, swap, prune
-vehicle_file         a loose one explains as well what is rarer
-steady_current       or one that wanders?
-search_result        where that ended, and what else the effects could be
-filter_delay         beside what the camera does
-paired_comparison    errors of two models, window by window
-holdout_validation   stretches that took no part must be replayed no worse
-cross_validation     what does not help where it was not fitted goes
-cluster_robust       nor what few stretches of time make sure, where a velocity is not measured
-joint_fit            much is missing at once: all that could be wrong, then pruned
-ranking              each effect's worth, in order
+proposals           what each candidate explains to first order, and what chance would explain
+workspace           the runs, the candidates, one noise for all, and what was fitted already
+promising           which candidates are worth a fit
+pruning             removes free parameters that are not worth their penalty
+thresholds          finds values of thresholds by trying them, as derivatives do not lead there
+search_result       where a search ended: the accepted effects and their rivals
+steady_current      chooses between a steady current and one that wanders
+vehicle_file        a loose vehicle file competes with effects that are rarer
+forward_selection   the search: add, refit, swap, prune
+filter_delay        tells a late command from a filter of the cameras, which delays as well
+paired_comparison   compares errors of two models window by window
+holdout_validation  removes effects with which held-out stretches are replayed worse
+cross_validation    removes effects that do not help on blocks they were not fitted to
+cluster_robust      removes effects that only few blocks support, where a velocity is not measured
+joint_fit           where much is missing at once: fits everything that may be wrong, then prunes
+ranking             orders the accepted effects by the error that they remove
 """

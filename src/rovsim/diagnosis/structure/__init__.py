@@ -1,9 +1,9 @@
-"""Is there structure in what an answer leaves, or is it noise?
+"""Is what an answer leaves noise, or does it have structure?
 
+unknown_thrust      where the command log does not say what the thrusters did
 residual            what is left on one axis, and how a push there would show in it
-unknown_thrust      where the log does not say what the thrusters did
-regressors          does it vary with state, place or time?
-spectral_lines      does it come back?
-sudden_pushes       does it come at once?
-residual_structure  all of these together
+regressors          does it depend on state, place or time?
+spectral_lines      is it periodic?
+sudden_pushes       is it sudden?
+residual_structure  all of these tests together
 """

@@ -1,8 +1,8 @@
-"""How sure the values of an answer are: what further is not known makes them less so.
+"""How sure the values of an answer are, given what else may be wrong.
 
-identifiability      which values are known only together?
-nuisance_parameters  what would not be known if further parameters were free
-common_scale         does a factor of all forces stay open?
-rest_of_file         what does the rest of a loose vehicle file leave open?
-file_values          final values, where all of such a file is fitted with what was selected
+identifiability      which values are only known together, and which may as well be absent
+nuisance_parameters  how much less sure a fit would be with further parameters free
+common_scale         a factor of all forces and inertias that the runs do not determine
+rest_of_file         widens intervals by what is unknown of the rest of a loose vehicle file
+file_values          final values where all values of a loose vehicle file are fitted
 """
