@@ -1,13 +1,13 @@
-"""What the edges share.
+"""What the commands, the workbench, the notebook and the workflow share.
 
-conf_search        where Hydra looks
+conf_search        where Hydra looks for configuration
 sections           sections of the configuration that several steps take
-settings           what each command and rule takes of it
-configuration      composed once, by Hydra
-pipeline           the way of the data, one step a file
-study              the study as the workflow sees it, and each run of it held out once
-snakemake_job      what surrounds the script of a rule
+settings           the settings that each command and rule takes from the configuration
+configuration      composes the configuration with Hydra, in one place
+pipeline           the steps from raw files to results, one step a file
+study              the study as the workflow sees it; each run held out once
+snakemake_job      logging and errors around the script of a rule
 provenance         where a result came from
-tracking           MLflow
-export             a model written for another simulator
+tracking           MLflow runs of models and diagnoses
+export             writes a model for another simulator
 """

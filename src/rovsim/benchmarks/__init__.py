@@ -1,6 +1,6 @@
 """How fast it is, and whether physics hidden in a tank is found.
 
-blind    hide physics in the tank, ask what is missing, keep the score
-designs  do designed flights keep their promise?
+blind    hides physics in a tank, asks methods what is missing, and scores their answers
+designs  do designed flights tell what they promise?
 speed    how fast replay and inference are, beside other libraries
 """

@@ -1,30 +1,30 @@
-"""What every room needs and what needs nothing: errors, files, rotations, progress, runs.
+"""What all packages use, and what uses none of them: errors, files, rotations, progress, runs.
 
-errors          what was found, where, what was expected, what to do
+errors          errors that say what was found, where, what was expected, and what to do
 files           files that appear whole or not at all
 yaml_files      YAML, read safely and written
 array_files     arrays in `.npz` files, without pickle
 schema          typed sections of YAML
-mappings        nested mappings by dotted name
-names           names that people give
-model_names     what models are called
-signs           numbers below zero in text
+mappings        nested mappings by dotted names
+names           checks names that people give
+model_names     names of the built-in models
+signs           minus signs of numbers in text
 columns         text that fits a terminal
-progress        how far long work is, and the time that is left
+progress        how far long work is, and the time left
 axes            letters and units of the six axes
-horizons        how far replays look ahead
-run             which run a thing belongs to, what was commanded, where
+horizons        lengths of the windows of replays
+run             id, split and commands of a run, and the site it was recorded at
 pwm             pulses of a radio control, and what they command
 rotations       rotations and axis conventions
 odds            odds, as likelihood-ratio statistics and back
 normal          numbers of the normal distribution
-robust          statistics that a few wrong values do not move
-gauss_markov    noise that lasts: drawn from step to step, of unit variance
-bounded_cache   values that are made again where memory did not hold them
-collector       when Python collects, and what is given back to the system
-second_process  a second process for what needs other libraries
-termination     SIGTERM as Ctrl-C
+robust          statistics that a few wrong values do not change
+gauss_markov    noise with a correlation time, of unit variance
+bounded_cache   a cache with a limit: what it dropped is computed again
+collector       when Python collects garbage, and returns memory to the system
+second_process  a second process for work that needs other libraries
+termination     treats SIGTERM like Ctrl-C
 extras          packages that only some commands need
 shipped         files that come with rovsim
-making          when, from which commit and on which machine something is made
+making          when, from which commit and on which machine a result was made
 """

@@ -1,17 +1,17 @@
-"""The equation of motion. Knows no recording.
+"""The equation of motion of a vehicle, and all effects that may act in it. Knows no recording.
 
-model         a vehicle, effects that add, perhaps a trained residual
-model_file    the same as a file
-effect_entry  an effect as files name it
+model         a vehicle with effects that add up, and perhaps a trained residual
+model_file    reads and writes a model as YAML
+effect_entry  an effect as a model file has it
 catalogue     every effect that a model file can name and a diagnosis can find
-vehicle       what a vehicle file says, and the nominal effects it stands for
+vehicle       a vehicle file, and the nominal effects that it stands for
 effects       the effects, one family a file
 body          the constants of Fossen's equation, which effects fill in
 actuation     from logged commands to the force of each thruster over each step
-step_cuts     steps cut where a line of the log takes effect
+step_cuts     integration steps, cut where a line of the command log takes effect
 mocap_view    what the motion capture reports of a true motion
-low_pass      low-passes by which it smooths
-uncertainty   what a model leaves open
-engine        the equation, compiled
-learned       a trained residual inside the loop
+low_pass      the low-pass filters by which a motion capture may smooth
+uncertainty   how sure the fitted values of a model are
+engine        the equation of motion, compiled
+learned       a trained residual inside the integration loop
 """

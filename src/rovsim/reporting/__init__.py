@@ -1,14 +1,14 @@
-"""What is shown. Decides nothing, computes no physics.
+"""Figures, tables, sentences and pages. Decides nothing, computes no physics.
 
-report_data  what figures and reports show
-charts       the ladder and the conditions of error, for paper and screen
+report_data  all results that figures and reports can show
+charts       data of the ladder and of the conditions of error, for paper and screen
 figures      the figures, one a file
 tables       tables as CSV and LaTeX
-words        what numbers say, in sentences
+words        says in sentences what numbers mean
 wording      names and numbers as people write them
 units        units as people print them
 formula      equations as MathML
-html         the report
-pages        pages of docs/ with results in them
-catalogue    the catalogue page
+html         the report as one HTML file
+pages        writes results into pages of docs/
+catalogue    the page of the catalogue of effects
 """

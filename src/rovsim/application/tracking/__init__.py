@@ -2,9 +2,9 @@
 
 Runs are written under a lock, one writer at a time, so parallel jobs never find a locked database.
 
-runs          one run: its tags, parameters, metrics and files
-study         a study as runs
-diagnosis     a diagnosis as runs
+runs          one MLflow run: its tags, parameters, metrics and files
+study         a study as MLflow runs
+diagnosis     a diagnosis as MLflow runs
 ranking_view  how MLflow shows a campaign
 """
 

@@ -1,12 +1,12 @@
 """The command `rovsim`: one command a file in `commands`.
 
-main        one message and exit code 2 for input that cannot be used
-complaint   that message
-untaken     keys that a command has no use for
+main        the entry point: one message and exit code 2 for input that cannot be used
+complaint   how such a message looks
+untaken     refuses keys that a command has no use for
 dispatch    from composed settings to a command
 commands    the commands
-opening     the campaign of a command, and where it writes
-output      what it says, and where it may write
+opening     opens the campaign of a command, and finds where it writes
+output      prints results, as text or JSON
 sweep       a Hydra multirun, and one job of it
-completion  what the shell's Tab key asks
+completion  what the shell offers for the Tab key
 """

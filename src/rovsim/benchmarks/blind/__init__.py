@@ -2,24 +2,24 @@
 
 case         one case: what is hidden, and what an answer may say about it
 recipes      how strong each effect is when it is hidden
-field        cases with a vehicle file that is wrong everywhere, and cameras as they are
-recordings   recordings as other laboratories have them, of the vehicles in vehicles/
-outside      physics that no entry of the catalogue describes
-laws         smooth laws that the catalogue lacks, for the equations
+field        cases with a vehicle file that is wrong everywhere, and with imperfect cameras
+recordings   cases with recordings as other laboratories have them, of the vehicles in vehicles/
+outside      physics that the catalogue does not have
+laws         smooth laws that the catalogue does not have, for the search for equations
 suites       which cases there are
-flight       a case becomes a campaign of raw exports
+flight       makes a campaign of raw exports from a case
 independent  a second simulator that shares no physics with the first
-methods      who is asked
-asking       the project's own diagnosis
+methods      the methods that are asked
+asking       asks the project's own diagnosis
 sparse       the baseline: sparse regression
-library      the columns of that
-tuning       its thresholds
-run          cases are run, each once
-answers      what was answered, as it is kept
-score        one answer against the truth
-law_score    equations against the laws that were hidden
-calibration  is what answers claim of themselves true?
-summary      many scores put together
-tables       the tables of the page
-pictures     its pictures
+library      the library of columns of the sparse regression
+tuning       chooses the thresholds of the sparse regression
+run          runs each case once
+answers      an answer as it is kept on disk
+score        scores one answer against the truth
+law_score    scores proposed equations against the laws that were hidden
+calibration  are the probabilities and intervals of the answers right?
+summary      puts the scores of many cases together
+tables       tables of docs/benchmark_blind.md
+pictures     pictures of docs/benchmark_blind.md
 """

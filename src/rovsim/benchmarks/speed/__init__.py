@@ -1,11 +1,11 @@
 """How fast replay and inference are here, beside the libraries: one honest run, machines differ.
 
-data       what is learnt and asked
-libraries  the libraries' own calls
+data       what is learned and predicted
+libraries  how other libraries make the same predictions
 inference  latency of every way to predict
-replay     steps per second
+replay     integration steps per second
 accuracy   error against cost
-machine    how a control loop would run on this machine
+machine    how regularly a control loop would run on this machine
 tables     the table of docs/benchmark_speed.md
-plots      and its plots
+plots      plots of docs/benchmark_speed.md
 """

@@ -1,10 +1,10 @@
 """Where a model fails: its error by axis and condition, and what that says in plain language.
 
-conditions  in what condition the vehicle was, and what the model missed there
-bins        errors by bins of a condition, against chance
-findings    which condition explains the error, one after the other
-search      the runs of a campaign, searched
-lowered     what a change of the model does to its error, over a condition
-entries     what was found, as `where.json` holds it
-sentences   and as sentences
+conditions  the conditions that the vehicle was in, and the error there
+bins        errors in bins of a condition, compared with chance
+findings    finds the condition that explains most of the error, then the next
+search      searches all runs of a campaign
+lowered     how a change of the model changes its error over a condition
+entries     the findings as `where.json` has them
+sentences   the findings in sentences
 """

@@ -1,22 +1,22 @@
 """What is in files that nobody has described yet.
 
-gather         the files and bags that were named, also by their folder
-sniff          which format a file has, by what its readers declare
-contents       what it holds: motions, and what looks like commands
-look           that, by the readers of `recording`
-bags           in ROS 2 bags
-logs           in ArduPilot logs
-csv_files      in csv files
-other_numbers  their columns of numbers that are no measured channel
-headings       csv files whose columns have other names or units: a copy with ours
-command_names  what names say of commands: forces and moments, sticks, other units
-column_names   our channels in other words
-sizes          units that the size of the numbers tells
-time_units     that of times
-starts         when recordings began, by the headers of their files
-repeats        several runs or bodies in one file, stamps that are too coarse
-quaternions    numbered columns that may be one
-timing         rates, jitter, gaps
+gather         lists the files and bags that were named, or lie in named folders
+sniff          recognises the format of a file
+contents       what a file holds: motions, and what looks like commands
+look           looks into a file by the reader of its format
+bags           looks into ROS 2 bags
+logs           looks into ArduPilot logs
+csv_files      looks into csv files
+other_numbers  columns of a csv file that are numbers and no measured channel
+headings       copies a csv file whose columns have other names or units, with ours
+command_names  what names of columns say of commands: forces and moments, sticks, units
+column_names   other names of our channels
+sizes          finds units by the size of the numbers
+time_units     finds the unit of times
+starts         finds when recordings began, by the headers of their files
+repeats        refuses several runs or bodies in one file; tells stamps that are too coarse
+quaternions    refuses numbered columns that may be a quaternion
+timing         rates, jitter and gaps of times
 """
 
 from rovsim.intake.survey.contents import CommandCandidate, Contents, Track

@@ -2,31 +2,31 @@
 
 readers        the formats; a new one is a module here that declares its reader
 exports        what a reader returns
-attitudes      which quaternions and matrices are rotations
-signature      what stands at the start of the files of a format
+attitudes      finds quaternions and matrices that are no rotations
+signature      recognises a format by the start of a file
 qtm_tsv        Qualisys Track Manager
 motive_csv     OptiTrack Motive
 c3d            C3D with rigid bodies
 csv            measured channels in columns that name their units
-csv_checks     what its numbers cannot be
+csv_checks     refuses numbers that a measured channel cannot have
 commands_csv   commands in columns
 rosbag2        ROS 2 bags
 ardupilot      ArduPilot logs
 delimited      text in columns: names, separators, lines
-cells          what they hold: numbers, or "not measured"
-numbers        of whole columns
-named_columns  by their names; what is said where one is missing
-units          of columns, behind their names or in a line below
-times          a column of times
-dates          times that are dates
-foreign        errors of foreign libraries as one message
+cells          cells of text: a number, or "not measured"
+numbers        whole columns of numbers
+named_columns  columns by their names, and errors where one is missing
+units          units of columns, behind their names or in a line below
+times          reads a column of times
+dates          reads times that are dates
+foreign        turns errors of other libraries into one message
 channels       each kind of measurement at its own times
-commands       logged values become commands
-joined         several files of one run
-one_run        times that begin anew: two recordings
-tidying        sorted by time, each time once
-reading        from the files of a run to a recording
-repeated       poses that are those of the line before
+commands       turns logged values into commands
+joined         puts several files of one run together
+one_run        refuses a file whose times begin again: it holds two recordings
+tidying        sorts by time, and keeps each time once
+reading        reads the files of a run into a recording
+repeated       removes poses that only repeat the line before
 recording      a run as it was logged, before any filter
 """
 

@@ -1,16 +1,16 @@
-"""From poses on a camera clock to velocities and accelerations.
+"""From a recording to a motion: poses, velocities and accelerations on a clean clock.
 
 clock            uniform clocks, and the usable stretches on them
-outliers         frames that cannot be true
-neighbours       single ones that are not where their neighbours have them
-resample         poses on a uniform clock; long gaps stay gaps
-chosen_channels  which channels tell how a vehicle turned and moved
-on_clock         channels on a uniform clock
-track            a pose from whatever was measured of it
-measured         what that was
+outliers         finds frames that cannot be true
+neighbours       finds single frames that do not fit the frames beside them
+resample         puts poses on a uniform clock; long gaps stay gaps
+chosen_channels  chooses the channels that tell best how a vehicle turned and moved
+on_clock         puts channels on a uniform clock
+track            estimates a pose from whatever channels were measured
+measured         which parts of a motion were measured
 filter           zero-phase low-pass filters
 differentiate    body velocities and accelerations
 binned           recordings that come as means over bins
-motion           a run as all of that leaves it
-chain            the whole way, step by step
+motion           poses, and a motion with velocities and accelerations
+chain            all of these steps in order
 """

@@ -1,7 +1,7 @@
 """The report: one HTML file that needs nothing else, of a study or of a command's results.
 
 picture  figures inside the page
-report   the page
-folder   a command's figures and its page
-kept     pages that were in that folder before
+report   the page itself
+folder   writes the figures and the page of a command into a folder
+kept     pages that were in the folder before
 """

@@ -1,7 +1,7 @@
-"""A loose vehicle file: drag, added mass, buoyancy and gain of thrust that it states are off.
+"""A loose vehicle file, whose drag, added mass, buoyancy and thrust may all be a little wrong.
 
-loose_file       a special effect beside a file that may be off everywhere, to first order
-steps            what the file explains as well as something rarer
-whole_file       all of a loose file, fitted with what was selected
-special_effects  each judged beside that
+loose_file       judges a special effect beside all values of a loose file, to first order
+steps            removes special effects that the file explains about as well
+whole_file       fits all values of a loose file together with the accepted effects
+special_effects  judges each special effect beside such a fit
 """
