@@ -36,14 +36,19 @@ Stage: TypeAlias = Poses | Recording
 
 
 class SignalSettings(OutlierSettings):
-    """The whole chain; each part has a `kind` and that kind's own keys."""
+    """Settings of the whole chain: one section a step, with a `kind` and the keys of that kind."""
 
     resample: Resampling = Linear()
     filter: Filter = Butterworth()
     differentiate: Differentiation = Spline()
 
     def suited(self, motion: Poses | Motion) -> "SignalSettings":
-        """The same, with a filter that lets through no more than what was measured can show."""
+        """Lower the filter's cut-off to what the sampling of a run can show.
+
+        That is `Measured.cutoff` where only some channels were measured (the margin at the ends of
+        stretches then grows with the period of the cut-off), otherwise `HIGHEST` of the sampling
+        rate. Binned motions are not filtered: for them nothing changes.
+        """
         if motion.measured is None:
             return self._below_sampling(motion)
         cutoff = float(motion.measured.cutoff[0])
@@ -63,7 +68,7 @@ class SignalSettings(OutlierSettings):
 
     @property
     def reach(self) -> float:
-        """How far to either side a velocity looks, s: nearer to an end it is poorer."""
+        """Time in s to either side over which poses affect a velocity; near an end it is worse."""
         return self.filter.reach + self.differentiate.margin
 
 
@@ -77,7 +82,7 @@ def clean(recording: Recording, settings: SignalSettings) -> Motion:
 
 
 def resampled(recording: Recording, settings: SignalSettings) -> Stage:
-    """First stage: poses on a uniform clock. A binned recording passes unchanged.
+    """Carry out the first stage: poses on a uniform clock, or a binned recording unchanged.
 
     Raises:
         BadInput: nothing of the motion was measured.
@@ -90,21 +95,21 @@ def resampled(recording: Recording, settings: SignalSettings) -> Stage:
 
 
 def filtered(stage: Stage, settings: SignalSettings) -> Stage:
-    """Second stage: filtered poses. A binned recording passes unchanged."""
+    """Carry out the second stage: filter poses; a binned recording passes unchanged."""
     if isinstance(stage, Recording):
         return stage
     return filter_poses(stage, settings.suited(stage).filter)
 
 
 def differentiated(stage: Stage, settings: SignalSettings) -> Motion:
-    """Third stage: a motion, of either sort."""
+    """Carry out the third stage: turn filtered poses or a binned recording into a motion."""
     if isinstance(stage, Recording):
         return _at_level(bin_motion(stage))
     return _at_level(differentiate_poses(stage, settings))
 
 
 def _at_level(motion: Motion) -> Motion:
-    """With the depth about which it moved, where a vehicle that floats is at rest: the median."""
+    """Set `site.level`, the depth where a floating vehicle is at rest, to the median depth."""
     if not motion.usable.any():
         return motion
     level = float(np.median(motion.eta[motion.usable, 2]))
@@ -117,9 +122,10 @@ def read_stage(path: Path) -> Stage:
 
 
 def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
-    """Motion of poses that are filtered already; NaN velocities where they are not usable.
+    """Differentiate filtered poses to body velocities and accelerations.
 
-    `margin` seconds at either end of every stretch are no longer usable.
+    Both are NaN where poses are not usable, and zero in axes that were not measured. `margin`
+    seconds at either end of every stretch are not usable any more.
     """
     nu = np.full((len(poses.time), 6), np.nan)
     nu_dot = nu.copy()
@@ -151,7 +157,7 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
 def velocities(eta: Array, dt: float, settings: SignalSettings) -> tuple[Array, Array]:
     """Body velocity and acceleration (..., n, 6) of model poses (..., n, 7), `dt` s apart.
 
-    The same filter and derivative that the measurement went through. Quaternions must be
+    Filter and derivative are those that the measurement went through. Quaternions must be
     sign-continuous.
 
     Raises:

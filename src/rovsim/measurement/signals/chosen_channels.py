@@ -1,4 +1,4 @@
-"""Which channels tell how a vehicle turned and moved, the finest first."""
+"""Choose the channels from which attitude and position are taken, the least noisy first."""
 
 from dataclasses import dataclass
 from typing import Iterator, Mapping
@@ -15,9 +15,14 @@ OFTEN = 4.0  # Hz
 
 @dataclass(frozen=True, eq=False)
 class ChosenChannels:
-    """Channels by kind, the finest first: `turning` and `moving`, as late as they were measured.
+    """The chosen channels by kind, with times corrected for the delays of the sensors.
 
-    Those behind the first, but for a depth, say only how far what is summed up drifts.
+    The first channel of each mapping is the main source. If it is integrated (rates, velocity),
+    the later ones are used to correct its drift. A depth gives the coordinate z directly.
+
+    Attributes:
+        turning: channels that the attitude is taken from.
+        moving: channels that the position is taken from.
     """
 
     turning: Mapping[str, Channel]
@@ -25,18 +30,18 @@ class ChosenChannels:
 
     @property
     def all(self) -> dict[str, Channel]:
-        """All of them."""
+        """Both mappings in one."""
         return {**self.turning, **self.moving}
 
     @property
     def read(self) -> dict[str, Channel]:
-        """What is read: the first of each, and the depth."""
+        """The main channels: the first of each mapping, and the depth if it is used."""
         first = [*list(self.turning)[:1], *list(self.moving)[:1], "depth"]
         return {kind: channel for kind, channel in self.all.items() if kind in first}
 
 
 def choose_channels(recording: Recording) -> ChosenChannels:
-    """The channels that tell the motion of a recording."""
+    """Choose channels of a recording that have at least two samples."""
     delays = recording.sensors.delay_s.model_dump()
     known = {
         kind: Channel(channel.time - delays[kind], channel.value)
@@ -47,7 +52,7 @@ def choose_channels(recording: Recording) -> ChosenChannels:
 
 
 def doubt_delays(recording: Recording) -> Iterator[str]:
-    """What keeps a delay that a campaign gives from being used, in a sentence."""
+    """Yield a sentence where the campaign gives delays that are not used, and why they are not."""
     given = [kind for kind, delay in recording.sensors.delay_s.model_dump().items() if delay]
     idle = [kind for kind in given if recording.posed or kind not in recording.channels]
     if idle:
@@ -60,7 +65,7 @@ def doubt_delays(recording: Recording) -> Iterator[str]:
 
 
 def _choose_turning(known: Mapping[str, Channel]) -> dict[str, Channel]:
-    """Rates in front of attitudes that are seldom, rougher or without a yaw."""
+    """Channels of the attitude: rates first if attitudes are infrequent, noisier or lack yaw."""
     direct = [kind for kind in ("attitude", "euler") if kind in known][:1]
     rates = ["rates"] if "rates" in known else []
     if rates and direct and _heads(direct[0], known) and _suffices(known, direct[0], "rates"):
@@ -69,7 +74,10 @@ def _choose_turning(known: Mapping[str, Channel]) -> dict[str, Channel]:
 
 
 def _choose_moving(known: Mapping[str, Channel]) -> dict[str, Channel]:
-    """Velocities in front of positions that are seldom or rougher; depth where it is finer."""
+    """Channels of the position: velocities first if positions are infrequent or noisier.
+
+    The depth is left out where positions with a z are the main source and are less noisy.
+    """
     place, velocity, depth = ([k] if k in known else [] for k in ("position", "velocity", "depth"))
     if velocity and place and _suffices(known, "position", "velocity"):
         velocity = []
@@ -79,21 +87,28 @@ def _choose_moving(known: Mapping[str, Channel]) -> dict[str, Channel]:
 
 
 def _heads(kind: str, known: Mapping[str, Channel]) -> bool:
-    """Whether the yaw was measured."""
+    """Whether a channel of attitudes contains the yaw."""
     return kind == "attitude" or bool(np.isfinite(known[kind].value[:, 2]).any())
 
 
 def _suffices(known: Mapping[str, Channel], direct: str, rate: str) -> bool:
-    """Whether what is read comes often, and knows a change over a second better than a sum."""
+    """Whether a directly measured channel is as good a source as an integrated one.
+
+    It must come often enough, and its noise over a second must not exceed that of the integral.
+    """
     often = (known[direct].rate or 0.0) >= OFTEN
     return often and noise_density(known[direct]) <= noise_density(known[rate])
 
 
 def noise_density(channel: Channel) -> float:
-    """Noise of a channel over a second: that of a sample by the square root of the rate.
+    """Noise density of a channel: standard deviation of a sample over the square root of the rate.
 
-    The noise of a sample from its second differences, whose variance is 6 times its own. NaN where
-    there are none.
+    The noise of a sample is estimated from second differences, whose variance is 6 times that of
+    white noise.
+
+    Returns:
+        The density in the channel's unit (rad for quaternions) by root hertz; NaN with fewer than
+        three samples.
     """
     value = channel.value
     if len(value) < 3:

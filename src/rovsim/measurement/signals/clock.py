@@ -5,7 +5,7 @@ from numpy import ndarray as Array
 
 
 def uniform_clock(first: float, last: float, rate: float) -> Array:
-    """Times from `first`, 1 / `rate` apart, none after `last`."""
+    """Times (n,) s from `first` to at most `last`, 1 / `rate` apart."""
     return first + np.arange(int((last - first) * rate + 1e-6) + 1) / rate
 
 
@@ -29,7 +29,7 @@ def without_short(usable: Array, length: int) -> Array:
 
 
 def without_margins(usable: Array, samples: int) -> Array:
-    """`usable` (n,) with `samples` fewer at either end of every stretch."""
+    """`usable` (n,) with every stretch shortened by `samples` at either end."""
     kept = np.zeros_like(usable)
     for first, last in find_stretches(usable):
         kept[first + samples : max(last - samples, first + samples)] = True

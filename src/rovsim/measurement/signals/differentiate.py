@@ -27,7 +27,7 @@ class Spline(_Margin):
     def derivatives(self, x: Array, dt: float) -> tuple[Array, Array]:
         """First and second time derivative of `x` (..., time, channels)."""
         first, second, time = np.empty_like(x), np.empty_like(x), dt * np.arange(x.shape[-2])
-        for k in range(x.shape[-1]):  # a spline takes some ten times the room of its channel
+        for k in range(x.shape[-1]):  # one by one: a spline takes ten times its channel's memory
             spline = scipy.interpolate.CubicSpline(time, x[..., k], axis=-1)
             first[..., k], second[..., k] = spline(time, 1), spline(time, 2)
         return first, second
@@ -75,7 +75,15 @@ def differentiate_eta(eta: Array, dt: float, settings: Differentiation) -> tuple
     """Body velocity and acceleration (..., time, 6) of poses (..., time, 7), `dt` s apart.
 
     v = R^T p', v' = R^T p'' - omega x v, omega = 2 q* q' (Fossen 2021, sec. 2.2 and eq. 2.78).
-    Quaternions must be sign-continuous. Fewer than three samples give NaN.
+
+    Args:
+        eta: positions NED, m, and sign-continuous unit quaternions (w, x, y, z) from FRD to NED.
+        dt: time between samples, s.
+        settings: how components are differentiated.
+
+    Returns:
+        Velocities (m/s, rad/s) and accelerations (m/s2, rad/s2) of the body axes FRD; NaN with
+        fewer than three samples.
     """
     if eta.shape[-2] < 3:
         nothing = np.full((*eta.shape[:-1], 6), np.nan)

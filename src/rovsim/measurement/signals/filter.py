@@ -38,12 +38,12 @@ class Butterworth(Section):
     order: int = Field(default=3, ge=2, le=6)
 
     def below(self, cutoff: float) -> "Butterworth":
-        """The same with a cut-off of at most that many Hz."""
+        """This filter with its cut-off limited to that many Hz."""
         return self.model_copy(update={"cutoff": min(self.cutoff, cutoff)})
 
     @property
     def reach(self) -> float:
-        """How far to either side a smoothed sample looks, s."""
+        """Time in s to either side over which samples affect a smoothed one."""
         return REACH / self.cutoff
 
     def smoothed(self, x: Array, dt: float) -> Array:
@@ -80,13 +80,13 @@ class SavitzkyGolay(Section):
     degree: int = Field(default=3, ge=1, le=5)
 
     def below(self, cutoff: float) -> "SavitzkyGolay":
-        """The same with a half-power frequency of at most that many Hz, which is per window."""
+        """This filter with a window long enough for a half-power frequency of at most that (Hz)."""
         wider = max(1.0, HALF_POWER / (self.window * cutoff))
         return self.model_copy(update={"window": self.window * wider})
 
     @property
     def reach(self) -> float:
-        """How far to either side a smoothed sample looks, s."""
+        """Time in s to either side over which samples affect a smoothed one."""
         return 0.5 * self.window
 
     def smoothed(self, x: Array, dt: float) -> Array:
@@ -103,16 +103,16 @@ class Unfiltered(Section):
     kind: Literal["none"] = "none"
 
     def below(self, cutoff: float) -> "Unfiltered":
-        """Nothing else."""
+        """This filter, which has no cut-off to limit."""
         return self
 
     @property
     def reach(self) -> float:
-        """How far to either side a smoothed sample looks, s."""
+        """Time in s to either side over which samples affect a smoothed one: none."""
         return 0.0
 
     def smoothed(self, x: Array, dt: float) -> Array:
-        """Give back `x`."""
+        """Return `x` unchanged."""
         return x
 
 
@@ -152,7 +152,12 @@ def odd_window(seconds: float, dt: float, available: int) -> int:
 
 
 def _one_way(sos: Array, x: Array) -> Array:
-    """Filter (..., time, channels) along time from the state that a constant x[0] leaves."""
+    """Filter `x` (..., time, channels) forwards, starting from the steady state of a constant x[0].
+
+    Args:
+        sos: second-order sections (sections, 6), as `scipy.signal.butter` gives them.
+        x: the series.
+    """
     zi = scipy.signal.sosfilt_zi(sos)  # (sections, 2)
     x = np.moveaxis(x, -2, -1)
     state = zi.reshape(len(sos), *[1] * (x.ndim - 1), 2) * x[..., :1]
@@ -160,7 +165,10 @@ def _one_way(sos: Array, x: Array) -> Array:
 
 
 def _continued(x: Array, pad: int, fit: int) -> Array:
-    """`x` (..., time, channels) with `pad` samples more at either end, on fitted parabolas."""
+    """Extend `x` (..., time, channels) by `pad` samples at either end, along fitted parabolas.
+
+    Each parabola is the least-squares fit to the `fit` samples at that end.
+    """
     fit = min(fit, x.shape[-2])
     inside = np.arange(fit) / fit
     outside = -np.arange(pad, 0, -1) / fit

@@ -1,4 +1,4 @@
-"""What of a motion was measured, where it was not all of it."""
+"""Which components of a motion were measured, for runs without full poses."""
 
 from dataclasses import dataclass, replace
 from typing import Iterator, Mapping
@@ -13,11 +13,16 @@ NAMES = ("coordinates", "heading", "axes", "summed", "when", "cutoff")
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What was measured of a run of n samples; what was not is zero in its poses and velocities.
+    """Which components of a run of n samples were measured; the others are zero in its poses.
 
-    `coordinates` (3,) of the position NED; `heading` (1,) whether yaw; `axes` (6,) surge to yaw, in
-    which motion shows; `summed` (6,) those summed up from velocities; `when` (n, 6) samples at
-    which a reading came; `cutoff` (1,) Hz above which the slowest channel shows nothing.
+    Attributes:
+        coordinates: bool (3,), which of x, y and z NED are known, directly or by integration.
+        heading: bool (1,), whether the yaw angle is known.
+        axes: bool (6,), the axes surge to yaw in which the motion is known.
+        summed: bool (6,), which of x, y, z, roll, pitch and yaw are integrals of measured
+            velocities or rates.
+        when: bool (n, 6), for each axis the samples at which its main channel was read.
+        cutoff: (1,) Hz, the frequency above which the slowest channel shows nothing.
     """
 
     coordinates: Array
@@ -33,27 +38,27 @@ class Measured:
         return SHARE / float(self.cutoff[0])
 
     def part(self, at: slice) -> "Measured":
-        """Of some samples of the run."""
+        """The same of a slice of the samples."""
         return replace(self, when=self.when[at])
 
     def by_name(self) -> Iterator[tuple[str, Array]]:
-        """Arrays under the names that `from_names` knows."""
+        """Yield the arrays with the names under which `from_names` finds them."""
         for name in NAMES:
             yield f"measured.{name}", getattr(self, name)
 
     @staticmethod
     def from_names(arrays: Mapping[str, Array]) -> "Measured | None":
-        """Undo `by_name`; None where everything was measured."""
+        """Put together what `by_name` named; None where everything was measured."""
         if f"measured.{NAMES[0]}" not in arrays:
             return None
         return Measured(*(arrays[f"measured.{name}"] for name in NAMES))
 
 
 def find_measured(measured: Measured | None) -> Array:
-    """Which axes (6,) were measured."""
+    """Which axes, bool (6,) from surge to yaw, were measured; all of them for None."""
     return np.ones(6, bool) if measured is None else measured.axes
 
 
 def blank(measured: Measured | None, x: Array, value: float) -> Array:
-    """Velocities or accelerations (..., 6) with `value` where nothing was measured."""
+    """Velocities or accelerations (..., 6) with `value` in the axes that were not measured."""
     return x if measured is None else np.where(measured.axes, x, value)

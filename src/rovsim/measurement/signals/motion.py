@@ -1,4 +1,4 @@
-"""A run on a clean clock: poses, then velocities and accelerations."""
+"""A run on its processed clock: poses, and the motion with velocities and accelerations."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,11 +17,17 @@ BESIDE = 10.0  # s of the log kept on either side of a part: longer than any del
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses on a uniform clock.
+    """Poses of a run on a uniform clock.
 
-    `time` (n,) s; `eta` (n, 7): position NED m and unit quaternion (w, x, y, z), sign-continuous;
-    `usable` (n,): False in and beside gaps too long to bridge (`eta` there is a placeholder).
-    `measured`: what of it was, None: everything.
+    Attributes:
+        run: which run it is.
+        site: where it was recorded.
+        time: (n,) s.
+        eta: (n, 7), position in NED, m, and unit quaternion (w, x, y, z) from FRD to NED,
+            sign-continuous.
+        usable: bool (n,), False in and beside gaps too long to bridge (a placeholder in `eta`).
+        commands: what was commanded.
+        measured: which components were measured; None if all.
     """
 
     run: RunInfo
@@ -33,7 +39,7 @@ class Poses:
     measured: Measured | None = None
 
     def part(self, at: slice) -> "Poses":
-        """Some samples of it."""
+        """The poses of a slice of the samples."""
         return replace(
             self,
             time=self.time[at],
@@ -61,15 +67,23 @@ class Poses:
 class Motion:
     """A measured run, ready to be compared with a model.
 
-    `time` (n,) s; `eta` (n, 7) as in `Poses`; `nu`, `nu_dot` (n, 6) body velocity and acceleration
-    at CO in FRD (m/s, rad/s); `usable` (n,).
+    A sampled motion (`binned` False) has a uniform clock, every value holds at time[k], and
+    `state_nu` is `nu`. In a binned one `nu` is the mean over time[k] .. time[k+1], `nu_dot` the
+    backward difference of these means (NaN at k = 0), and `time` may be uneven.
 
-    Sampled (`binned` False): a uniform clock, everything holds at time[k] and `state_nu` is `nu`.
-    Binned: `nu` is the mean over time[k] .. time[k+1] (the last bin ends at `end`), `nu_dot` the
-    backward difference (NaN at k = 0), `time` may be uneven; `eta` and `state_nu` (n, 6) are the
-    instantaneous pose and velocity at time[k], from which a replay may start.
-
-    `measured`: what of it was, None: everything.
+    Attributes:
+        run: which run it is.
+        site: where it was recorded.
+        time: (n,) s.
+        eta: (n, 7), instantaneous pose at time[k], as in `Poses`.
+        nu: (n, 6), body velocity at CO in FRD, m/s and rad/s.
+        nu_dot: (n, 6), its rate of change, m/s2 and rad/s2.
+        state_nu: (n, 6), instantaneous velocity at time[k], from which a replay may start.
+        usable: bool (n,), whether a sample or bin may be compared with a model.
+        commands: what was commanded.
+        binned: whether velocities are means over bins.
+        end: time at which the last sample lies, or at which the last bin ends, s.
+        measured: which components were measured; None if all.
     """
 
     run: RunInfo
@@ -87,15 +101,19 @@ class Motion:
 
     @property
     def state(self) -> Array:
-        """Instantaneous state (n, 13): position, quaternion, velocity."""
+        """Instantaneous states (n, 13): position, quaternion, velocity."""
         return self.state_at(slice(None))
 
     def state_at(self, index: Array | slice) -> Array:
-        """The state (k, 13) of some samples or bins."""
+        """The states (k, 13) of the samples or bins at `index`."""
         return np.concatenate([self.eta[index], self.state_nu[index]], axis=1)
 
     def part(self, at: slice) -> "Motion":
-        """Some samples or bins of it, which know where in the recording they lie."""
+        """The motion of a slice of the samples or bins.
+
+        Its commands are those from `BESIDE` seconds before it to as long after it; their `before`
+        and `after` say how much of the recording lies on either side.
+        """
         names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
         arrays = {name: getattr(self, name)[at] for name in names}
         time, bins = arrays["time"], self.time[at.stop :]

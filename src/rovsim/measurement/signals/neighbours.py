@@ -1,4 +1,4 @@
-"""Single frames that are not where their neighbours have them."""
+"""Find single frames that are far from a cubic through their neighbours."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,14 @@ BRIDGED = 3.5  # steps: neighbours may be as far apart, two frames being lost be
 
 @dataclass(frozen=True, eq=False)
 class Neighbours:
-    """Two frames to either side of each of `time` (n,), and `weights` of the cubic through them.
+    """For each of n frames, the cubic through the two frames to either side of it.
 
-    `stop` (n,) s: that cubic misses a vehicle that stops dead at the frame by its speed times this.
-    Both are NaN at the ends of `time`, and beside gaps.
+    Attributes:
+        time: times (n,) of the frames, s.
+        weights: (4, n - 4), for all but the two frames at either end: the weights with which the
+            values of the four neighbours add up to the cubic's value at the frame; NaN beside gaps.
+        stop: (n,) s; the cubic misses a vehicle that stops dead at the frame by its speed times
+            this. NaN at the ends and beside gaps.
     """
 
     time: Array
@@ -23,7 +27,7 @@ class Neighbours:
 
     @staticmethod
     def of(time: Array, step: float) -> "Neighbours":
-        """Neighbours of frames that are usually `step` s apart."""
+        """Find the cubics of frames at `time` (n,) that are usually `step` s apart."""
         ago = np.stack([time[own] - time[2:-2] for own in _NODES])
         weights = np.ones_like(ago)
         for k, j in np.argwhere(~np.eye(4, dtype=bool)):
@@ -33,7 +37,7 @@ class Neighbours:
         return Neighbours(time, weights, _padded(np.abs(np.sum((weights * ago)[2:], axis=0))))
 
     def beside(self, x: Array) -> Array:
-        """How far (n,) each of `x` (n, c) is from the cubic."""
+        """Distance (n,) of each row of `x` (n, c) from its cubic; NaN where there is none."""
         expected = sum(w[:, None] * x[own] for w, own in zip(self.weights, _NODES, strict=True))
         return _padded(np.linalg.norm(x[2:-2] - expected, axis=1))
 
@@ -46,10 +50,19 @@ def _padded(inner: Array) -> Array:
 
 
 def find_far(off: Array, limit: Array) -> Array:
-    """Where (n,) frames are further `off` (n,) than `limit` (n,), and far more than those nearby.
+    """Find single outliers by their distance from the cubic through their neighbours.
 
-    An outlier shifts what is expected of two frames to either side, too: of these, the furthest.
-    Where nothing was expected of the next frame, it may be the outlier, and nobody can tell.
+    A frame is one if it is further off than its limit, further than the two frames to either side
+    (whose cubics an outlier spoils, too), and more than `FAR_MORE` times as far as the median of
+    the frames nearby. If the next frame on either side has no cubic, that one may be the outlier:
+    then none is reported.
+
+    Args:
+        off: distance (n,) of each frame from its cubic; NaN where it has none.
+        limit: largest plausible distance (n,).
+
+    Returns:
+        Mask (n,), True for outliers.
     """
     padded = np.pad(off, OTHERS, constant_values=np.nan)
     nearby = np.lib.stride_tricks.sliding_window_view(padded, 2 * OTHERS + 1)

@@ -1,4 +1,4 @@
-"""Channels on a uniform clock: read between samples, or summed up over them."""
+"""Bring channels to a uniform clock: interpolate them, or integrate rates and velocities."""
 
 from dataclasses import dataclass
 
@@ -12,17 +12,23 @@ from rovsim.measurement.signals.chosen_channels import noise_density
 from rovsim.measurement.signals.resample import find_bridged
 
 LONG = 2.5  # usual steps of a channel: a longer one is a gap
-# s, in which a sum may drift. Slower than the disturbances that a filter allows for (a second), so
-# that within it the noise is that of the sum alone; within a minute.
+# s: shortest and longest time over which the drift of an integral is averaged. Slower than the
+# disturbances that a Kalman filter allows for (a second), so that within it the noise is that of
+# the integral alone; within a minute.
 DRIFT = (3.0, 60.0)
 
 
 @dataclass(frozen=True, eq=False)
 class OnClock:
-    """A uniform clock (n,) s, and the longest gap s that is bridged.
+    """Brings channels to a uniform clock.
 
-    Each sample of a rate holds from midway to the sample before until midway to the next: sums
-    between two such instants share no sample, so that their noise is white.
+    When rates or velocities are integrated, each sample holds from midway after the previous one
+    to midway before the next. Integrals between successive such instants share no sample, so
+    their noise is white.
+
+    Attributes:
+        clock: times (n,) s, evenly spaced.
+        max_gap: longest time between samples that is bridged, s.
     """
 
     clock: Array
@@ -30,11 +36,14 @@ class OnClock:
 
     @property
     def step(self) -> float:
-        """Step of the clock, s."""
+        """Step of the clock, s; 1 where it has a single instant."""
         return float(self.clock[1] - self.clock[0]) if len(self.clock) > 1 else 1.0
 
     def values(self, channel: Channel) -> Array:
-        """Values (n, c), each column between its own samples; NaN where none was measured."""
+        """Interpolate values (n, c) of a channel, each column between its own samples.
+
+        Columns with fewer than two samples are NaN.
+        """
         found = np.full((len(self.clock), channel.value.shape[1]), np.nan)
         for k, column in enumerate(channel.value.T):
             known = np.isfinite(column)
@@ -43,7 +52,7 @@ class OnClock:
         return found
 
     def attitudes(self, channel: Channel) -> Array:
-        """Unit quaternions (n, 4) of a channel of them."""
+        """Interpolate the unit quaternions (n, 4) of a channel."""
         return between(self.clock, channel.time, rotations.continuous(channel.value))
 
     def bridged(self, channel: Channel) -> Array:
@@ -52,21 +61,27 @@ class OnClock:
         return find_bridged(channel.time, self.clock, longest)
 
     def nearest(self, instants: Array) -> Array:
-        """Which samples (n,) are the nearest to one of these instants."""
+        """Mask (n,) of the clock's samples that are nearest to one of the instants (k,) s."""
         found = np.zeros(len(self.clock), bool)
         place = np.round((instants - self.clock[0]) / self.step).astype(int)
         found[place[(place >= 0) & (place < len(found))]] = True
         return found
 
     def sum_up(self, time: Array, rate: Array) -> Array:
-        """Integral (n, c) of rates (m, c) measured at `time` (m,); NaN counts as none."""
+        """Integrate rates (m, c) measured at `time` (m,) s to values (n, c); NaN counts as zero.
+
+        The integral is zero half a step before the first rate.
+        """
         edges = instants_between(time)
         parts = np.nan_to_num(rate) * np.diff(edges)[:, None]
         total = np.vstack([np.zeros(rate.shape[1]), np.cumsum(parts, axis=0)])
         return np.stack([np.interp(self.clock, edges, column) for column in total.T], axis=1)
 
     def turn_up(self, channel: Channel, start: Array) -> Array:
-        """Unit quaternions (n, 4) of body rates, from `start` (4,) on; NaN counts as none."""
+        """Integrate a channel of body rates to unit quaternions (n, 4); NaN counts as zero.
+
+        The first of them is `start` (4,).
+        """
         edges, rate = instants_between(channel.time), np.nan_to_num(channel.value)
         turns = rotations.exp(rate * np.diff(edges)[:, None])
         q = np.empty((len(edges), 4))
@@ -79,10 +94,19 @@ class OnClock:
         return rotations.multiply(rotations.multiply(start, rotations.conjugate(found[0])), found)
 
     def drift(self, apart: Array, summed: Channel, direct: Channel) -> Array:
-        """How far (n, c) a sum has drifted, of how far `apart` (m, c) it is from each reading.
+        """Estimate the drift (n, c) of an integral from direct readings of the same quantity.
 
-        Noise that adds up against noise that does not: the best smoothing is exponential, with the
-        ratio of the two as its time (Wiener); here a bell of the same width. NaN without readings.
+        The noise of the integral accumulates, that of the readings does not: the best smoothing of
+        their difference is exponential, with the ratio of the two noise densities as its time
+        constant (Wiener). A Gaussian kernel of the same width is used here.
+
+        Args:
+            apart: direct reading less integral (m, c), at the times of `direct`.
+            summed: the channel that was integrated.
+            direct: the channel of direct readings.
+
+        Returns:
+            What must be added to the integral; NaN in columns without readings.
         """
         ratio = noise_density(direct) / max(noise_density(summed), 1e-12)
         width = np.clip(np.nan_to_num(ratio), *DRIFT)  # two readings: taken as they are
@@ -97,12 +121,15 @@ class OnClock:
 
 
 def instants_between(time: Array) -> Array:
-    """Edges (m+1,) of what each sample of a rate at `time` (m,) stands for."""
+    """Edges (m + 1,) s of the intervals for which samples of a rate at `time` (m,) s stand."""
     middle = 0.5 * (time[1:] + time[:-1])
     return np.concatenate([[2.0 * time[0] - middle[0]], middle, [2.0 * time[-1] - middle[-1]]])
 
 
 def between(at: Array, time: Array, q: Array) -> Array:
-    """Unit quaternions (k, 4) at `at` (k,) of sign-continuous ones (n, 4) at `time` (n,)."""
+    """Interpolate sign-continuous quaternions `q` (n, 4) at `time` (n,) to the times `at` (k,).
+
+    Components are interpolated linearly and scaled to unit length (k, 4).
+    """
     each = [np.interp(at, time, column) for column in q.T]
     return rotations.normalized(np.stack(each, axis=1))

@@ -1,4 +1,4 @@
-"""Frames that cannot be true: the MoCap swapped markers and the body jumped for a moment."""
+"""Find frames with impossible poses: the MoCap swapped markers, so the body seemed to jump."""
 
 from typing import Annotated, Literal, TypeAlias
 
@@ -32,9 +32,10 @@ class VelocityGate(Section):
     step + `tolerance` passes, and so does a lone frame between dropouts that is within reach. One
     or two good frames between a swap and the end of the run are rejected with the swap.
 
-    Steps of a slow camera are long, and jumps that pass are far. There a frame is rejected, too,
-    that is not where a cubic through two frames to either side has it: by more than a vehicle at
-    full speed that stops dead (a third of a step), and by far more than frames nearby.
+    A slow camera has long steps, so large jumps stay below that limit. Its frames are therefore
+    also compared with a cubic through the two frames to either side. A frame is rejected if it is
+    further from the cubic than a vehicle at full speed that stops dead would be (a third of a
+    step), and much further than the frames nearby.
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"
@@ -48,7 +49,17 @@ class VelocityGate(Section):
     angle_tolerance: float = Field(default=0.02, ge=0)
 
     def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
-        """Mask (n,) of the found frames, `step` s apart, that are not in the chain."""
+        """Find the frames to reject, among n frames in which the body was found.
+
+        Args:
+            time: (n,) s.
+            position: (n, 3), NED, m.
+            attitude: (n, 4), unit quaternions.
+            step: usual time between frames, s.
+
+        Returns:
+            Mask (n,), True for frames to reject.
+        """
         if step < SLOW:
             return ~self._chained(time, position, attitude, step)
         kept, before = np.arange(len(time)), -1
@@ -56,7 +67,8 @@ class VelocityGate(Section):
             before = len(kept)
             jumps = self._there_and_back(time[kept], position[kept], attitude[kept], step)
             kept = kept[~jumps]
-            if not jumps.any():  # one that is within reach of one side alone would part the chain
+            # only without jumps: one that is within reach of one side alone would break the chain
+            if not jumps.any():
                 kept = kept[self._chained(time[kept], position[kept], attitude[kept], step)]
         return ~np.isin(np.arange(len(time)), kept)
 
@@ -69,7 +81,7 @@ class VelocityGate(Section):
         return mask
 
     def _there_and_back(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
-        """Mask (n,) of single frames of a slow camera that are far from where others have them."""
+        """Mask (n,) of single frames of a slow camera that are far from their neighbours' cubic."""
         if len(time) < 5:
             return np.zeros(len(time), bool)
         beside = Neighbours.of(time, step)
@@ -83,9 +95,9 @@ class VelocityGate(Section):
 class Hampel(Section):
     """Reject frames far from the median of their neighbourhood (Hampel 1974; Pearson 2002).
 
-    The median slope of the neighbourhood is taken out first, or a fast motion would hide
-    outliers. Blind to a burst that fills half of its window, less
-    sensitive beside dropouts. Repeated until nothing is found.
+    The median slope of the neighbourhood is removed first, otherwise a fast motion would hide
+    outliers. A burst that fills half of the window is not seen; beside dropouts the test is less
+    sensitive. It is repeated until nothing is found.
     """
 
     kind: Literal["hampel"] = "hampel"
@@ -98,7 +110,7 @@ class Hampel(Section):
     angle_noise: float = Field(default=0.004, gt=0)
 
     def rejected(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
-        """Mask (n,) of the found frames that differ from the median of their neighbours."""
+        """Mask (n,) of the found frames that are far from the median of their neighbours."""
         # Rotation matrices have no sign to agree on; |R1 - R2| / sqrt(2) is the angle when small.
         rotation = rotations.matrix(attitude).reshape(len(time), 9) / np.sqrt(2.0)
         kept = np.arange(len(time))
@@ -111,6 +123,7 @@ class Hampel(Section):
         return ~np.isin(np.arange(len(time)), kept)
 
     def _far(self, time: Array, x: Array, noise: float) -> Array:
+        """Mask (n,) of the rows of `x` (n, c) that are far from the median of their window."""
         n = len(x)
         width = min(2 * self.half_window + 1, n)
         first = np.clip(np.arange(n) - width // 2, 0, n - width)
@@ -124,7 +137,7 @@ class Hampel(Section):
 
 
 class KeepAll(Section):
-    """Believe every frame."""
+    """Reject nothing."""
 
     kind: Literal["none"] = "none"
 
@@ -137,15 +150,15 @@ Outliers: TypeAlias = Annotated[VelocityGate | Hampel | KeepAll, Field(discrimin
 
 
 class OutlierSettings(Section):
-    """How impossible poses are found."""
+    """Settings of how impossible poses are found."""
 
     outliers: Outliers = VelocityGate()
 
 
 def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAll) -> Array:
-    """Mask (n,) of the frames that were found but cannot be true.
+    """Mask (n,) of the frames in which the body was found at an impossible pose.
 
-    Run again on what it leaves, it finds nothing more.
+    If these frames are removed and the search is repeated, it finds nothing more.
     """
     mask = np.zeros(len(recording.time), bool)
     found = np.flatnonzero(recording.found)
@@ -161,7 +174,7 @@ def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAl
 def _stretches(
     gate: VelocityGate, time: Array, position: Array, attitude: Array, step: float
 ) -> tuple[Array, Array]:
-    """First and last index of every stretch without a dropout or an implausible step."""
+    """First and last index, (s,) each, of every stretch without dropout or implausible step."""
     near = _within_reach(
         gate, np.diff(time), position[1:] - position[:-1], attitude[:-1], attitude[1:], step
     )
@@ -172,6 +185,16 @@ def _stretches(
 def _within_reach(
     gate: VelocityGate, elapsed: Array, moved: Array, q0: Array, q1: Array, step: float
 ) -> Array:
+    """Whether each move is plausible within the time that elapsed.
+
+    Args:
+        gate: the limits.
+        elapsed: time of each of k moves (k,), s.
+        moved: displacements (k, 3), m.
+        q0: attitudes before the moves, unit quaternions (k, 4) or one for all.
+        q1: attitudes after the moves, likewise.
+        step: usual time between frames, s.
+    """
     # Jittered stamps can be closer than a step although the exposures were not.
     elapsed = np.maximum(elapsed, step)
     angle = 2.0 * np.arccos(np.clip(np.abs(np.sum(q0 * q1, axis=-1)), 0.0, 1.0))
@@ -188,11 +211,23 @@ def _longest_chain(
     starts: Array,
     ends: Array,
 ) -> list[int]:
-    """Stretches, in order, that hold the most frames and are each within reach of the last.
+    """Find the chain of stretches with the most frames, each within reach of the one before.
 
     Dynamic programming over the stretches: best[j] = frames of j + max over the reachable
     i < j of best[i] - `DETOUR` if found frames between i and j are left out.
     Starting late and ending early cost `CUT_END` each.
+
+    Args:
+        gate: the limits.
+        time: (n,) s.
+        position: (n, 3), m.
+        attitude: (n, 4), unit quaternions.
+        step: usual time between frames, s.
+        starts: index (s,) of the first frame of each stretch.
+        ends: index (s,) of the last frame of each stretch.
+
+    Returns:
+        Indices of the stretches in the chain, in order.
     """
     size = (ends - starts + 1).astype(float)
     best, before = size.copy(), np.full(len(size), -1)

@@ -1,4 +1,4 @@
-"""Recorded poses on a uniform clock. Long gaps stay gaps."""
+"""Resample recorded poses to a uniform clock; long gaps stay gaps."""
 
 from typing import Annotated, Literal, TypeAlias
 
@@ -83,7 +83,13 @@ def resample(recording: Recording, settings: Resampling, outlier_settings: Outli
 
 
 def find_bridged(time: Array, clock: Array, max_gap: float) -> Array:
-    """Whether each sample of `clock` is at a frame or between two that are close enough."""
+    """Whether each sample (n,) of `clock` is at a frame, or between two that are close enough.
+
+    Args:
+        time: times (m,) of the frames, s, increasing.
+        clock: times (n,), s.
+        max_gap: longest time between two frames that is bridged, s.
+    """
     before = np.clip(np.searchsorted(time, clock + SAME_INSTANT, side="right") - 1, 0, None)
     after = np.clip(np.searchsorted(time, clock - SAME_INSTANT), None, len(time) - 1)
     return time[after] - time[before] <= max_gap + SAME_INSTANT

@@ -1,8 +1,8 @@
-"""A pose on a uniform clock from whatever was measured of it, and what that was.
+"""Make poses on a uniform clock from whatever channels were measured, without full poses.
 
-Turning is known from attitudes, or summed up from rates where these know it better; moving from
-positions and depths, or summed up from velocities. What nobody measured stays zero, and `Measured`
-says so: no score and no diagnosis counts it.
+The attitude comes from attitude channels, or is integrated from body rates where that is better.
+The position comes from positions and depths, or is integrated from velocities. Components that were
+not measured stay zero and are marked in `Measured`, so that no score and no diagnosis counts them.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,11 @@ SUMMED = ("rates", "velocity")
 
 
 def track_channels(recording: Recording, settings: Resampling) -> Poses:
-    """Poses on a uniform clock, of a recording without full poses.
+    """Make poses on a uniform clock of a recording without full poses.
+
+    Args:
+        recording: the channels.
+        settings: highest rate of the clock, longest gap and shortest stretch.
 
     Raises:
         BadInput: no channel tells of the motion.
@@ -60,7 +64,11 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
 
 
 def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Array:
-    """As fast as the fastest channel, in the middle between its samples where they are summed."""
+    """Make a uniform clock (n,) at the rate of the fastest main channel, at most `FASTEST`.
+
+    It starts at a sample of that channel, or midway between two if the channel is integrated, and
+    covers the time in which all chosen channels were measured.
+    """
     kind, fastest = max(chosen.read.items(), key=lambda one: one[1].rate or 0.0)
     rate = min(settings.rate or FASTEST, FASTEST, fastest.rate or FASTEST)
     first = max(channel.time[0] for channel in chosen.all.values())
@@ -79,7 +87,13 @@ def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Arr
 
 @dataclass(frozen=True, eq=False)
 class _Tracked:
-    """Positions (n, 3) or quaternions (n, 4); which of three components were measured, summed."""
+    """Positions or attitudes on the clock, and how they are known.
+
+    Attributes:
+        value: positions (n, 3) NED, m, or unit quaternions (n, 4).
+        known: bool (3,), which of x, y, z or of roll, pitch, yaw are known.
+        summed: bool (3,), which of these are integrals of velocities or rates.
+    """
 
     value: Array
     known: Array
@@ -87,7 +101,7 @@ class _Tracked:
 
 
 def _turn(at: OnClock, turning: Mapping[str, Channel]) -> _Tracked:
-    """Attitudes, which of roll, pitch and yaw were measured, and which summed up."""
+    """Take the attitude from rates, whose drift direct attitudes correct, or from these alone."""
     beside = {kind: channel for kind, channel in turning.items() if kind != "rates"}
     direct = _read_attitude(at, beside)
     if "rates" not in turning:
@@ -121,7 +135,17 @@ def _continuous(q: Array) -> Array:
 def _move(
     at: OnClock, moving: Mapping[str, Channel], attitude: Array, recording: Recording
 ) -> _Tracked:
-    """Positions of CO, which coordinates were measured, and which summed up."""
+    """Take the position of CO from the channels.
+
+    Velocities are integrated, and positions correct their drift; a position replaces what was not
+    integrated, and a depth the coordinate z.
+
+    Args:
+        at: the clock.
+        moving: channels of the position.
+        attitude: unit quaternions (n, 4) on the clock.
+        recording: says where the sensors sit, and where the surface is.
+    """
     position, summed = np.full((len(at.clock), 3), np.nan), np.zeros(3, bool)
     if "velocity" in moving:
         position, summed = _sum_velocities(at, moving["velocity"], attitude, recording)
@@ -143,7 +167,14 @@ def _move(
 def _sum_velocities(
     at: OnClock, channel: Channel, attitude: Array, recording: Recording
 ) -> tuple[Array, Array]:
-    """Positions (n, 3) summed up from the velocity of a place, NaN where not measured."""
+    """Integrate the body velocity of the sensor's place to a position of CO, NED.
+
+    Both horizontal coordinates need surge and sway.
+
+    Returns:
+        Positions (n, 3), m, relative to the start, NaN where not measured; and which coordinates
+        (3,) were measured.
+    """
     known = np.isfinite(channel.value).any(axis=0)
     q = between(channel.time, at.clock, attitude)
     v, place = np.nan_to_num(channel.value), np.array(recording.sensors.velocity_at)
@@ -157,14 +188,17 @@ def _sum_velocities(
 
 
 def _depth_of_origin(depth: Array, attitude: Array, recording: Recording) -> Array:
-    """Coordinate z (n,) NED of CO where a sensor in the body is at a depth below the surface."""
+    """Coordinate z (n,) NED of CO, m, from the depth (n,) of a sensor in the body, m.
+
+    Where the tank's surface is unknown, it is at z = 0.
+    """
     surface = recording.site.tank[2, 0]
     below = rotations.rotate(attitude, np.array(recording.sensors.depth_at))[:, 2]
     return np.asarray(depth - below + (surface if np.isfinite(surface) else 0.0))
 
 
 def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tracked) -> Measured:
-    """What was measured, and at which samples it was read."""
+    """Say which components were measured, and at which samples of the clock they were read."""
     flat = moved.known[:2].all()
     axes = np.array([flat, flat, moved.known[2], *turned.known])
     place = [kind for kind in chosen.moving if kind != "depth"][:1]
@@ -185,5 +219,5 @@ def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tra
 
 
 def _read_at(kind: str, channel: Channel) -> Array:
-    """When it is read: midway between samples where these are summed up."""
+    """Times at which a channel is read: midway between its samples if it is integrated."""
     return instants_between(channel.time)[1:-1] if kind in SUMMED else channel.time
