@@ -14,7 +14,16 @@ from rovsim.measurement.campaign_file import CommandLog, Mocap, Run, Tank
 class Campaign:
     """A checked campaign: every file of every run was there when it was loaded.
 
-    `vehicle` is a name or a path; a relative path is relative to `file.parent`.
+    Attributes:
+        name: of the campaign.
+        vehicle: a name or a path; a relative path is relative to `file.parent`.
+        tank: its walls; None where not stated.
+        mocap: how the motion was exported.
+        commands: how the commands were logged; None where no run has any.
+        runs: the runs, in the order of the file.
+        file: the campaign file.
+        folder: the folder that the paths of the runs are relative to.
+        source: where to get the recordings.
     """
 
     name: str
@@ -40,26 +49,26 @@ class Campaign:
 
     @property
     def files(self) -> list[Path]:
-        """The campaign file and all that its runs are read from."""
+        """The campaign file and all files that its runs are read from, sorted."""
         raw = {path for run in self.runs for path in self.raw_files(run)}
         return sorted({self.file} | raw)
 
     def mocap_paths(self, run: Run) -> list[Path]:
-        """Absolute paths of what was measured in the run: one file, or one a sensor."""
+        """Absolute paths of the files with the run's measurements: one, or one for each sensor."""
         return [self.folder / name for name in run.sensor_files]
 
     def commands_path(self, run: Run) -> Path:
-        """Absolute path of the commands of a run that has any."""
+        """Absolute path of the command log of a run that has one."""
         return self.folder / run.commands
 
     def raw_files(self, run: Run) -> list[Path]:
-        """Files that hold the run, each once; of a folder (a bag) those in it."""
+        """Files that hold the run, each once; for a folder (a ROS 2 bag) the files in it."""
         paths = [*self.mocap_paths(run), *([self.commands_path(run)] if run.commanded else [])]
         inside = [sorted(p.iterdir()) if p.is_dir() else [p] for p in paths]
         return list(dict.fromkeys(path for files in inside for path in files))
 
     def tank_ned(self) -> np.ndarray:
-        """Low and high walls (3, 2) in NED m, NaN where unknown."""
+        """Low and high walls (3, 2) along the axes of NED, m; NaN where unknown."""
         walls = np.array([getattr(self.tank, axis, None) or [np.nan] * 2 for axis in "xyz"])
         return np.sort(walls * self.world_signs()[:, None], axis=1)
 

@@ -1,4 +1,4 @@
-"""The keys of `campaign.yaml`, each a typed value."""
+"""The keys of `campaign.yaml` as typed, checked fields."""
 
 import re
 from typing import Annotated, Any, Literal
@@ -18,7 +18,7 @@ def _as_text(value: Any) -> Any:
 
 
 def _file_name(text: str) -> str:
-    """Refuse what cannot be part of a path on every system, or of a Snakemake wildcard."""
+    """Refuse names that cannot be file names on every system, or Snakemake wildcards."""
     unsafe = re.search(r'[/\\:*?"<>|{}]', text) or not is_name(text)
     if unsafe or not text or len(text) > 100 or text[0] in ".-~" or text != text.strip():
         raise ValueError(
@@ -29,7 +29,7 @@ def _file_name(text: str) -> str:
 
 
 def _rising(expected: str) -> AfterValidator:
-    """Refuse two numbers of which the first is not the lesser."""
+    """Make a validator that refuses two numbers unless the first is less than the second."""
 
     def check(value: list[float]) -> list[float]:
         if value[0] >= value[1]:
@@ -62,22 +62,29 @@ class Tank(Section):
 
 
 class Topics(Section):
-    """Topics of a bag, by what is read of them."""
+    """Topics of a ROS 2 bag, by the quantity that is read from each."""
 
     pose: Text | None = None
     odometry: Text | None = None
     imu: Text | None = None
-    attitude: Text | None = None  # instead of that of the inertial unit
+    attitude: Text | None = None  # used instead of the attitude in `imu`
     depth: Text | None = None
     velocity: Text | None = None
     battery: Text | None = None
 
 
 class Mocap(Section):
-    """How the motion was exported; `body` is the rigid body (or topic) to read.
+    """How the motion was exported.
 
-    `velocity`: whether body velocities beside poses are means from this line to the next, or hold
-    at the line's time.
+    Attributes:
+        format: name of the reader.
+        body: the rigid body (or topic) to read.
+        world_axes: axes of the file's world.
+        body_axes: axes of the file's body.
+        velocity: whether body velocities beside poses are means from their line to the next, or
+            values at the line's time.
+        sensors: places and delays of the sensors.
+        topics: topics of a ROS 2 bag.
     """
 
     format: str
@@ -92,12 +99,18 @@ class Mocap(Section):
 class CommandLog(Section):
     """How the commands were logged.
 
-    `pwm` in us and `normalized` are per thruster, in the vehicle's order; `demand` and `wrench`
-    are per axis: `axes` says which, or the columns carry axis names, or they are six in the order
-    surge ... yaw. A minus before a column turns its sign. `topic` is that of a bag. `angles` are
-    those of the columns that hold rad; known without, where the vehicle turns them. `auxiliary`:
-    further columns of a csv, taken as they are, for effects that read them; `voltage` is that of
-    the battery.
+    Attributes:
+        format: name of the reader.
+        kind: what the columns hold: `pwm` (us) or `normalized` ([-1, 1]) for each thruster, in the
+            vehicle's order; `demand` ([-1, 1]) or `wrench` (N, N m) for each axis of the body.
+        columns: names of the columns; a minus in front of a name inverts the sign.
+        axes: for `demand` and `wrench`, the axis of each column; may be left out if the columns
+            are named after the axes, or are six in the order surge ... yaw.
+        topic: that of a ROS 2 bag.
+        angles: names of the columns that hold angles in rad; not needed for those that the vehicle
+            file says are angles.
+        auxiliary: further columns of a csv, for effects that read them; used as they are.
+            `voltage` is that of the battery.
     """
 
     format: str
@@ -110,22 +123,22 @@ class CommandLog(Section):
 
     @property
     def turned(self) -> list[bool]:
-        """Which columns hold an angle in rad."""
+        """For each column, whether it holds an angle in rad."""
         return [name in self.angles for name in self.names]
 
     @property
     def names(self) -> list[str]:
-        """The columns as the file calls them."""
+        """The names of the columns in the file, without the minus."""
         return [column.removeprefix("-") for column in self.columns]
 
     @property
     def signs(self) -> list[float]:
-        """1 or -1 for each column."""
+        """Sign of each column, 1 or -1."""
         return [-1.0 if column.startswith("-") else 1.0 for column in self.columns]
 
     @property
     def per_axis(self) -> bool:
-        """Whether a column is an axis of the body and not a thruster."""
+        """Whether each column belongs to an axis of the body, not to a thruster."""
         return self.kind in ("demand", "wrench")
 
     @property
@@ -136,13 +149,18 @@ class CommandLog(Section):
 
 
 class Run(Section):
-    """One run: its files, relative to the folder of the recordings.
+    """One run; its files are relative to the folder of the recordings.
 
-    `mocap` is one file, or several that hold different sensors on one clock.
-    `commands` is `none` where nothing was commanded (free decay, towing, drifting). `use`: spans
-    [from, to] in s, on the clock of the recording, outside of which it is left out (held by hand,
-    on the floor); None: all of it. `commands_shift_s`: s that are added to the times of the
-    commands, which then are on the clock of the recording.
+    Attributes:
+        id: name of the run.
+        control: degrees of freedom that were controlled.
+        split: whether models are fitted to this run or only tested on it.
+        mocap: one file, or several that hold different sensors on one clock.
+        commands: the log; `none` where nothing was commanded (free decay, towing, drifting).
+        use: spans [from, to] on the clock of the recording, s; what lies outside (held by hand, on
+            the floor) is left out. None to use all of it.
+        commands_shift_s: added to the times of the commands to bring them to the clock of the
+            recording, s.
     """
 
     id: FileName
@@ -155,7 +173,7 @@ class Run(Section):
 
     @property
     def sensor_files(self) -> list[str]:
-        """The files that hold what was measured."""
+        """The files with the measurements, relative to the folder of the recordings."""
         return as_list(self.mocap)
 
     @property

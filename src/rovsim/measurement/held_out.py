@@ -1,4 +1,4 @@
-"""Test runs that are train runs under another name: what they hold out was seen."""
+"""Find test runs that repeat a train run, so that their data were seen in training."""
 
 import filecmp
 from pathlib import Path
@@ -9,7 +9,7 @@ from rovsim.measurement.campaign_file import Run
 
 
 def doubt_test_run(campaign: Campaign, run: Run) -> Iterator[str]:
-    """Name the train runs that a test run repeats, file by file."""
+    """Yield a sentence for each train run whose files and used spans a test run repeats."""
     if run.split != "test":
         return
     own = campaign.mocap_paths(run)
@@ -23,7 +23,7 @@ def doubt_test_run(campaign: Campaign, run: Run) -> Iterator[str]:
 
 
 def _overlap(run: Run, other: Run) -> bool:
-    """Whether the spans that are used have something in common."""
+    """Whether the used spans of two runs overlap."""
     if run.use is None or other.use is None:
         return True
     return any(a < d and c < b for a, b in run.use for c, d in other.use)

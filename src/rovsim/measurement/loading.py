@@ -1,4 +1,4 @@
-"""From `campaign.yaml` to a checked campaign."""
+"""Read `campaign.yaml` and check the campaign that it describes."""
 
 import os
 import re
@@ -50,10 +50,14 @@ def _campaign_file(path: Path) -> Path:
 
 
 def check_ids(runs: Sequence[Run], where: Path | str) -> None:
-    """Refuse runs that some file systems could not tell apart.
+    """Refuse two runs whose ids some file systems could not tell apart.
+
+    Args:
+        runs: the runs.
+        where: the file, named in the error.
 
     Raises:
-        BadInput: names both.
+        BadInput: there are two such ids; it names both.
     """
     seen: dict[str, str] = {}
     for place, run in enumerate(runs):
@@ -70,7 +74,7 @@ def check_ids(runs: Sequence[Run], where: Path | str) -> None:
 
 
 def _check_mocap(mocap: Mocap, file: Path) -> None:
-    """Refuse the axes, or the topics, of one kind of file where another was recorded."""
+    """Refuse axes or topics that do not belong to the stated format of the file."""
     readers, plain = mocap_readers(), FileAxes()
     own = readers[mocap.format].axes if mocap.format in readers else plain
     known = {*plain.every, *own.every}
@@ -142,7 +146,7 @@ def _with_further_columns() -> list[str]:
 
 
 def _folder(text: str, file: Path) -> Path:
-    """Folder of the recordings: `text` with variables expanded, relative to the file."""
+    """Folder of the recordings: `text`, relative to the file, with its variables expanded."""
 
     def value(match: re.Match[str]) -> str:
         name = match["name"] or match["bare"]

@@ -1,4 +1,4 @@
-"""Whether body velocities beside poses are means from line to line: the poses may tell."""
+"""Check by the poses whether exported body velocities are means from line to line."""
 
 from typing import Iterator
 
@@ -16,10 +16,11 @@ APART = 1.1  # of the differences
 
 
 def doubt_means(recording: Recording) -> Iterator[str]:
-    """Say so where velocities that are read as means hold at the times of the poses.
+    """Yield a sentence where velocities that are read as means are values at the poses' times.
 
-    Means over the same times as poses that are means are as near to those: with even steps nobody
-    can tell, with others that fits better or not.
+    If poses and velocities are means over the same times, they agree like values at the same
+    times. With even steps the two cases cannot be told apart; with uneven ones, the sentence is
+    only given if that reading fits surely worse.
     """
     differences = _differences(recording)
     if differences is None:
@@ -34,10 +35,12 @@ def doubt_means(recording: Recording) -> Iterator[str]:
 
 
 def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | None:
-    """How far (6,) motion from pose to pose is from three readings of the velocities.
+    """Compare the motion between successive poses with three readings of the velocities.
 
-    Means to the next line, values at the lines, and means of poses as well; whether steps are even.
-    None where there are too few steps.
+    Returns:
+        The median absolute difference (6,), m/s and rad/s, if velocities are means to the next
+        line, if they are values at the lines, and if velocities and poses both are means; and
+        whether the steps are even. None where there are too few steps.
     """
     time, nu = recording.time, recording.nu
     if nu is None:
@@ -60,13 +63,13 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
 
 
 def _moved(recording: Recording) -> Array:
-    """Way and turn (n - 1, 6) from pose to pose, along the body's axes halfway."""
+    """Displacement, m, and turn, rad, (n - 1, 6) from pose to pose, in the body axes halfway."""
     turn = turns(recording.attitude)
     halfway = multiply(recording.attitude[:-1], exp(0.5 * turn))
     return np.hstack([unrotate(halfway, np.diff(recording.position, axis=0)), turn])
 
 
 def _ratio(one: Array, other: Array) -> float:
-    """How much nearer one is than the other, as a mean over the axes that moved at all."""
+    """Geometric mean over the axes that moved of the ratio of two differences (6,)."""
     known = (one > 0.0) & (other > 0.0)
     return float(np.exp(np.mean(np.log(one[known] / other[known])))) if known.any() else 1.0

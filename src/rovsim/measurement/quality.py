@@ -46,16 +46,22 @@ EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard
 
 
 def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
-    """What `quality/RUN.json` holds; outliers of binned velocities are not looked for."""
+    """Assess a recording for `quality/RUN.json`, and count the outliers if it has bare poses.
+
+    Outliers are not looked for where the export has velocities, or no full poses.
+    """
     if recording.nu is not None or not recording.posed:
         return assess(recording, anomalies)
     return assess(recording, anomalies, int(find_outliers(recording, settings).sum()))
 
 
 def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = None) -> Quality:
-    """Describe a recording.
+    """Describe how good a recording is.
 
-    `outliers` is the number of frames that the outlier rejection refused, None when not looked for.
+    Args:
+        recording: what was read.
+        anomalies: what was repaired or noticed while reading.
+        outliers: number of frames that the outlier rejection refused; None when not looked for.
     """
     time, found = recording.time, recording.found
     gaps = find_gaps(recording, anomalies.used)
@@ -66,7 +72,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         rate_hz=Rate(nominal=recording.rate, median=measured_rate(time)),
         duration_s=float(time[-1] - time[0]),
         frames=len(time),
-        # what is left out counts as not found in a recording, and is no fault of the cameras
+        # frames outside of `use` are marked as not found, but the cameras did not miss them
         not_found=int(np.sum(~found)) - anomalies.left_out if recording.posed else 0,
         longest_gap_s=max((gap.duration_s for gap in gaps), default=0.0),
         gaps=tuple(gaps),
@@ -93,7 +99,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
 def usable_reason(recording: Recording) -> str | None:
     """Say why a recording cannot be used, or None when it can.
 
-    Where no full poses were measured only its length is looked at.
+    Without full poses only its length and the size of its velocities are checked.
     """
     found = recording.found
     if too_fast := find_impossible(recording):
@@ -118,8 +124,11 @@ def usable_reason(recording: Recording) -> str | None:
 def find_gaps(recording: Recording, used: Sequence[tuple[float, float]] = ()) -> list[Gap]:
     """Stretches without a pose, from the last found frame to the next, longer than 0.05 s.
 
-    On a slow export (bins) a step is a gap when it is more than twice the usual one. Of a recording
-    of which only spans are `used`, those within one of them.
+    On a slow export (bins) a step is a gap when it is more than twice the usual one.
+
+    Args:
+        recording: what was read.
+        used: spans [from, to] that are used, s: gaps outside are left out. Empty if all is used.
     """
     time = recording.time[recording.found]
     steps = np.diff(time)
@@ -152,12 +161,12 @@ def measure_excitation(recording: Recording) -> dict[str, Excitation]:
 
 
 def _velocity(recording: Recording) -> tuple[Array, Array]:
-    """Body velocities (k, 6), and which axes (6,) were measured."""
+    """Rough body velocities (k, 6), m/s and rad/s, and which axes, bool (6,), were measured."""
     if recording.posed:
         return rough_velocity(recording), np.ones(6, bool)
     try:
         poses = track_channels(recording, Linear())
-    except BadInput:  # no channel of the motion: its owner hears so when the run is used
+    except BadInput:  # no channel of the motion: this error is reported when the run is used
         return np.empty((0, 6)), np.zeros(6, bool)
     assert poses.measured is not None
     length = max(BLOCK, READINGS * poses.measured.period)
@@ -176,7 +185,15 @@ def rough_velocity(recording: Recording) -> Array:
 def _differences(
     time: Array, position: Array, attitude: Array, *, rate: float, length: float
 ) -> Array:
-    """Body velocities (k, 6) between medians of blocks, `length` s each, at `rate` Hz."""
+    """Body velocities (k, 6), m/s and rad/s, from differences of medians of blocks of poses.
+
+    Args:
+        time: (n, 1), s.
+        position: (n, 3), NED, m.
+        attitude: (n, 4), unit quaternions, sign-continuous.
+        rate: of the poses, Hz.
+        length: of a block, s.
+    """
     size = max(1, round(length * rate))
     time, position, attitude = (_blocks(a, size) for a in (time, position, attitude))
     step = np.diff(time[:, 0])
@@ -187,10 +204,10 @@ def _differences(
 
 
 def measure_noise(recording: Recording) -> PoseNoise:
-    """Noise per sample in m and rad: robust spread of third differences / sqrt(20).
+    """Estimate the noise of a pose, m and rad: robust spread of third differences / sqrt(20).
 
-    Any motion slow against four samples cancels in these. On a slow export it does not, and the
-    number is an upper bound. None with too few samples.
+    Motion that is slow against four samples cancels in third differences. On a slow export it does
+    not, and the number is an upper bound. None with too few samples.
     """
     _, position, attitude = _seen(recording)
     even = _evenly_spaced(recording)
@@ -246,7 +263,7 @@ def _blocks(values: Array, size: int) -> Array:
 
 
 def _evenly_spaced(recording: Recording) -> Array:
-    """Where four consecutive found frames are one nominal step apart each."""
+    """Mask (k - 3,): where four consecutive found frames are one nominal step apart each."""
     steps = np.diff(recording.time[recording.found])
     even = np.abs(steps * recording.rate - 1.0) < 0.5
     return even[:-2] & even[1:-1] & even[2:]
@@ -260,7 +277,7 @@ def _robust_std(third: Array) -> float | None:
 
 
 def _turns(attitude: Array) -> Array:
-    """Rotation vectors (n, 3) from the first attitude."""
+    """Rotation vectors (n, 3), rad, from the first attitude to each of n."""
     return log(multiply(conjugate(attitude[:1]), attitude))
 
 

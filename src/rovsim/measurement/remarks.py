@@ -12,7 +12,7 @@ SLOW = 20.0  # Hz; below it thruster lag and added mass are hard to see
 
 
 def doubt(report: Quality) -> Iterator[str]:
-    """Sentences about what keeps a recording from being used as it was meant."""
+    """Yield sentences about faults that keep a recording from being used as it was meant."""
     if report.unusable:
         yield f"This run cannot be used ({report.unusable}). Record it again or remove it."
     if report.commands is not None and not report.commands.varies:
@@ -20,7 +20,7 @@ def doubt(report: Quality) -> Iterator[str]:
 
 
 def remark(report: Quality) -> list[str]:
-    """Further sentences about a recording, most important first."""
+    """List further sentences about a recording, the most important first."""
     return [*_motion(report), *_frames(report), *_commands(report), *_repairs(report)]
 
 

@@ -1,4 +1,4 @@
-"""Recordings on a common, even clock: rough, robust, good enough to compare them with."""
+"""Rough, robust velocities on an even clock, good enough to compare recordings with each other."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,13 @@ HALF_WINDOW = 3
 
 @dataclass(frozen=True, eq=False)
 class ResampledPoses:
-    """Poses on the even clock `time` (n,) s: `position` (n, 3), `attitude` (n, 4); NaN unknown."""
+    """Poses on an even clock; NaN where unknown.
+
+    Attributes:
+        time: (n,) s.
+        position: (n, 3) m, in the axes of their source.
+        attitude: (n, 4), unit quaternions from body to world.
+    """
 
     time: Array
     position: Array
@@ -30,14 +36,19 @@ class ResampledPoses:
 
 @dataclass(frozen=True, eq=False)
 class Velocities:
-    """Body velocities `nu` (n, 6) along the body axes of a file, NaN where unknown."""
+    """Body velocities on an even clock.
+
+    Attributes:
+        time: (n,) s.
+        nu: (n, 6), m/s and rad/s, along the body axes of their source; NaN where unknown.
+    """
 
     time: Array
     nu: Array
 
 
 def even_poses(export: Export | Recording) -> ResampledPoses:
-    """Found poses as medians over steps of the even clock; short gaps are bridged."""
+    """Take medians of the found poses over the steps of an even clock, and bridge short gaps."""
     seen = export.found
     time, position, attitude = (
         export.time[seen],
@@ -56,17 +67,28 @@ def even_poses(export: Export | Recording) -> ResampledPoses:
 
 
 def even_clock(time: Array) -> Array:
-    """An even clock (at most MOST steps) over times (n,): STEP apart, or more where they are."""
+    """Make an even clock over times (n,) s, with at most `MOST` steps.
+
+    Its step is `STEP`, or the median step of the times if that is longer.
+    """
     step = max(STEP, float(np.median(np.diff(time))))
     count = min(max(int((time[-1] - time[0]) / step) + 1, 2), MOST)
     return time[0] + step * np.arange(count)
 
 
 def _medians(bins: Array, values: Array) -> Array:
-    """Median of the rows of each bin; NaN for those without a row."""
+    """Median of the rows of each bin; NaN for bins without a row.
+
+    Args:
+        bins: the bin of each of m rows (m,), increasing.
+        values: the rows (m, c).
+
+    Returns:
+        The medians (b, c) of bins 0 to b - 1.
+    """
     own, starts, counts = np.unique(bins, return_index=True, return_counts=True)
     found = np.full((bins[-1] + 1, values.shape[1]), np.nan)
-    for count in np.unique(counts):  # bins of as many rows together
+    for count in np.unique(counts):  # all bins with the same number of rows at once
         alike = counts == count
         rows = starts[alike][:, None] + np.arange(count)
         found[own[alike]] = np.median(values[rows], axis=1)
@@ -74,14 +96,14 @@ def _medians(bins: Array, values: Array) -> Array:
 
 
 def _far(clock: Array, time: Array) -> Array:
-    """Which instants (n,) of the clock lie in a long gap of the times."""
+    """Mask (n,) of the instants of a clock (n,) that lie in a long gap of the times (m,)."""
     after = np.clip(np.searchsorted(time, clock), 1, len(time) - 1)
     step = clock[1] - clock[0]
     return time[after] - time[after - 1] > max(BRIDGED, 2.0 * step)
 
 
 def velocities(export: Export | Recording) -> Velocities:
-    """Body velocities by slopes of full poses, or of the channels that were measured."""
+    """Take body velocities as exported, else from slopes of full poses, else from the channels."""
     if export.nu is not None:
         return _exported(export)
     if not export.found.any():
@@ -90,7 +112,7 @@ def velocities(export: Export | Recording) -> Velocities:
 
 
 def of_poses(poses: ResampledPoses) -> Velocities:
-    """Body velocities by slopes of poses."""
+    """Take body velocities from slopes of poses."""
     linear = unrotate(poses.attitude, slopes(poses.time, poses.position))
     return Velocities(poses.time, np.hstack([linear, _rates(poses.time, poses.attitude)]))
 
@@ -103,7 +125,7 @@ def _exported(export: Export | Recording) -> Velocities:
 
 
 def _of_channels(channels: Channels) -> Velocities:
-    """What was measured of the velocity (n, 6); columns that nobody measured are NaN throughout."""
+    """Take body velocities from channels; columns that were not measured are NaN throughout."""
     times = [c.time for c in channels.values() if len(c.time) > 1]
     clock = even_clock(np.unique(np.concatenate(times)))
     nu = np.full((len(clock), 6), np.nan)
@@ -132,19 +154,19 @@ def _interpolated(clock: Array, time: Array, values: Array) -> Array:
 
 
 def _rates(time: Array, attitude: Array) -> Array:
-    """Angular velocities (n, 3) in the body axes of attitudes (n, 4)."""
+    """Angular velocities (n, 3) rad/s in body axes, from attitudes (n, 4) at even times (n,) s."""
     turned = turns(attitude)
     return smooth(np.vstack([turned, turned[-1:]]) / time_step(time))
 
 
 def slopes(time: Array, values: Array) -> Array:
-    """Slopes (n, c) of straight lines through the neighbours of each sample."""
+    """Slopes (n, c) of straight lines through each value (n, c) and its neighbours; NaN at ends."""
     step, k = time_step(time), np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
     return _windowed(values, k[::-1] / (step * np.sum(k**2)))
 
 
 def smooth(values: Array) -> Array:
-    """Means (n, c) over the neighbours of each sample."""
+    """Means (n, c) over each value (n, c) and its neighbours; NaN at the ends."""
     count = 2 * HALF_WINDOW + 1
     return _windowed(values, np.ones(count) / count)
 

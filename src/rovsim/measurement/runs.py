@@ -1,4 +1,4 @@
-"""The usable runs of a campaign, as a diagnosis takes them."""
+"""The usable runs of a campaign, as a diagnosis needs them."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +11,13 @@ from rovsim.measurement.signals.motion import Motion
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """Usable runs by id: as motions, their poses before the filter, and their splits."""
+    """Usable runs, by id.
+
+    Attributes:
+        motions: the processed runs.
+        stages: what goes into the signal filter: poses, or binned recordings.
+        splits: `train` or `test`.
+    """
 
     motions: Mapping[str, Motion]
     stages: Mapping[str, Stage]
@@ -19,7 +25,12 @@ class Runs:
 
     @staticmethod
     def read(motions: Sequence[Path], stages: Sequence[Path]) -> "Runs":
-        """Runs from what the signal chain wrote, in the same order; unusable ones are left out."""
+        """Find the usable runs in what the signal chain wrote; they are read when needed.
+
+        Args:
+            motions: files of the motions.
+            stages: files of the same runs before the signal filter, in the same order.
+        """
         places, splits = {}, {}
         for paths in zip(motions, stages, strict=True):
             motion = Motion.read(paths[0])

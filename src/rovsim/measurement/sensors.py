@@ -1,4 +1,4 @@
-"""Where the sensors of a vehicle sit, and how late they are."""
+"""Where the sensors of a vehicle sit, and by how much their time stamps are late."""
 
 from typing import Annotated
 
@@ -23,9 +23,15 @@ class Delays(Section):
 
 
 class Sensors(Section):
-    """Places in the body (m, FRD from CO) and delays (s) of what measured the channels.
+    """The sensors of the channels.
 
-    `surface_pressure` (Pa) and `water_density` (kg/m3) turn a logged pressure into a depth.
+    Attributes:
+        velocity_at: place of the velocity sensor, m, FRD from CO; the others likewise.
+        imu_at: place of the inertial unit.
+        depth_at: place of the depth or pressure sensor.
+        delay_s: delay of each kind of channel, s.
+        surface_pressure: Pa; with `water_density` turns a logged pressure into a depth.
+        water_density: kg/m3.
     """
 
     velocity_at: Position = (0.0, 0.0, 0.0)

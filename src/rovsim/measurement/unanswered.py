@@ -1,4 +1,4 @@
-"""Lines of a `campaign.yaml` that `rovsim init` left to its reader."""
+"""Find questions of `rovsim init` that are still open in a `campaign.yaml`."""
 
 import re
 from pathlib import Path
@@ -7,12 +7,16 @@ from typing import Any, Iterator
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 
-ANSWER = "ANSWER"  # the value of what nobody has answered yet
+ANSWER = "ANSWER"  # the value of keys that `rovsim init` leaves to the user
 HERE = re.compile(rf"^[^#]*\b{ANSWER}\b")
 
 
 def check_answered(content: Any, file: Path) -> None:
-    """Make sure that no question is left.
+    """Refuse a campaign file in which a question is still open.
+
+    Args:
+        content: the file as plain values.
+        file: where it was read.
 
     Raises:
         BadInput: names the lines and the keys that are still to be answered.

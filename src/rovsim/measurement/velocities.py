@@ -1,4 +1,4 @@
-"""Whether velocities and rates beside poses are those of the same motion, in our units and axes."""
+"""Check by the poses of a file the units and axes of the velocities and rates beside them."""
 
 from itertools import product
 from typing import Iterator, NamedTuple
@@ -26,7 +26,13 @@ SAID = {"velocity": "velocities", "rates": "rates"}
 
 
 class _Both(NamedTuple):
-    """Velocities (n, 3) by the poses, along the body and along the world, and as measured."""
+    """Mean velocities or rates (n, 3) over n windows, m/s or rad/s.
+
+    Attributes:
+        body: from the poses, along the axes of the body.
+        world: from the poses, along the axes of the world.
+        measured: as they were measured.
+    """
 
     body: Array
     world: Array
@@ -34,7 +40,7 @@ class _Both(NamedTuple):
 
 
 def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
-    """Say where velocities (u, v, w) or rates (p, q, r) contradict the poses of the same file."""
+    """Yield a sentence where velocities (u, v, w) or rates (p, q, r) contradict the poses."""
     if not recording.found.any():
         return
     for kind, measured in _measured(recording).items():
@@ -44,7 +50,7 @@ def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
 
 
 def find_impossible(of: Recording | Export) -> str | None:
-    """Say so where velocities or rates are usually faster than any vehicle's; None where not."""
+    """Say so where velocities or rates are usually larger than any vehicle's; None otherwise."""
     for name, limit in LIMITS.items():
         for value in (_beside_poses(of).get(name), getattr(of.channels.get(name), "value", None)):
             if value is not None and (usual := limit.beyond(value)):
@@ -54,12 +60,12 @@ def find_impossible(of: Recording | Export) -> str | None:
 
 
 def _beside_poses(of: Recording | Export) -> dict[str, Array]:
-    """Velocities and rates (n, 3) that came with the poses."""
+    """Velocities and rates (n, 3) that were exported with the poses, by channel kind."""
     return {} if of.nu is None else {"velocity": of.nu[:, :3], "rates": of.nu[:, 3:]}
 
 
 def _measured(of: Recording | Export) -> dict[str, Array]:
-    """Velocities and rates (n, 3) at the times of the poses, of those that there are."""
+    """All measured velocities and rates (n, 3), at the times of the poses, by channel kind."""
     channels = {name: _at(of.channels[name], of.time) for name in LIMITS if name in of.channels}
     return channels | _beside_poses(of)
 
@@ -71,7 +77,7 @@ def _at(own: Channel, time: Array) -> Array:
 
 
 def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None:
-    """Means over windows, of both; None where there are too few, or hardly any motion."""
+    """Average both over sliding windows; None with too few windows or hardly any motion."""
     seen = of.found & np.isfinite(measured).all(axis=1)
     time, position, attitude = of.time[seen], of.position[seen], of.attitude[seen]
     if len(time) < FEWEST:
