@@ -14,26 +14,32 @@ ORTHONORMAL_WITHIN = UNIT_WITHIN = 0.1
 
 
 def finite_rows(*arrays: Array) -> Array:
-    """Rows (n,) in which every one of `arrays` (n, k) is finite."""
+    """Mask (n,) of the rows in which every number of all `arrays` (n, k) is finite."""
     return np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in arrays])
 
 
 def unit_quaternions(values: Array) -> tuple[Array, Array]:
-    """Quaternions (n, 4) of unit length, and which of `values` (n, 4) are rotations at all.
+    """Scale quaternions (n, 4) to unit length, and say which of them (n,) are rotations.
 
-    Far from unit length it is none: trackers write zeros where the body was not found.
+    Those far from unit length are not: trackers write zeros where the body was not found. They
+    become the unit quaternion without rotation.
     """
     found = finite_rows(values) & (np.abs(_length(values) - 1.0) < UNIT_WITHIN)
     return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
 
 
 def check_unit_length(values: Array, place: Callable[[int], str]) -> tuple[str, ...]:
-    """Sentences about quaternions (n, 4) that are none, as they have not length 1; zeros may be.
+    """Warn about quaternions (n, 4) whose length is neither 1 nor 0.
 
-    `place` says where a row stands, for people.
+    Args:
+        values: the quaternions as they were read.
+        place: says where a row stands in the file, for people.
+
+    Returns:
+        Sentences about such quaternions.
 
     Raises:
-        BadInput: most of those that are not zeros are none.
+        BadInput: most of those that are not zero have not length 1.
     """
     given = finite_rows(values) & values.any(axis=1)
     length = _length(values)
@@ -59,7 +65,7 @@ def _length(values: Array) -> Array:
 
 
 def orthonormal(R: Array) -> Array:
-    """Where the matrices (n, 3, 3) are rotations: orthonormal and right-handed."""
+    """Mask (n,) of the matrices (n, 3, 3) that are rotations: orthonormal and right-handed."""
     with np.errstate(invalid="ignore", over="ignore"):
         deviation = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
         return (deviation < ORTHONORMAL_WITHIN) & (np.linalg.det(R) > 0.0)

@@ -1,8 +1,9 @@
-"""C3D files that hold rigid bodies (the group ROTATION), not markers alone.
+"""Read C3D files that hold rigid bodies (the group ROTATION), not only markers.
 
-Read here: ezc3d 1.7.2 ends the whole process on damaged files (aborts and segmentation faults in
-2 of 80). The format: c3d.org user guide, sections "parameter section" and "rotation data": blocks
-of 512 bytes; each rotation is a 4 x 4 matrix by columns and a reliability, negative if not seen.
+Bytes are parsed here, because ezc3d 1.7.2 ends the whole process on damaged files (aborts and
+segmentation faults in 2 of 80). The format: c3d.org user guide, sections "parameter section" and
+"rotation data". It has blocks of 512 bytes; each rotation is a 4 x 4 matrix, column by column, and
+a reliability, which is negative where the body was not seen.
 """
 
 import struct
@@ -32,7 +33,14 @@ Values = list[float] | list[str]
 
 @dataclass(frozen=True)
 class Content:
-    """Parameters as `GROUP:NAME` -> values, the raw bytes, and their byte order."""
+    """A C3D file in memory.
+
+    Attributes:
+        path: the file.
+        raw: its bytes.
+        order: their byte order, as `struct` writes it (< or >).
+        parameters: values by `GROUP:NAME`.
+    """
 
     path: Path
     raw: bytes
@@ -40,10 +48,10 @@ class Content:
     parameters: dict[str, Values]
 
     def number(self, name: str) -> float:
-        """The first value of a parameter of numbers.
+        """Return the first value of a numeric parameter.
 
         Raises:
-            BadInput: there is none.
+            BadInput: there is no such parameter.
         """
         values = self.parameters.get(name)
         if values and not isinstance(values[0], str):
@@ -57,7 +65,7 @@ def read_c3d(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; frames in which it was not seen are marked.
 
     Raises:
-        BadInput: not such a file, no rigid bodies in it, or not the one that was asked for.
+        BadInput: not a C3D file, no rigid bodies in it, or not the one that was asked for.
     """
     with read_by("C3D", path, "a whole C3D file", RE_EXPORT):
         content = _open(path)
@@ -94,7 +102,13 @@ def _open(path: Path) -> Content:
 
 
 def _parameters(raw: bytes, at: int, order: str) -> dict[str, Values]:
-    """All parameters, wherever their groups stand."""
+    """Read all parameters; a group may be defined before or after its parameters.
+
+    Args:
+        raw: bytes of the file.
+        at: place of the first group or parameter.
+        order: byte order, as `struct` writes it.
+    """
     groups: dict[int, str] = {}
     found: list[tuple[int, str, Values]] = []
     while raw[at] and (length := abs(struct.unpack_from("b", raw, at)[0])):
@@ -106,7 +120,7 @@ def _parameters(raw: bytes, at: int, order: str) -> dict[str, Values]:
             groups[-number] = name
         else:
             found.append((number, name, _values(raw, link + 2, order)))
-        if step <= 2:  # the last one; less than its own length would go round in circles
+        if step <= 2:  # the last one; a damaged small step would repeat the same place for ever
             break
         at = link + step
     return {f"{groups.get(number, '?')}:{name}": values for number, name, values in found}
@@ -136,7 +150,10 @@ def _bodies(content: Content) -> list[str]:
 
 
 def _rotations(content: Content, used: int) -> tuple[Array, int]:
-    """Rotations (frames, used, 17), and 1 when the file ends before the last frame."""
+    """Read the rotations (frames, used, 17), and 1 when the file ends before the last frame.
+
+    The last axis holds the 16 numbers of the matrix, column by column, and the reliability.
+    """
     ratio = content.parameters.get("ROTATION:RATIO") or [1.0]
     # unsigned, as the header's count of frames is
     first, last = struct.unpack_from(content.order + "HH", content.raw, 6)
@@ -147,7 +164,7 @@ def _rotations(content: Content, used: int) -> tuple[Array, int]:
     size = PER_ROTATION * used
     frames = max(min(expected, (len(content.raw) - start) // (4 * size)), 0)
     values = np.frombuffer(content.raw, content.order + "f4", frames * size, start if frames else 0)
-    with np.errstate(invalid="ignore"):  # damaged numbers of the signalling kind
+    with np.errstate(invalid="ignore"):  # damaged numbers may be signalling NaN
         table = values.reshape(frames, used, PER_ROTATION).astype(float)
     return table, int(frames < expected)
 
@@ -161,10 +178,10 @@ def _metres(content: Content) -> float:
 
 
 def body_names(path: Path) -> list[str]:
-    """The rigid bodies of a file.
+    """List the rigid bodies of a file.
 
     Raises:
-        BadInput: not such a file, or no rigid bodies in it.
+        BadInput: not a C3D file, or no rigid bodies in it.
     """
     with read_by("C3D", path, "a whole C3D file", RE_EXPORT):
         return _bodies(_open(path))

@@ -10,7 +10,7 @@ NEAR = 0.5  # of a filler: a column that reaches so far may mean it
 
 
 def find_filler(values: Array) -> float | None:
-    """The value of a column (n,) that stands for "not measured"; None without one."""
+    """Find the number that stands for "not measured" in a column (n,); None if there is none."""
     for filler in FILLERS:
         here = values == filler
         others = np.abs(values[~here & np.isfinite(values)])
@@ -20,7 +20,7 @@ def find_filler(values: Array) -> float | None:
 
 
 def is_number(cell: str) -> bool:
-    """Whether a cell holds a number, or says that nothing was measured."""
+    """Whether a cell holds a number or one of the words for "not measured"."""
     try:
         float(cell)
     except ValueError:

@@ -18,7 +18,7 @@ Axes = Literal["world", "body", "none"]
 
 @dataclass(frozen=True)
 class ChannelKind:
-    """A kind of channel: its columns in order, their unit, and whose axes they go along."""
+    """A kind of channel: its columns in order, their unit, and the frame of their axes."""
 
     columns: tuple[str, ...]
     unit: str
@@ -43,14 +43,14 @@ KINDS: Mapping[str, ChannelKind] = {
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """What one sensor gave: `time` (m,) s, increasing; `value` (m, c), NaN where not measured."""
+    """Samples of a sensor: `time` (m,) s, increasing; `value` (m, c), NaN where not measured."""
 
     time: Array
     value: Array
 
     @property
     def rate(self) -> float | None:
-        """Rate in Hz of the usual step; None with fewer than two samples."""
+        """Rate in Hz of the median step; None with fewer than two samples."""
         return 1.0 / float(np.median(np.diff(self.time))) if len(self.time) > 1 else None
 
 
@@ -58,7 +58,7 @@ Channels = Mapping[str, Channel]
 
 
 def measured(time: Array, value: Array) -> Channel:
-    """The samples in which at least one component was measured; infinite ones were not."""
+    """Make a channel of the samples with at least one measured component; infinite becomes NaN."""
     value = np.where(np.isfinite(value), value, np.nan)
     some = ~np.isnan(value).all(axis=1)
     return Channel(time[some], value[some])
@@ -94,7 +94,7 @@ def tidy_channels(channels: Channels) -> TidyChannels:
 
 
 def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:
-    """Channels along the axes of a file, turned into NED and FRD."""
+    """Turn channels from the axes of a file into NED and FRD."""
     return {
         kind: Channel(channel.time, _turned(kind, channel.value, mocap))
         for kind, channel in channels.items()
@@ -102,7 +102,7 @@ def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:
 
 
 def attitude_to_ned(attitude: Array, mocap: Mocap) -> Array:
-    """Attitudes (n, 4) from the body to the world of a file, as from FRD to NED; w not below 0."""
+    """Turn attitudes (n, 4) between the axes of a file into attitudes from FRD to NED, w >= 0."""
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
     turned = multiply(multiply(half_turn(world), attitude), half_turn(body))
     return np.where(turned[:, :1] < 0, -turned, turned)
@@ -119,7 +119,7 @@ def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
 
 
 def _turned_angles(angles: Array, world: Array, body: Array) -> Array:
-    """Angles (m, 3) after half turns about x on either side, each angle by itself.
+    """Turn roll, pitch and yaw (m, 3) rad into NED and FRD by half turns about x, each by itself.
 
     S Rz(yaw) Ry(pitch) Rx(roll) = Rz(-yaw) Ry(-pitch) Rx(roll) S for a half turn S about x, and S
     beside Rx adds pi to the roll.
@@ -133,14 +133,14 @@ def _turned_angles(angles: Array, world: Array, body: Array) -> Array:
 
 
 def by_name(channels: Channels) -> Iterator[tuple[str, Array]]:
-    """Arrays of channels under the names that `from_names` knows."""
+    """Yield the arrays of channels with the names under which `from_names` finds them."""
     for kind, channel in channels.items():
         yield f"channel.{kind}.time", channel.time
         yield f"channel.{kind}.value", channel.value
 
 
 def from_names(arrays: Mapping[str, Array]) -> dict[str, Channel]:
-    """Undo `by_name`."""
+    """Put together the channels whose arrays `by_name` named."""
     return {
         kind: Channel(arrays[f"channel.{kind}.time"], arrays[f"channel.{kind}.value"])
         for kind in KINDS

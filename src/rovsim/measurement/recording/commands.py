@@ -1,4 +1,4 @@
-"""Logged values become commands, whatever file they stood in."""
+"""Turn logged values into commands, whatever file they came from."""
 
 from typing import Callable
 
@@ -38,13 +38,20 @@ def as_commands(
     pulses: bool = False,
     notes: tuple[str, ...] = (),
 ) -> CommandExport:
-    """Commands of logged values (m, c), a column each; lines with a NaN are left out and counted.
+    """Turn logged values into commands; lines with a NaN are left out and counted.
 
-    `pulses`: the values are pulses of a radio control in us, also where they mean a demand. Columns
-    beyond those of the log are its auxiliary ones.
+    Args:
+        time: (m,) s.
+        value: (m, c), the columns of the log, followed by its auxiliary ones.
+        log: what the columns mean.
+        locate: says where a value stands, for errors.
+        counts: repairs that were made before.
+        pulses: whether the values are pulses in us although the log says otherwise, as for a
+            demand from a radio.
+        notes: sentences about the file.
 
     Raises:
-        BadInput: values no such command can have.
+        BadInput: values that no such command can have.
     """
     unit = "pwm" if pulses else log.kind
     value, beside = value[:, : len(log.names)], value[:, len(log.names) :]
@@ -60,7 +67,10 @@ def as_commands(
 
 
 def are_pulses(value: Array) -> bool:
-    """Whether numbers of any shape are pulses in us: all that are known, and some are."""
+    """Whether numbers of any shape are pulses in us: there are some, all within the valid range.
+
+    NaN and the numbers that stand for no pulse do not count.
+    """
     low, high, _ = ALLOWED["pwm"]
     given = value[np.isfinite(value) & ~pwm.absent(value)]
     return bool(len(given) and given.min() >= low and given.max() <= high)
@@ -81,7 +91,7 @@ def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> No
 
 
 def _hint(value: Array, log: CommandLog) -> str:
-    """What other unit all values have by their size, in a sentence; empty where none shows."""
+    """Sentence on the unit that the values (m, c) may have by their size; empty if unknown."""
     known = value[:, ~np.array(log.turned)]
     known = known[~np.isnan(known)]
     if not np.isfinite(known).all() or not known.size:
@@ -92,7 +102,7 @@ def _hint(value: Array, log: CommandLog) -> str:
 
 
 def guess_unit(low: float, high: float) -> str:
-    """What commands from `low` to `high` may be, and what to do with them; empty: nothing known."""
+    """Say what commands from `low` to `high` may be and how to convert them; empty if unknown."""
     if low >= ALLOWED["pwm"][0] and high <= ALLOWED["pwm"][1]:
         return "pulses in us, kind pwm"
     size = max(-low, high)
@@ -116,7 +126,10 @@ def guess_unit(low: float, high: float) -> str:
 
 
 def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
-    """Values (m, c) as the model takes them, and how many lines reached beyond [-1, 1]."""
+    """Convert values (m, c) to what the model takes, and count the lines that exceeded [-1, 1].
+
+    Commands and demands are limited to [-1, 1]; wrenches (N, N m) and angles (rad) are not.
+    """
     angles = value * log.signs
     if unit == "pwm":
         value = pwm.to_commands(value)
@@ -134,14 +147,14 @@ def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
 
 
 def _all_axes(value: Array, axes: list[int]) -> Array:
-    """Values (m, 6), surge to yaw; an axis without a column got no command."""
+    """Put the columns of `axes` into all six axes (m, 6), surge to yaw; others get zero."""
     full = np.zeros((len(value), len(AXES)))
     full[:, axes] = value
     return full
 
 
 def as_logged(commands: Commands, log: CommandLog) -> np.ndarray:
-    """Values (m, c) as that log would hold these commands: the inverse of `as_commands`."""
+    """Values (m, c) with which a log would record these commands: the inverse of `as_commands`."""
     value = commands.value[:, log.axis_numbers] if log.per_axis else commands.value
     signed = value * log.signs
     if log.kind != "pwm":

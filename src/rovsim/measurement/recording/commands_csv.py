@@ -24,11 +24,11 @@ HEAVE = AXES.index("heave")
 def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """Read commands; lines without any value are left out and counted.
 
-    In other lines the value before holds in an empty or NaN cell. Demands that are pulses of a
-    radio, in us, are seen by their size.
+    An empty or NaN cell of another line takes the previous value of its column. Demands that are
+    pulses of a radio, in us, are recognised by their size.
 
     Raises:
-        BadInput: not such a file, or values no such command can have.
+        BadInput: the file cannot be read so, or values that no such command can have.
     """
     lines = csv_lines(path)
     places = column_places(path, lines.names, ["time_s", *log.names, *log.auxiliary])
@@ -47,9 +47,15 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
 
 def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
-    """Values (m, c) where outputs without a pulse stand for no command, if all others are pulses.
+    """Replace outputs without a pulse by the pulse of no command, if all other values are pulses.
 
-    Zeros among other numbers are no such thing, and what those are is said when they are refused.
+    Args:
+        value: logged values (m, c).
+        log: says which columns are angles; these stay as they are.
+
+    Returns:
+        The values, and sentences about what was replaced. Values that are not pulses stay as they
+        are, and are refused later.
     """
     pulses = value[:, ~np.array(log.turned)]
     if log.kind != "pwm" or not are_pulses(pulses):
@@ -60,9 +66,14 @@ def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...
 
 
 def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:
-    """Values (m, c) where a log tells changes only, and what to say about it.
+    """Fill cells of a log that only records changes: each column holds until its next value.
 
-    Each column holds from one value to the next; lines without any value stay without.
+    Args:
+        time: (m,) s, in any order.
+        value: logged values (m, c), NaN in empty cells.
+
+    Returns:
+        The filled values, and a sentence if any was filled. Lines without any value stay empty.
     """
     order = np.argsort(time, kind="stable")
     given = ~np.isnan(value[order])
@@ -80,7 +91,7 @@ def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:
 
 
 def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
-    """Values (m, c) whose demands may be pulses, and what to say about it; else as they are."""
+    """Turn demands that are pulses of a radio into [-1, 1]; with a sentence if they are."""
     own = value[:, : len(log.names)]
     if log.kind != "demand" or not are_pulses(own):
         return value, ()
@@ -98,7 +109,7 @@ def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
 
 
 def format_commands(commands: Commands, log: CommandLog) -> str:
-    """A file that `read_commands` reads back: times to 0.1 ms, pulses in whole us."""
+    """Write commands as text that `read_commands` can read: times to 0.1 ms, pulses in whole us."""
     pulses = log.kind == "pwm"
     shapes = ["%d" if pulses and not turned else "%.4f" for turned in log.turned]
     text = io.StringIO()

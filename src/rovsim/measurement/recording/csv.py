@@ -54,16 +54,16 @@ class Columns:
     values: Mapping[str, Array]
 
     def of(self, names: Sequence[str]) -> Array:
-        """Columns (n, len(names)); NaN where the file has none of that name."""
+        """Values (n, c) of c columns by name; NaN for columns that the file has not."""
         missing = np.full(len(self.time), np.nan)
         return np.stack([self.values.get(name, missing) for name in names], axis=1)
 
 
 def read_csv(path: Path, mocap: Mocap) -> Export:
-    """Read poses where position and attitude share their lines, and any other channel.
+    """Read poses, where position and attitude share their lines, and any other channel.
 
     Raises:
-        BadInput: not such a file; names the line and the column.
+        BadInput: the file cannot be read so; names the line and the column.
     """
     lines = csv_lines(path)
     names = _known_columns(lines)
@@ -87,10 +87,10 @@ def _quaternion_at(table: Lines, row: int) -> str:
 
 
 def _zeros(names: list[str], values: Array) -> Array:
-    """Lines (n,) whose pose is zero in every component: trackers that did not see the body.
+    """Mask (n,) of lines whose pose is all zeros: the tracker did not see the body.
 
-    Not those at the start that go on from zero, where motion is counted from the first line, and
-    nothing where less than two coordinates and an angle were measured.
+    Zeros at the start count as poses if the next pose is close to zero, as where motion is measured
+    from the first line. Nothing is masked unless two coordinates and an angle were measured.
     """
     place, turn = np.isin(names, POSITION), np.isin(names, EULER)
     if place.sum() < 2 or not turn.any() or not len(values):
@@ -140,7 +140,11 @@ def _export(
 
 
 def _means(posed: Array, nu: Array, mocap: Mocap) -> bool:
-    """Whether the velocities (n, 6) are means over the time from one pose to the next."""
+    """Whether the velocities (n, 6) are taken for means over the time from one pose to the next.
+
+    They are if both are complete in at least half of the lines with poses and in half of those with
+    any velocity, unless the campaign says that velocities are instantaneous.
+    """
     if mocap.velocity == "instant":
         return False
     given = np.isfinite(nu).any(axis=1)
@@ -159,12 +163,12 @@ def _instant(channels: Mapping[str, Channel], mocap: Mocap) -> tuple[str, ...]:
 
 
 def _frames(time: Array, partly: Array, channels: Mapping[str, Channel]) -> Array:
-    """Lines (n,) that are frames of the poses: not those that only another sensor wrote."""
+    """Mask (n,) of lines that are frames of the poses, not written by another sensor alone."""
     return partly | ~np.isin(time, np.concatenate([c.time for c in channels.values()]))
 
 
 def _apart(columns: Columns, position: Array, angles: Array) -> dict[str, Channel]:
-    """Position and attitude, each at its own times; attitudes with a missing angle are `euler`."""
+    """Make channels of position and attitude; attitudes with missing angles become `euler`."""
     attitude, found = _attitude(angles)
     channels = {
         "position": measured(columns.time, position),
@@ -184,7 +188,7 @@ def _velocities(columns: Columns, nu: Array) -> dict[str, Channel]:
 
 
 def _attitude(values: Array) -> tuple[Array, Array]:
-    """Unit quaternions (n, 4) of Euler angles (n, 3) or quaternions (n, 4), and where found."""
+    """Turn Euler angles (n, 3) or quaternions (n, 4) into unit quaternions; and which are valid."""
     if values.shape[1] == 4:
         return unit_quaternions(values)
     found = finite_rows(values)
@@ -192,10 +196,10 @@ def _attitude(values: Array) -> tuple[Array, Array]:
 
 
 def _known_columns(lines: Lines) -> list[str]:
-    """The columns of channels in the file.
+    """List the columns of measured channels in the file.
 
     Raises:
-        BadInput: none, or a quaternion without one of its components.
+        BadInput: there is none, or a quaternion lacks one of its components.
     """
     if any(name in lines.names for name in QUATERNION):
         column_places(lines.path, lines.names, ["time_s", *QUATERNION])
@@ -211,7 +215,7 @@ def _known_columns(lines: Lines) -> list[str]:
 
 
 def _near_misses(names: list[str]) -> tuple[str, ...]:
-    """Say which columns that are not read may have been meant as others."""
+    """Sentences about unread columns whose names resemble those of a channel."""
     missing = [name for name in KNOWN if name not in names]
     near = {
         name: close[0]

@@ -1,4 +1,4 @@
-"""What the numbers of a csv cannot be, whatever its columns are called: one message, no guess."""
+"""Refuse numbers of a csv that are implausible for the units of its columns; nothing is guessed."""
 
 from pathlib import Path
 from typing import Mapping, NamedTuple, Sequence
@@ -18,7 +18,14 @@ LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]
 
 
 class Limit(NamedTuple):
-    """What no vehicle usually reaches, in our unit, and units in which sensors often tell it."""
+    """The velocity or rate that no vehicle usually reaches.
+
+    Attributes:
+        columns: names of the columns in a csv.
+        fastest: the limit.
+        unit: its unit.
+        others: other units that sensors often use.
+    """
 
     columns: list[str]
     fastest: float
@@ -26,7 +33,7 @@ class Limit(NamedTuple):
     others: tuple[str, ...]
 
     def beyond(self, value: Array) -> float | None:
-        """The usual size of a velocity or rate (n, c), its 90th percentile, if none can be so."""
+        """The 90th percentile of the size of `value` (n, c) if it is above the limit; else None."""
         if not np.isfinite(value).any():
             return None
         usual = float(np.nanpercentile(np.abs(value), USUAL))
@@ -45,7 +52,12 @@ RENAME = "Name the column after its unit ({}), and let `rovsim init` make a copy
 
 
 def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[str, ...]]:
-    """Values (n, c) with NaN for what stands for "not measured", and sentences about it."""
+    """Replace numbers that stand for "not measured" by NaN; with sentences about them.
+
+    Args:
+        names: names (c,) of the columns.
+        values: the numbers (n, c).
+    """
     found = [find_filler(column) for column in values.T]
     said = tuple(
         f"{int(np.sum(column == filler))} cells of '{name}' hold {filler:g}: not measured."
@@ -57,10 +69,15 @@ def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[s
 
 
 def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> None:
-    """Refuse times that are no s, positions no m, angles no rad, and heights for depths.
+    """Refuse times that are not in s, positions not in m, angles not in rad, and heights as depths.
+
+    Args:
+        path: the file.
+        time: (n,) s.
+        values: columns (n,) by name.
 
     Raises:
-        BadInput: says which column, and how to say what it holds.
+        BadInput: says which column is implausible, and how to correct it.
     """
     step = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
     if step > LONGEST_STEP:
@@ -116,7 +133,15 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
 
 
 def usual_speed(value: Array, time: Array) -> float:
-    """A high but usual speed: the 90th percentile over tenths of a second, free of noise."""
+    """Speed that is exceeded in a tenth of the time, from steps of 0.2 s, long against noise.
+
+    Args:
+        value: positions (n, c), m; rows of zeros count as not measured.
+        time: (n,) s, increasing.
+
+    Returns:
+        The 90th percentile, m/s; 0 with fewer than ten known positions.
+    """
     known = np.isfinite(value).all(axis=1) & np.isfinite(time) & value.any(axis=1)
     if known.sum() < 10:
         return 0.0
@@ -128,9 +153,9 @@ def usual_speed(value: Array, time: Array) -> float:
 
 
 def doubt_order(quaternion: Array) -> tuple[str, ...]:
-    """A sentence where quaternions (n, 4) tumble as w, x, y, z, and stay upright as x, y, z, w.
+    """Sentence where quaternions (n, 4) tumble as (w, x, y, z) but stay upright as (x, y, z, w).
 
-    Upright or upside down: that is a matter of axes.
+    Upside down counts as upright, because that depends on the axes.
     """
     known = quaternion[np.isfinite(quaternion).all(axis=1) & quaternion.any(axis=1)]
     if not len(known):
@@ -147,7 +172,7 @@ def doubt_order(quaternion: Array) -> tuple[str, ...]:
 
 
 def is_height(depth: Array) -> bool:
-    """Whether a depth (n,) is positive up: nearly all of it above the surface otherwise."""
+    """Whether a depth (n,) m is positive up, since otherwise nearly all is above the surface."""
     known = depth[np.isfinite(depth)]
     return bool(len(known) and np.mean(known < ABOVE) > SHARE and known.min() < -DEEP)
 

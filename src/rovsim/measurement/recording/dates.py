@@ -17,19 +17,19 @@ DAY = 86_400.0  # s
 
 
 def is_date(cell: str) -> bool:
-    """Whether a cell begins as a date with its time, or as a time of day."""
+    """Whether a cell begins with a date and time, or with a time of day, by ISO 8601."""
     return bool(DATE.match(cell) or TIME_OF_DAY.match(cell))
 
 
 def resembles_date(cell: str) -> bool:
-    """Whether a cell is a date or a time of day, however it is written."""
+    """Whether a cell is a date or a time of day in one of several spellings other than ISO 8601."""
     return bool(ANY_SPELLING.fullmatch(cell))
 
 
 def to_seconds(cells: Iterable[str]) -> Array:
-    """Seconds (n,) since 1970, or since the midnight before the first cell; NaN for other texts.
+    """Convert dates to seconds (n,) since 1970, times of day to seconds since the first midnight.
 
-    Dates without a time zone are taken for UTC.
+    Dates without a time zone are taken for UTC. Other texts become NaN.
     """
     found = np.array([_seconds(cell) for cell in cells], float)
     midnights = np.diff(found, prepend=found[:1]) < -0.5 * DAY

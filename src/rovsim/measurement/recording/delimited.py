@@ -1,4 +1,4 @@
-"""Delimited text: where the names stand, what separates cells, and the lines below."""
+"""Delimited text: find the line of column names, the separator, and the lines of data."""
 
 import re
 from dataclasses import dataclass, replace
@@ -15,11 +15,17 @@ from rovsim.measurement.recording.units import with_units
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines below a line of column names, their cells `separator` apart.
+    """Lines of data below a line of column names.
 
-    `numbers` are the line numbers in the file, from 1; `ended` is False when the file stops in
-    the middle of a line (no line end after it). Lines are split when they are asked for: cells
-    take ten times the room of their text.
+    Lines are split into cells only on demand: cells take ten times the memory of their text.
+
+    Attributes:
+        path: the file.
+        names: the column names.
+        separator: what separates cells.
+        rows: the lines.
+        numbers: their line numbers in the file, from 1.
+        ended: False when the file stops in the middle of a line (no line end after it).
     """
 
     path: Path
@@ -33,7 +39,7 @@ class Lines:
         return len(self.rows)
 
     def cells(self, row: int) -> list[str]:
-        """Cells of one line, counted from the first below the names, or from the last."""
+        """Cells of one line, by its index in `rows` (negative from the end)."""
         return self.rows[row].split(self.separator)
 
     def all_cells(self) -> Iterator[list[str]]:
@@ -41,16 +47,17 @@ class Lines:
         return (row.split(self.separator) for row in self.rows)
 
     def between(self, first: int, last: int) -> "Lines":
-        """Lines from the first up to the one before the last."""
+        """The lines of indices `first` to `last` - 1."""
         rows, numbers = self.rows[first:last], self.numbers[first:last]
         return replace(self, rows=rows, numbers=numbers, ended=True)
 
 
 def csv_lines(path: Path) -> Lines:
-    """Lines of a csv file below its line of column names.
+    """Read the lines of a csv file below its line of column names.
 
-    Commas separate, or semicolons or tabs, and then a comma in a number is a decimal point; else
-    blanks. Remarks (#), quotes, a line of units and further lines of the same names are no data.
+    Cells are separated by commas; or by semicolons or tabs, and then commas in numbers are decimal
+    points; or else by blanks. Comment lines (#), quotes, a line of units and repetitions of the
+    line of names are not data.
 
     Raises:
         BadInput: the file is empty.
@@ -80,9 +87,9 @@ def csv_lines(path: Path) -> Lines:
 
 
 def find_separator(head: str, below: str) -> str:
-    """What separates the cells of a line of names and of the line below it."""
+    """Find what separates the cells of a line of names and of the line below it."""
     fitting = [s for s in ",;\t" if head.count(s)]
-    # last the comma: names may have as many ("x, m") as the numbers below have decimal ones
+    # the comma comes last: names may have as many ("x, m") as the numbers have decimal commas
     alike = [s for s in reversed(fitting) if head.count(s) == below.count(s)]
     if fitting:
         return (alike or fitting)[0]
@@ -90,7 +97,7 @@ def find_separator(head: str, below: str) -> str:
 
 
 def is_table(head: bytes) -> bool:
-    """Whether text begins with a line of names, and numbers below it, with blanks between them."""
+    """Whether text begins with a line of names above a line of numbers, separated by blanks."""
     lines = (decoded(head) or "").split("\n")
     header = find_header(lines)
     if header is None:
@@ -106,9 +113,12 @@ def _is_quoted(head: str) -> bool:
 
 
 def find_header(lines: Sequence[str]) -> int | None:
-    """Which line holds the names of columns: the first that is no remark.
+    """Find the index of the line of column names: the first that is not a comment (#).
 
-    Remarks start with #; where numbers follow at once, the last of them holds the names.
+    Where numbers follow the comments at once, the last comment holds the names.
+
+    Returns:
+        The index from 0; None for a file without text.
     """
     filled = [n for n, line in enumerate(lines) if line.strip()]
     first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
@@ -122,16 +132,16 @@ def find_header(lines: Sequence[str]) -> int | None:
 def split_lines(
     path: Path, lines: list[str], header: int, names: list[str], separator: str, *, ended: bool
 ) -> Lines:
-    """Split the lines below line `header` (index from 0); blank ones are skipped."""
+    """Make `Lines` of the lines below line `header` (index from 0); blank ones are skipped."""
     filled = [n for n in range(header + 1, len(lines)) if lines[n].strip()]
     rows = [lines[n] for n in filled]
     return Lines(path, names, separator, rows, [n + 1 for n in filled], ended)
 
 
 def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
-    """Drop a last line that was cut; return how many were dropped (0, 1).
+    """Drop the last line if it was cut off; return how many lines were dropped (0 or 1).
 
-    It is cut when it stops before one of the `columns` in use, or in the middle of such a cell.
+    It was cut off if it ends before one of the `columns` in use, or in the middle of such a cell.
     """
     if not len(table):
         return table, 0

@@ -12,13 +12,18 @@ from rovsim.measurement.recording.channels import Channels
 
 @dataclass(frozen=True, eq=False)
 class Export:
-    """What was measured as a file tells it: its own axes, its own order of lines.
+    """The measurements of a file, in the file's own axes and order of lines.
 
-    `time` (n,) s; `position` (n, 3) m; `attitude` (n, 4) quaternion, body to world; `found` (n,)
-    False where the body was not seen; `rate` nominal Hz, None when the file does not say; `nu`
-    (n, 6) body velocities, None when not exported; `counts` of what was repaired while reading
-    (`cut_lines`, `bad_rotations`); `channels` what else was measured; `notes` are sentences about
-    the file that its owner should read.
+    Attributes:
+        time: (n,) s.
+        position: (n, 3) m.
+        attitude: (n, 4), unit quaternion (w, x, y, z) from body to world.
+        found: bool (n,), False where the body was not seen.
+        rate: nominal rate, Hz; None when the file does not say.
+        nu: (n, 6), body velocities, m/s and rad/s; None when not exported.
+        counts: number of repairs while reading, by name (`cut_lines`, `bad_rotations`).
+        channels: further measured channels.
+        notes: sentences about the file that its owner should read.
     """
 
     time: Array
@@ -35,7 +40,7 @@ class Export:
     def of_channels(
         channels: Channels, counts: dict[str, int] | None = None, notes: tuple[str, ...] = ()
     ) -> "Export":
-        """What holds no full poses."""
+        """Make the export of a file without full poses."""
         return Export(
             np.empty(0),
             np.empty((0, 3)),
@@ -49,10 +54,15 @@ class Export:
 
 @dataclass(frozen=True, eq=False)
 class CommandExport:
-    """Commands as a file tells them: `time` (m,) s, `value` (m, c), lines in file order.
+    """The commands of a file, with lines in the order of the file.
 
-    `counts` of what was repaired while reading (`cut_lines`, `dropped`, `clipped`); `notes` are
-    sentences about the file that its owner should read. `auxiliary`: what else was logged, by name.
+    Attributes:
+        time: (m,) s.
+        value: (m, c), as in `rovsim.core.run.Commands`.
+        kind: what the commands drive.
+        counts: number of repairs while reading, by name (`cut_lines`, `dropped`, `clipped`).
+        notes: sentences about the file that its owner should read.
+        auxiliary: further logged numbers, by name.
     """
 
     time: Array

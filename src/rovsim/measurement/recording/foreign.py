@@ -1,4 +1,4 @@
-"""What a damaged file makes of a foreign library becomes one message."""
+"""Turn the errors of other libraries on damaged files into one message about the file."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,7 +9,7 @@ from rovsim.core.errors import BadInput
 
 @contextmanager
 def read_by(library: str, path: Path, expected: str, remedy: str) -> Iterator[None]:
-    """Around calls of a library that reads `path`: whatever it raises is about the file.
+    """Wrap calls of a library that reads `path`: any error of it is reported as a bad file.
 
     Raises:
         BadInput: the library could not read it.
@@ -18,7 +18,7 @@ def read_by(library: str, path: Path, expected: str, remedy: str) -> Iterator[No
         yield
     except BadInput:
         raise
-    except Exception as error:  # of any type: damaged bytes end wherever they are met
+    except Exception as error:  # of any type: damaged bytes may fail anywhere in the library
         said = " ".join(str(error).split())[:200]
         raise BadInput(
             f"cannot be read ({library}: {type(error).__name__}{f': {said}' if said else ''})",

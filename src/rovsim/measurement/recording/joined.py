@@ -1,4 +1,4 @@
-"""Several files of one run become one export: each holds other sensors, all on one clock."""
+"""Join several files of one run, which hold different sensors on one clock, into one export."""
 
 from collections import Counter
 from dataclasses import replace
@@ -11,17 +11,17 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.exports import Export
 
 POSES = "full poses"
-TOLD = ("position", "attitude", "euler")  # kinds that full poses tell as well
+TOLD = ("position", "attitude", "euler")  # channels that full poses contain as well
 
 
 def list_held(export: Export) -> list[str]:
-    """What a file holds: full poses, and kinds of channels that were measured at any time."""
+    """List what a file holds: full poses, and the kinds of channels with any sample."""
     channels = [kind for kind, channel in export.channels.items() if len(channel.time)]
     return [*([POSES] if len(export.time) and export.found.any() else []), *channels]
 
 
 def join(exports: Mapping[Path, Export]) -> Export:
-    """One export of all files: the poses of the one that has them, the channels of each.
+    """Make one export of all files: the poses of the one that has them, the channels of each.
 
     Beside full poses the position and attitude of other files are not used, and a note says so.
 
@@ -46,7 +46,7 @@ def join(exports: Mapping[Path, Export]) -> Export:
 
 
 def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export], list[str]]:
-    """Without what the full poses of another file tell as well, and sentences about it."""
+    """Drop channels that the full poses of another file contain; with sentences about them."""
     posed = [path for path, one in exports.items() if POSES in list_held(one)]
     if len(posed) != 1:
         return exports, []
@@ -95,7 +95,7 @@ def _check_clocks(exports: Mapping[Path, Export]) -> None:
 
 
 def span_of(export: Export) -> tuple[float, float]:
-    """First and last time in s at which anything was measured."""
+    """First and last time of any measurement, s."""
     times = [export.time, *(channel.time for channel in export.channels.values())]
     every = np.concatenate([time for time in times if len(time)] or [np.zeros(1)])
     return float(every.min()), float(every.max())

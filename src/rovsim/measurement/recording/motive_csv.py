@@ -1,4 +1,4 @@
-"""OptiTrack Motive, csv export of format version 1.2x."""
+"""Read OptiTrack Motive's csv export of format version 1.2x."""
 
 import csv
 import io
@@ -38,7 +38,14 @@ CHECK_UP = (
 
 @dataclass(frozen=True)
 class Layout:
-    """Header values by key, the line of column names, columns of rotation and position by body."""
+    """Where things stand in a file.
+
+    Attributes:
+        header: header values by key, in lower case.
+        line: index of the line of column names.
+        names: the column names.
+        bodies: indices of the columns of rotation and of position, by rigid body.
+    """
 
     header: dict[str, str]
     line: int
@@ -50,7 +57,7 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; `y_up` and `fur` are turned into `z_up` and `flu` here.
 
     Raises:
-        BadInput: not such a file, or no such body in it; names the line and the column.
+        BadInput: not a Motive export, or no such body in it; names the line and the column.
     """
     text = read_text(path)
     lines = text.split("\n")
@@ -74,7 +81,10 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
 
 
 def _upright(position: Array, attitude: Array, mocap: Mocap) -> tuple[Array, Array]:
-    """Positions (n, 3) and attitudes (n, 4) along z_up and flu, where they are along y_up, fur."""
+    """Turn positions (n, 3) from y_up to z_up, and attitudes (n, 4) also from fur to flu.
+
+    Only what the campaign states as `y_up` or `fur` is turned.
+    """
     if mocap.world_axes == "y_up":
         position, attitude = rotate(QUARTER, position), multiply(QUARTER, attitude)
     if mocap.body_axes == "fur":
@@ -83,13 +93,17 @@ def _upright(position: Array, attitude: Array, mocap: Mocap) -> tuple[Array, Arr
 
 
 def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
-    """Quaternions (n, 4), scalar first, of the columns x, y, z, w or of angles in degrees."""
+    """Make quaternions (n, 4), scalar first, of columns x, y, z, w or of Euler angles in degrees.
+
+    Returns:
+        The quaternions, and which of them (n,) are valid.
+    """
     kind = layout.header.get("rotation type", "Quaternion").strip()
     if values.shape[1] == 4 and kind.lower() == "quaternion":
         return unit_quaternions(values[:, [3, 0, 1, 2]])
     if values.shape[1] == 3 and kind.upper() in ORDERS:
         found = finite_rows(values)
-        # each angle about the axis as the earlier ones left it (OptiTrack: relative angles)
+        # intrinsic angles: each about the axis that the earlier ones have turned (OptiTrack)
         places = ["XYZ".index(axis) for axis in kind.upper()]
         angles = np.where(found[:, None], values, 0.0)[:, places]
         turned = scipy.spatial.transform.Rotation.from_euler(kind.upper(), angles, degrees=True)
@@ -103,7 +117,7 @@ def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
 
 
 def _layout(path: Path, lines: list[str]) -> Layout:
-    """Find the column names: the line that starts with Frame, and those above it."""
+    """Find the columns by the line that starts with Frame and the lines of names above it."""
     top = [next(csv.reader(io.StringIO(line)), []) for line in lines[:TALLEST]]
     cells = [[cell.strip() for cell in row] for row in top]
     named = next((n for n, row in enumerate(cells) if row and row[0] == "Frame"), None)
@@ -199,10 +213,10 @@ def _rate(layout: Layout) -> float | None:
 
 
 def body_names(path: Path) -> list[str]:
-    """The rigid bodies of an export.
+    """List the rigid bodies of an export.
 
     Raises:
-        BadInput: not such a file.
+        BadInput: not a Motive export.
     """
     return list(_layout(path, read_text(path).split("\n")).bodies)
 

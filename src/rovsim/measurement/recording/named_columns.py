@@ -1,4 +1,4 @@
-"""Columns by their names, and what is said where one is missing, most often that of the times."""
+"""Find columns by their names, with an error that helps where one (often the time) is missing."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ FRAMES = {"frame", "frames", "frame_no", "frame_number", "frame number"}
 
 
 def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
-    """Places of the wanted columns among `names`.
+    """Find the indices of the wanted columns among `names`.
 
     Raises:
         BadInput: one is missing, or named twice.
@@ -45,7 +45,7 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
 
 
 def no_time(path: Path, names: list[str]) -> BadInput:
-    """The error of a file without a column of times: which one may be it, by its name."""
+    """Make the error for a file without a column of times, with a guess which column it may be."""
     if all(is_number(name) or resembles_date(name) for name in names):
         return BadInput(
             f"no line of column names above the values {', '.join(names[:4])}, …",
@@ -78,7 +78,7 @@ def _how_to_name_times(names: Sequence[str], likely: Sequence[str]) -> str:
 
 
 def find_halves(names: Sequence[str]) -> tuple[str, str] | None:
-    """Columns of whole seconds and of the nanoseconds beyond them, as stamps of ROS come apart."""
+    """Find a column of whole seconds and one of nanoseconds, into which stamps of ROS are split."""
     for name in names:
         if found := re.fullmatch(r"(.*?)n(ano)?sec(ond)?s?", name, re.IGNORECASE):
             whole = re.compile(re.escape(found[1]) + r"sec(ond)?s?", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Numbers of the cells, with the line and column of whatever is wrong."""
+"""Read the numbers of columns, with errors that name the line and the column."""
 
 import re
 
@@ -9,11 +9,11 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.cells import MISSING
 from rovsim.measurement.recording.delimited import Lines
 
-AT_ONCE = 10_000  # lines: where one of them needs a closer look, so many get it
+AT_ONCE = 10_000  # lines: if one of them needs the slow way, all of these are read in it
 
 
 def numbers(table: Lines, columns: list[int]) -> Array:
-    """Numbers (lines, columns) of those columns; an empty cell is NaN.
+    """Read the numbers (n, c) of c columns; an empty cell is NaN.
 
     Raises:
         BadInput: a cell is missing or holds no number.
@@ -30,7 +30,7 @@ def _plain_numbers(table: Lines, columns: list[int]) -> Array:
         return np.loadtxt(
             table.rows, comments=None, delimiter=table.separator, usecols=columns, ndmin=2
         )
-    except ValueError:  # empty cells, or what a message will be about
+    except ValueError:  # empty cells, or cells that the slow way refuses with their place
         rows = zip(table.all_cells(), table.numbers, strict=True)
         return np.array([[_number(table, row, n, c) for c in columns] for row, n in rows])
 
@@ -53,7 +53,7 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
 
 
 def bad_cell(table: Lines, line: int, column: int, cell: str, expected: str) -> BadInput:
-    """The error of a cell that holds something else than expected."""
+    """Make the error for a cell that does not hold what is expected."""
     place = f"{table.path}, line {line}, column '{table.names[column]}'"
     if re.match(r"\d{4}-\d\d-\d\d|\d\d?:\d\d:|\d\d?-[A-Za-z]{3}-\d{2,4}", cell):
         return BadInput(

@@ -1,4 +1,4 @@
-"""Times that begin anew: two recordings, one after the other in a file."""
+"""Refuse files whose times start again: two recordings, one after the other in a file."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -9,8 +9,8 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 
 BACK = 1.0  # s: lines that are merely out of order step back less
-FEWEST, SHARE = 10, 0.05  # samples of a part: of so many, and of so many of all
-COMMON = 0.5  # of the shorter part: a clock that was set back tells little of the time twice
+FEWEST, SHARE = 10, 0.05  # smallest part that counts: so many samples, and such a share of all
+COMMON = 0.5  # of the shorter part: a clock that was merely set back repeats less of the time
 
 
 class SeveralRuns(BadInput):
@@ -18,17 +18,17 @@ class SeveralRuns(BadInput):
 
 
 def find_begins(time: Array) -> Array:
-    """Where (k,) times (n,) s step back and begin anew, the first sample among them."""
+    """Indices (k,) of the samples at which times (n,) s start again; the first is 0."""
     return np.concatenate([[0], np.flatnonzero(np.diff(time) < -BACK) + 1])
 
 
 def check_one_run(time: Array, path: Path) -> None:
-    """Refuse times (n,) s, in the order of the file, that begin anew and run on beside the first.
+    """Refuse times (n,) s, in the order of the file, that start again and overlap with the first.
 
     Sorted by time, two such runs would alternate from sample to sample.
 
     Raises:
-        SeveralRuns: they do.
+        SeveralRuns: the file holds several runs.
     """
     begins = find_begins(time)
     parts = np.split(time, begins[1:])

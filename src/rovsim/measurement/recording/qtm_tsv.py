@@ -1,4 +1,4 @@
-"""Qualisys Track Manager 6DOF export (tab separated, millimetres)."""
+"""Read Qualisys Track Manager's 6DOF export (tab separated, millimetres)."""
 
 import re
 from dataclasses import dataclass, replace
@@ -26,7 +26,14 @@ RE_EXPORT = "In QTM: File, Export, To TSV, with data type 6D and the column head
 
 @dataclass(frozen=True)
 class Layout:
-    """Where things stand: header values by key, the column line, columns by body name."""
+    """Where things stand in a file.
+
+    Attributes:
+        header: header values by key.
+        line: index of the line of column names.
+        names: the column names.
+        bodies: indices of columns by name, for each rigid body.
+    """
 
     header: dict[str, list[str]]
     line: int
@@ -38,7 +45,7 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
     """Read one rigid body; its attitude comes from the rotation matrix, not the Euler angles.
 
     Raises:
-        BadInput: not such a file, or no such body in it; names the line and the column.
+        BadInput: not a QTM export, or no such body in it; names the line and the column.
     """
     text = read_text(path)
     lines = text.split("\n")
@@ -53,7 +60,7 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
     time = _time(table, layout, rate)
     values = numbers(table, places)
     residual = numbers(table, [body["Residual"]]) if "Residual" in body else None
-    # column by column: element 3 c + r is row r, column c
+    # the matrix is written column by column: element 3 c + r is row r, column c
     R = values[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
     seen = finite_rows(values) & values.any(axis=1)
     if residual is not None:
@@ -107,7 +114,7 @@ def _check_kind(path: Path, header: dict[str, list[str]]) -> None:
 def _bodies(
     path: Path, line: int, cells: list[str], body_names: list[str]
 ) -> dict[str, dict[str, int]]:
-    """Columns of every body. A body starts at its '<Body> X' column."""
+    """Find the columns of every body, by name. A body starts at its '<Body> X' column."""
     starts = [n for n, cell in enumerate(cells) if cell == "X" or cell.endswith(" X")]
     bodies: dict[str, dict[str, int]] = {}
     if not starts:
@@ -156,7 +163,7 @@ def _rate(path: Path, layout: Layout) -> float | None:
 
 
 def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
-    """Times (n,) in s. QTM counts frames from 1, and frame 1 is time 0."""
+    """Times (n,) s of the lines. QTM counts frames from 1, and frame 1 is time 0."""
     if "Time" in layout.names:
         return times(table, layout.names.index("Time"))
     if rate is None:
@@ -172,10 +179,10 @@ def _time(table: Lines, layout: Layout, rate: float | None) -> Array:
 
 
 def body_names(path: Path) -> list[str]:
-    """The rigid bodies of an export.
+    """List the rigid bodies of an export.
 
     Raises:
-        BadInput: not such a file.
+        BadInput: not a QTM export.
     """
     return list(_layout(path, read_text(path).split("\n")).bodies)
 

@@ -13,7 +13,7 @@ from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.signature import Signature
 
-# What a kind of logged command drives.
+# What each kind of logged command drives.
 KIND: dict[str, CommandKind] = {
     "pwm": "thruster",
     "normalized": "thruster",
@@ -23,10 +23,10 @@ KIND: dict[str, CommandKind] = {
 
 
 def choose_body(names: Sequence[str], wanted: str, where: Path | str) -> str:
-    """The body of a file that holds several: the one that is wanted, or the only one.
+    """Choose the rigid body of a file: the one that is wanted, or else the only one.
 
     Raises:
-        BadInput: it has none of that name, or several and none was named.
+        BadInput: there is none of that name, or there are several and none was named.
     """
     if wanted in names:
         return wanted
@@ -42,9 +42,13 @@ def choose_body(names: Sequence[str], wanted: str, where: Path | str) -> str:
 
 @dataclass(frozen=True)
 class FileAxes:
-    """Axes that files of a format may have, and those that they have where nothing tells.
+    """The axes that files of a format may have.
 
-    `said` is why, of these and of the only ones.
+    Attributes:
+        world: possible axes of the world.
+        body: possible axes of the body.
+        usual: the axes to assume where the file does not tell; None for no assumption.
+        said: why the usual or the only possible axes are assumed.
     """
 
     world: tuple[WorldAxes, ...] = ("z_up", "ned")
@@ -54,21 +58,27 @@ class FileAxes:
 
     @property
     def every(self) -> tuple[str, ...]:
-        """Of the world, then of the body."""
+        """All possible axes: of the world, then of the body."""
         return (*self.world, *self.body)
 
     @property
     def fixed(self) -> bool:
-        """Whether there are no others to choose from."""
+        """Whether there is only one choice."""
         return len(self.world) == len(self.body) == 1
 
 
 @dataclass(frozen=True)
 class MocapReader:
-    """A format of motions, declared as `MOCAP_READER` where it is read.
+    """A format of motions; its module declares one as `MOCAP_READER`.
 
-    `bodies` lists the rigid bodies of a file ('' where the format names none). `general`: a form
-    that other formats have as well, so theirs are tried first; `folder`: a run is a folder.
+    Attributes:
+        name: of the format, as in `mocap.format`.
+        read: reads a file.
+        signatures: how files of the format are recognised.
+        bodies: lists the rigid bodies of a file ('' where the format names none).
+        axes: the axes that its files may have.
+        general: whether files of other formats look like this one, so that those are tried first.
+        folder: whether a run may be a folder.
     """
 
     name: str
@@ -82,7 +92,13 @@ class MocapReader:
 
 @dataclass(frozen=True)
 class CommandReader:
-    """A format of commands, declared as `COMMAND_READER`; `auxiliary`: it has further columns."""
+    """A format of commands; its module declares one as `COMMAND_READER`.
+
+    Attributes:
+        name: of the format, as in `commands.format`.
+        read: reads a file.
+        auxiliary: whether `commands.auxiliary` may name further columns.
+    """
 
     name: str
     read: Callable[[Path, CommandLog], CommandExport]
@@ -93,13 +109,13 @@ R = TypeVar("R", MocapReader, CommandReader)
 
 
 def mocap_readers() -> dict[str, MocapReader]:
-    """Every format of motions that can be read, general ones last."""
+    """Readers of every known format of motions by name, general ones last."""
     found = _declared("MOCAP_READER", MocapReader)
     return {one.name: one for one in sorted(found, key=lambda one: one.general)}
 
 
 def command_readers() -> dict[str, CommandReader]:
-    """Every format of commands that can be read."""
+    """Readers of every known format of commands by name."""
     return {one.name: one for one in _declared("COMMAND_READER", CommandReader)}
 
 
@@ -115,7 +131,7 @@ def reader_of(name: str, readers: dict[str, R], where: object) -> R:
 
 
 def _declared(name: str, kind: type[R]) -> list[R]:
-    """What the modules of this package declare under a name."""
+    """Collect what the modules of this package declare under a name."""
     import rovsim.measurement.recording as package
 
     modules = [f"{package.__name__}.{one.name}" for one in pkgutil.iter_modules(package.__path__)]

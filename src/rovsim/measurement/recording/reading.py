@@ -23,15 +23,16 @@ from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, t
 
 # Times beyond this are dates (seconds since 1970 or since the machine was started); a day is none.
 LATE = 1e5  # s
-LONGER = 100.0  # times the recording: no log of the same run in the same unit
+LONGER = 100.0  # times as long as the recording: the log has another unit of time
 
 
 @dataclass(frozen=True)
 class Anomalies:
-    """How much of the raw files had to be repaired or left out, in lines.
+    """How many lines of the raw files had to be repaired or left out, for each reason.
 
-    `used`: the only spans in s that are to be used; empty where all is. `notes` are sentences of
-    the readers about their files.
+    Attributes:
+        used: the spans [from, to] that are used, s; empty where all is.
+        notes: sentences of the readers about their files.
     """
 
     duplicates: int = 0
@@ -45,13 +46,13 @@ class Anomalies:
     command_dropped: int = 0
     command_clipped: int = 0
     command_long_steps: int = 0
-    left_out: int = 0  # outside of what is to be used
+    left_out: int = 0  # outside of the used spans
     used: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
     def counts(self) -> dict[str, int]:
-        """All but spans and notes."""
+        """The numbers of lines, by name."""
         return {name: count for name, count in vars(self).items() if isinstance(count, int)}
 
 
@@ -98,16 +99,16 @@ def _read_commands(
 
 
 def _no_commands(log: CommandLog | None) -> Commands:
-    """No lines, of the kind that the other runs have; a wrench where no run has commands."""
+    """Make a log without lines, of the kind of the other runs, or a wrench if none has commands."""
     kind = KIND[log.kind] if log else "wrench"
     columns = len(log.columns) if log and not log.per_axis else len(AXES)
     return Commands(np.empty(0), np.empty((0, columns)), kind)
 
 
 def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
-    """Dates become times from the second in which the recording starts.
+    """Count times that are dates from the full second in which the recording starts.
 
-    At 1.7e9 s a time is only known to 2.4e-7 s, and shares of it are years.
+    Near 1.7e9 s, floating-point times are 2.4e-7 s apart, and one per mille of a time is weeks.
     """
     start = float(np.floor(export.time[0]))
     if abs(start) < LATE:
@@ -118,18 +119,21 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
 
 
 def _shifted(commands: Commands, by: float) -> Commands:
-    """The same commands, `by` s later."""
+    """Shift commands to later by so many seconds."""
     beside = {k: replace(x, time=x.time + by) for k, x in commands.auxiliary.items()}
     return replace(commands, time=commands.time + by, auxiliary=beside)
 
 
 def _use(export: Export, run: Run) -> tuple[Export, int]:
-    """What lies in the spans of a run that are to be used, and how many lines do not.
+    """Leave out what lies outside of the used spans of a run.
 
-    Poses stay as lines in which the body was not seen, so that the clock goes on.
+    Lines with poses stay, but the body counts as not found there, so that the clock goes on.
+
+    Returns:
+        The export, and the number of lines that lie outside.
 
     Raises:
-        BadInput: nothing lies in them.
+        BadInput: nothing lies inside.
     """
     if run.use is None:
         return export, 0
@@ -156,13 +160,13 @@ def _use(export: Export, run: Run) -> tuple[Export, int]:
 
 
 def _cut(export: Export, used: Array, kept: Channels) -> Export:
-    """Without the lines that are not used, where there are no poses."""
+    """Remove the unused lines of an export without poses; `kept` are its remaining channels."""
     rows = {n: getattr(export, n)[used] for n in ("time", "position", "attitude", "found")}
     return replace(export, **rows, channels=kept)
 
 
 def _with_battery(commands: Commands, channels: Channels) -> Commands:
-    """With the voltage of the battery, if the recording brings it."""
+    """Add the voltage of the battery to the commands, if the recording has it and the log not."""
     battery = channels.get("voltage")
     if battery is None or "voltage" in commands.auxiliary:
         return commands
@@ -171,7 +175,7 @@ def _with_battery(commands: Commands, channels: Channels) -> Commands:
 
 
 def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Commands) -> Recording:
-    """Turn what was measured in the file's axes into a recording in NED and FRD.
+    """Turn an export in the file's axes into a recording in NED and FRD.
 
     With S the signs of the axes as diagonal matrices: p = S_world p_file and
     R = S_world R_file S_body, so each side is converted on its own.
@@ -195,7 +199,13 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
 
 
 def _check_clocks(measured: Array, commands: Array, path: Path) -> None:
-    """Refuse commands in other units of time than the recording, or on a clock that never meets."""
+    """Refuse commands in another unit of time than the recording, or without common times.
+
+    Args:
+        measured: times (n,) of the recording, s.
+        commands: times (m,) of the commands.
+        path: the file of the commands, for the error.
+    """
     span = (
         f"the commands run from {commands[0]:.10g} to {commands[-1]:.10g} s, "
         f"what was measured from {measured[0]:.10g} to {measured[-1]:.10g} s"

@@ -17,15 +17,24 @@ BESIDE = "beside_"  # what was logged beside the commands
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """One run on the MoCap clock.
+    """One run as it was measured, on the MoCap clock.
 
-    `time` (n,) s, increasing; `position` (n, 3) m in NED; `attitude` (n, 4) quaternion body to
-    world; `found` (n,) False where the body was not seen (the pose there is NaN); `nu` (n, 6) the
-    export's own body velocities, bin means from time[k] to time[k+1], or None; `rate` nominal Hz.
+    Where no full poses were measured, there are only channels: `time` holds the times of all of
+    them, `rate` is that of the fastest, and `found` is False throughout.
 
-    `channels` are what else was measured (`channels.KINDS`), of `sensors`. Where no full pose was,
-    they are all there is: `time` holds the times of all channels, `rate` is that of the fastest,
-    and `found` is False throughout.
+    Attributes:
+        run: which run it is.
+        site: where it was recorded.
+        time: (n,) s, increasing.
+        position: (n, 3), NED, m.
+        attitude: (n, 4), unit quaternion (w, x, y, z) from FRD to NED.
+        found: bool (n,), False where the body was not seen (the pose there is NaN).
+        commands: what was commanded.
+        rate: nominal rate, Hz.
+        nu: (n, 6), exported body velocities in FRD, m/s and rad/s, which are means from time[k] to
+            time[k+1]; None if there are none.
+        channels: further measured channels, by kind (`channels.KINDS`).
+        sensors: places and delays of what measured the channels.
     """
 
     run: RunInfo
@@ -42,7 +51,7 @@ class Recording:
 
     @property
     def posed(self) -> bool:
-        """Whether it is a recording of full poses, seen or not."""
+        """Whether this is a recording of full poses, even if the body was never seen."""
         return bool(self.found.any()) or not self.channels
 
     def write(self, path: Path) -> None:
@@ -80,7 +89,7 @@ class Recording:
 
 
 def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
-    """The arrays that every stage of a run carries along."""
+    """Arrays with run, site and commands, which every stage of processing stores."""
     beside = commands.auxiliary
     return {
         "run": np.array([run.id, run.control, run.split, commands.kind]),
@@ -94,7 +103,7 @@ def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
 
 
 def unlabelled(a: dict[str, Array]) -> tuple[RunInfo, Site, Commands]:
-    """Undo `labels`."""
+    """Put together run, site and commands from the arrays of `labels`."""
     *run, kind = (str(s) for s in a["run"])
     beside = {
         name.removeprefix(BESIDE): Logged(a[name][0], a[name][1]) for name in a if BESIDE in name

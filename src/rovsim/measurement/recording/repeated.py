@@ -1,7 +1,7 @@
-"""Poses that are those of the line before, bit by bit: a slow camera, or a body out of sight.
+"""Find poses that repeat the line before bit by bit: a slow camera, or a body out of sight.
 
-A vehicle at rest repeats its pose as well where nothing is noisy or few digits are written. So what
-counts is how the repetition begins and ends: a vehicle stops and sets off slowly, while one that
+A vehicle at rest repeats its pose, too, where there is no noise or few digits are written. So the
+beginning and the end of a repetition decide: a vehicle stops and sets off slowly, while one that
 moved on unseen jumps.
 """
 
@@ -14,26 +14,27 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import turns
 from rovsim.measurement.recording.exports import Export
 
-# A camera slower than its log: nearly all poses stand in several lines, most of them in as many.
+# A camera is slower than its log if nearly all poses stand in several lines, most in equally many.
 FEWEST, NEARLY_ALL, MOST = 20, 0.9, 0.8  # poses; shares
 UNEVEN = 0.2  # of the lines of a pose; one line at least
 NEARBY = 3  # steps to either side that tell how fast the vehicle moves
-# The step after a repetition, in the fastest steps nearby: of one line, which a steady motion
-# doubles, and of more. It makes up for the time, and is more than a change of the last digit.
+# A jump: the step after a repetition is so many times as fast as the fastest nearby, if one line is
+# repeated (steady motion makes it twice as fast), and if more are. It covers at most MAKES_UP times
+# what the vehicle would cover in the time, and is more than a change of the last digit.
 JUMP, JUMP_OF_MORE = 1.5, 2.0
 MAKES_UP = 3.0
 SLOWED = 1 / 3  # of the steps nearby: the last one before a halt is a fifth, if it brakes evenly
 DIGITS = 3.0
-SMALLEST = 1.0  # percentile of the steps that are any: the last digit, or less than the noise
+SMALLEST = 1.0  # percentile of the steps that are not zero: the last digit, or less than the noise
 ROUNDING = 1e-9  # m, rad: no step
-SEVERAL = 4  # frames: what moves until then and from then on does not rest for so long
+SEVERAL = 4  # frames: a vehicle that moves right before and right after does not rest for so long
 
 
 def without_repeated(export: Export) -> Export:
-    """Poses in order of time, without those that nobody measured at their time.
+    """Remove poses that only repeat an earlier one, from an export in order of time.
 
-    A camera slower than its log: the first line of each pose is left. Poses that are repeated while
-    the vehicle moves count as not found. Not of poses with means of velocities.
+    Where the camera is slower than its log, the first line of each pose is kept. Poses that are
+    repeated while the vehicle moves count as not found. An export with velocities stays as it is.
     """
     seen = _Seen.of(export)
     if export.nu is not None or not seen.same.any():
@@ -56,7 +57,15 @@ def without_repeated(export: Export) -> Export:
 
 @dataclass(frozen=True, eq=False)
 class _Seen:
-    """The frames (n,) in which the body was found, and which are the `same` (n - 1,) as before."""
+    """The n frames in which the body was found.
+
+    Attributes:
+        frame: (n,), their indices in the export.
+        time: (n,) s.
+        position: (n, 3) m.
+        attitude: (n, 4), unit quaternions.
+        same: bool (n - 1,), whether each pose but the first is that of the frame before.
+    """
 
     frame: Array
     time: Array
@@ -73,19 +82,19 @@ class _Seen:
         return _Seen(frame, export.time[frame], position, attitude, same)
 
     def runs(self) -> Iterator[tuple[int, int]]:
-        """First frame and number of frames of each pose."""
+        """First frame and number of frames of each pose that stands in successive frames."""
         first = np.concatenate([[0], np.flatnonzero(~self.same) + 1])
         count = np.diff(np.append(first, len(self.frame)))
         return zip(first.tolist(), count.tolist(), strict=True)
 
     def steps(self) -> tuple[Array, Array]:
-        """How far (n - 1,) m the vehicle moved, and how far (n - 1,) rad it turned."""
+        """Distance (n - 1,) m and angle (n - 1,) rad from each frame to the next."""
         moved = np.diff(self.position, axis=0), turns(self.attitude)
         return np.linalg.norm(moved[0], axis=1), np.linalg.norm(moved[1], axis=1)
 
 
 def _lines_of_a_pose(seen: _Seen) -> int:
-    """In how many lines each pose stands; 1 where that is not regular."""
+    """Number of lines in which each pose stands; 1 where that number is not regular."""
     count = np.array([n for _, n in seen.runs()])
     usual = int(np.median(count))
     if usual < 2 or len(count) < FEWEST:
@@ -95,7 +104,13 @@ def _lines_of_a_pose(seen: _Seen) -> int:
 
 
 def _slower(export: Export, seen: _Seen, lines: int) -> Export:
-    """One of so many lines of each pose; a pose that holds longer stays one at the usual times."""
+    """Keep one of so many lines of each pose; of a pose that holds longer, one each so many lines.
+
+    Args:
+        export: what was read.
+        seen: its frames.
+        lines: number of lines in which a pose usually stands.
+    """
     kept = ~export.found
     for first, count in seen.runs():
         kept[seen.frame[first : first + max(count - lines, 0) + 1 : lines]] = True
@@ -105,7 +120,7 @@ def _slower(export: Export, seen: _Seen, lines: int) -> Export:
 
 
 def _find_frozen(seen: _Seen) -> Array:
-    """Which of the frames repeat a pose that the vehicle has left."""
+    """Indices in `seen` of the frames that repeat a pose which the vehicle has left."""
     frozen = np.zeros(len(seen.frame), bool)
     ways = [_Way(step, np.diff(seen.time)) for step in seen.steps()]
     for first, count in seen.runs():
@@ -115,7 +130,7 @@ def _find_frozen(seen: _Seen) -> Array:
 
 
 class _Way:
-    """Steps (n - 1,) of a vehicle, in m or rad, that took so many s."""
+    """Sizes `step` (n - 1,) of a vehicle's steps, m or rad, that `took` (n - 1,) s."""
 
     def __init__(self, step: Array, took: Array) -> None:
         self.step, self.took, self.speed = step, took, step / took
@@ -123,7 +138,7 @@ class _Way:
         self.seen = DIGITS * float(np.percentile(some, SMALLEST)) if len(some) else np.inf
 
     def left(self, first: int, count: int) -> bool:
-        """Whether the vehicle has left the pose of these frames, and goes on elsewhere."""
+        """Whether the vehicle left the pose that `count` frames from `first` on repeat."""
         end = first + count - 1
         before, after = slice(max(first - NEARBY, 0), first), slice(end + 1, end + 1 + NEARBY)
         if count >= SEVERAL and self._moves(self.step[before][::-1]):
@@ -133,13 +148,13 @@ class _Way:
         return self._jumped(before, after, first, end)
 
     def _moves(self, steps: Array) -> bool:
-        """Whether steps, the one beside a repetition first, are those of a vehicle under way."""
+        """Whether steps beside a repetition, the nearest first, are those of a moving vehicle."""
         return bool(
             len(steps) and steps.sum() > NEARBY * self.seen and steps[0] > SLOWED * steps.max()
         )
 
     def _jumped(self, before: slice, after: slice, first: int, end: int) -> bool:
-        """Whether the step that follows makes up for the time."""
+        """Whether the step after a repetition makes up for the motion during it."""
         if end >= len(self.step):
             return False
         fastest = max(self.speed[before].max(initial=0.0), self.speed[after].max(initial=0.0))

@@ -1,4 +1,4 @@
-"""What stands at the start of the files of a format, by which they are recognised."""
+"""Recognise the format of a file by its first bytes."""
 
 from dataclasses import dataclass
 from typing import Callable
@@ -8,10 +8,12 @@ HEAD = 1 << 16  # bytes from the start of a file: more than any header
 
 @dataclass(frozen=True)
 class Signature:
-    """Whether the first bytes of a file are of a format.
+    """How files of a format are recognised.
 
-    `endings`: what its name has to end in, where the format's readers go by that; `what` people
-    call such a file.
+    Attributes:
+        matches: says whether the first bytes of a file are of this format.
+        what: name of such a file, for people.
+        endings: endings of the file name, one of which the format's reader needs; empty for any.
     """
 
     matches: Callable[[bytes], bool]
@@ -20,12 +22,12 @@ class Signature:
 
 
 def starts_with(magic: bytes) -> Callable[[bytes], bool]:
-    """Whether bytes begin with these."""
+    """Make a function that says whether bytes begin with `magic`."""
     return lambda head: head.startswith(magic)
 
 
 def decoded(head: bytes) -> str | None:
-    """The start of a file of text; None where it is none."""
+    """Decode the first bytes of a file as UTF-8; None where it is not a text file."""
     try:
         # the last character may be cut
         text = head.decode("utf-8-sig", errors="strict" if len(head) < HEAD else "ignore")
@@ -35,6 +37,6 @@ def decoded(head: bytes) -> str | None:
 
 
 def head_lines(head: bytes) -> list[str]:
-    """Lines of text that are not empty, without remarks if there are others."""
+    """Lines of text that are not empty; without comment lines (#) unless there are only those."""
     lines = [line for line in (decoded(head) or "").split("\n") if line.strip()]
     return [line for line in lines if not line.startswith("#")] or lines

@@ -1,4 +1,4 @@
-"""Order in what a file told: sorted by time, each time once, and everything counted."""
+"""Sort what was read by time, keep each time once, and count what was wrong."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -20,11 +20,11 @@ RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
 def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
     """Sort by time, keep the first of equal times, and check the rate; count what was wrong.
 
-    Poses that only repeat the one before are no measurements.
+    Poses that only repeat the one before are removed (`without_repeated`).
 
     Raises:
-        BadInput: neither poses nor a channel of two samples.
-        SeveralRuns: times begin anew.
+        BadInput: there are neither poses nor a channel with two samples.
+        SeveralRuns: the times start again.
     """
     for time in (export.time[export.found], *(c.time for c in export.channels.values())):
         check_one_run(time, path)
@@ -67,7 +67,7 @@ def _nothing(export: Export, frames: int, path: Path) -> BadInput:
 
 
 def _of_channels(export: Export, channels: Channels) -> Export:
-    """No poses: frames are the instants at which anything was measured."""
+    """Make an export without poses, whose frames are the times of all channels."""
     time = np.unique(np.concatenate([channel.time for channel in channels.values()]))
     unknown = np.full((len(time), 7), np.nan)
     rate = max(channel.rate or 0.0 for channel in channels.values())
@@ -84,7 +84,7 @@ def _of_channels(export: Export, channels: Channels) -> Export:
 
 
 def measured_rate(time: Array) -> float:
-    """Rate in Hz of the usual step between the times (n,)."""
+    """Rate in Hz of the median step between the times (n,) s."""
     return 1.0 / float(np.median(np.diff(time)))
 
 
@@ -93,7 +93,7 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
 
     Raises:
         BadInput: no line is left.
-        SeveralRuns: times begin anew.
+        SeveralRuns: the times start again.
     """
     if not len(log.time):
         raise BadInput(
@@ -117,6 +117,6 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
 
 
 def _in_order(own: Logged) -> Logged:
-    """Sorted by time, each time once."""
+    """Sort by time, and keep the first of equal times."""
     time, first = np.unique(own.time, return_index=True)
     return Logged(time, own.value[first])

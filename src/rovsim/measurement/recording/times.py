@@ -12,7 +12,7 @@ LATEST = 1e11  # s since 1970: the year 5138
 
 
 def times(table: Lines, column: int) -> Array:
-    """Times (lines,) of one column, which may be dates or times of day.
+    """Read the times (n,) s of one column, which may be dates or times of day.
 
     Raises:
         BadInput: a time is no finite number.
@@ -38,10 +38,10 @@ def times(table: Lines, column: int) -> Array:
 
 
 def _refuse_date(table: Lines, row: int, column: int) -> None:
-    """Refuse a time that is a date or a time of day in another spelling than that of ISO 8601.
+    """Refuse a cell with a date or time of day that is not written by ISO 8601.
 
     Raises:
-        BadInput: it is.
+        BadInput: the cell holds one.
     """
     cells = table.cells(row) if len(table) else []
     cell = cells[column].strip(' "') if column < len(cells) else ""
@@ -58,7 +58,7 @@ def _refuse_date(table: Lines, row: int, column: int) -> None:
 
 
 def dates(table: Lines, column: int) -> Array | None:
-    """Times (lines,) of a column that begins with a date or a time of day; None for another."""
+    """Read times (n,) s of a column that begins with a date or time of day; None if it does not."""
     cells = (row[column].strip(' "') if column < len(row) else "" for row in table.all_cells())
     first = next(cells, "")
     return to_seconds([first, *cells]) if is_date(first) else None

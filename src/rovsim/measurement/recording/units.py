@@ -1,4 +1,4 @@
-"""Units behind the names of columns, or in a line of their own below, as loggers write them."""
+"""Units of columns as loggers write them, behind the names or in a separate line below."""
 
 import re
 from typing import Sequence
@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy as np
 
 DEGREE = np.pi / 180.0
-# Times each the number is ours: s, m, rad and their quotients.
+# Factor of each unit that turns a number into SI: s, m, rad and their quotients.
 TIMES = {"h": 3600.0, "min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 FACTORS = {
     **TIMES,
@@ -34,14 +34,14 @@ MICRO = str.maketrans("µμ", "uu")
 
 
 def find_unit_of(text: str) -> str:
-    """The unit that a text is, as `FACTORS` and `UNCONVERTED` call it; empty where it is none."""
+    """The unit that a text means, as in `FACTORS` and `UNCONVERTED`; empty where it is none."""
     text = text.strip().strip('"[]()').strip().lower().translate(MICRO)
     text = SPELT.get(text, text)
     return text if text in FACTORS or text in UNCONVERTED else ""
 
 
 def split_unit(name: str) -> tuple[str, str]:
-    """A name without its unit, in lower case with underscores, and the unit."""
+    """Split the name of a column into the bare name, as `in_words` writes it, and its unit."""
     text = in_words(name.strip().lstrip("%")).translate(MICRO)
     for unit in _LONGEST_FIRST:
         if text.endswith(f"_{unit}"):
@@ -53,16 +53,25 @@ _LONGEST_FIRST = sorted((*FACTORS, *SPELT), key=len, reverse=True)
 
 
 def in_words(name: str) -> str:
-    """A name in lower case, underscores in place of blanks, dots, slashes and brackets."""
+    """Write a name in lower case, with underscores for blanks, dots, slashes and brackets."""
     return re.sub(r"[\s.,\[\](){}/]+", "_", name.strip().lower()).strip("_")
 
 
 def with_units(
     names: Sequence[str], lines: Sequence[str], header: int, separator: str
 ) -> tuple[list[str], int]:
-    """Names with the units of the line below, if it holds units, and after which line data begin.
+    """Append the units in the line below the names, if it holds units, to the names.
 
     `time` over `s` becomes `time_s`; a name that ends in its unit stays as it is.
+
+    Args:
+        names: the column names.
+        lines: all lines of the file.
+        header: index of the line of names.
+        separator: what separates cells.
+
+    Returns:
+        The names, and the index of the line below which the data begin.
     """
     below = next((n for n in range(header + 1, len(lines)) if lines[n].strip()), None)
     if below is None:

@@ -1,10 +1,10 @@
 """ArduPilot logs, dataflash (.BIN) and telemetry (.tlog): channels and commands.
 
-logs       a log by the ending of its name
+logs       open a log by the ending of its name
 dataflash  .BIN, which describes its own messages
 telemetry  .tlog: MAVLink packets
-series     what a log holds of one type of message
-motion     what was measured
+series     the messages of one type as arrays
+motion     measured channels
 commands   outputs to thrusters, or the radio of the pilot
 """
 

@@ -1,4 +1,4 @@
-"""Commands in an ArduPilot log: outputs to thrusters (SERVO1 …) or the pilot's radio (RC1 …)."""
+"""Read commands of an ArduPilot log: outputs to thrusters (SERVO1 …) or the radio (RC1 …)."""
 
 import re
 from pathlib import Path
@@ -51,7 +51,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
 
 def _wanted(path: Path, log: CommandLog) -> tuple[str, list[int]]:
-    """SERVO or RC, and the numbers of the columns."""
+    """Whether the columns are of SERVO or RC, and their numbers."""
     parts = [re.fullmatch(r"(SERVO|RC)([1-9]\d?)", name) for name in log.names]
     kinds = {part[1] for part in parts if part}
     if len(kinds) != 1 or not all(parts) or log.kind == "wrench":
@@ -74,7 +74,7 @@ def _series(held: ArduPilotLog, wanted: str) -> tuple[Series, str]:
 
 
 def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
-    """Values (m, c) with 0 and 65535 taken for what they mean, as in a bag of mavros."""
+    """Replace values (m, c) of 0 and 65535, which mean "no pulse", as in a bag of mavros."""
     if wanted != "RC":
         return pwm.of_outputs(value)
     return pwm.of_inputs(value), ()

@@ -1,9 +1,10 @@
-"""Dataflash logs (.BIN), which describe their own messages.
+"""Read dataflash logs (.BIN), which describe their own messages.
 
-Read here in arrays: pymavlink makes an object of every message, which takes 13 s where this takes
-one (ten minutes of an inertial unit at 400 Hz), and prints what it meets in a damaged log. A test
-compares the two. The format: ArduPilot, libraries/AP_Logger/README.md; every message is 0xA3 0x95,
-its type, its fields; type 128 (FMT) says length, name, types and names of the fields of another.
+They are parsed here into arrays: pymavlink makes an object of every message, which takes 13 s where
+this takes one (ten minutes of an inertial unit at 400 Hz), and prints warnings about damaged logs.
+A test compares the two. The format: ArduPilot, libraries/AP_Logger/README.md; every message is
+0xA3 0x95, its type, its fields; type 128 (FMT) describes another type: its length, its name, and
+the types and names of its fields.
 """
 
 from collections import defaultdict
@@ -28,12 +29,19 @@ FIELDS = {
 }  # fmt: skip
 WANTED = ["ATT", "IMU", "BARO", "CTUN", "BAT", "CURR", "XKF1", "XKF4", "NKF1", "NKF4"]
 WANTED += ["RCOU", "RCIN", "MODE", "MSG"]
-INSTANCE = ("I", "C", "Inst", "Instance")  # which of several sensors, or of filters, speaks
+INSTANCE = ("I", "C", "Inst", "Instance")  # fields with the number of the sensor, or of the filter
 
 
 @dataclass(frozen=True)
 class Format:
-    """Layout of one type of message: its name, length with header, fields and their factors."""
+    """Layout of one type of message.
+
+    Attributes:
+        name: of the type.
+        length: with header, bytes.
+        fields: structured NumPy type of its fields.
+        factors: what the number of each field is multiplied by.
+    """
 
     name: str
     length: int
@@ -56,10 +64,10 @@ class _Index(NamedTuple):
 
 
 def read_dataflash(path: Path) -> ArduPilotLog:
-    """Read the types of messages that matter.
+    """Read the messages of the types in `WANTED`.
 
     Raises:
-        BadInput: no such file, or nothing in it can be read.
+        BadInput: not a dataflash log, or nothing in it can be read.
     """
     raw = path.read_bytes()
     if not raw.startswith(HEAD):
@@ -111,7 +119,7 @@ def _index(raw: bytes) -> _Index:
 
 
 def _learn(body: bytes, formats: dict[int, Format]) -> None:
-    """Take in a message FMT; one that contradicts itself, or an earlier one, is damaged."""
+    """Add the format in a message FMT; a contradictory or repeated one is ignored as damaged."""
     kind, length = body[0], body[1]
     name, codes, columns = (
         part.split(b"\0")[0].decode("ascii", "replace")
@@ -129,7 +137,7 @@ def _learn(body: bytes, formats: dict[int, Format]) -> None:
 
 
 def _table(raw: bytes, form: Format, places: list[int]) -> Array:
-    """Messages (n,) of one type as a structured array."""
+    """Messages of one type, at n offsets, as a structured array (n,)."""
     assert form.fields is not None
     whole = np.frombuffer(raw, np.uint8)
     body = np.array(places)[:, None] + np.arange(3, form.length)
@@ -137,7 +145,7 @@ def _table(raw: bytes, form: Format, places: list[int]) -> Array:
 
 
 def _series(table: Array, form: Format) -> Series | None:
-    """Numbers of the first sensor of its kind; None without times."""
+    """Take the numbers of the first sensor of several; None for messages without times."""
     names = table.dtype.names or ()
     clock = next((n for n in ("TimeUS", "TimeMS") if n in names), None)
     if clock is None:

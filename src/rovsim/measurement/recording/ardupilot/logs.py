@@ -1,4 +1,4 @@
-"""A log by the ending of its name."""
+"""Open an ArduPilot log by the ending of its name."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ def open_log(path: Path) -> ArduPilotLog:
     """Read a log.
 
     Raises:
-        BadInput: it is none, or nothing in it can be read.
+        BadInput: it is not a log, or nothing in it can be read.
     """
     ending = path.suffix.lower()
     if ending not in READERS:
@@ -26,7 +26,7 @@ def open_log(path: Path) -> ArduPilotLog:
 
 
 def needs(log: ArduPilotLog, names: list[str], what: str) -> BadInput:
-    """The message for a log without any of the types of messages that tell something."""
+    """Make the error for a log without any message of the needed types."""
     return BadInput(
         f"no messages {' or '.join(names)} ({what})",
         where=log.path,
@@ -36,7 +36,7 @@ def needs(log: ArduPilotLog, names: list[str], what: str) -> BadInput:
 
 
 def _telemetry(head: bytes) -> bool:
-    """Whether packets of MAVLink follow times: 8 bytes of us since 1970 before each marker."""
+    """Whether a file starts with a time (8 bytes, us since 1970) and the marker of a packet."""
     if len(head) < 20 or head[8] not in MARKERS:
         return False
     year = int.from_bytes(head[:8], "big") / (365.25 * 86400e6)

@@ -1,4 +1,4 @@
-"""What an ArduPilot log measured: attitude, rates, specific force, depth, position, voltage."""
+"""Read attitude, rates, specific force, depth, position and voltage of an ArduPilot log."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +22,7 @@ KF_POSITION = ("PN", "PE", "PD")
 
 @dataclass(frozen=True)
 class Source:
-    """Fields of a type of message, and the factor that makes them SI."""
+    """Where a channel stands: fields of a type of message, and their factor to SI units."""
 
     series: str
     fields: tuple[str, ...]
@@ -48,7 +48,8 @@ SOURCES = {
         "voltage": [Source("SYS_STATUS", ("voltage_battery",), 1e-3)],
     },
 }
-# What the filter says of itself, in the same bits in both kinds of log (nav_filter_status).
+# Where the autopilot's Kalman filter states its status, with the same bits in both kinds of log
+# (nav_filter_status).
 STATUS = {"dataflash": [("XKF4", "SS"), ("NKF4", "SS")]}
 STATUS["telemetry"] = [("EKF_STATUS_REPORT", "flags")]
 POSITION_KNOWN, POSITION_ASSUMED = 0b11000, 0b10000000  # relative or absolute; constant
@@ -93,7 +94,7 @@ def _read(log: ArduPilotLog, sources: list[Source]) -> Channel | None:
 
 
 def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
-    """Make what the log holds what the channels mean; say what was left out."""
+    """Convert angles to quaternions and remove values without meaning; say what was left out."""
     notes = []
     if "attitude" in channels:
         time, angles = channels["attitude"].time, channels["attitude"].value
@@ -112,7 +113,7 @@ def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
 
 
 def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[str]:
-    """Keep the filter's position where it says that it knows it; its height beside no depth."""
+    """Keep positions of the Kalman filter that it says are known; z only if there is no depth."""
     position = channels.pop("position")
     known = _known(log, position.time)
     if not known.any():
@@ -126,7 +127,7 @@ def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[
 
 
 def _known(log: ArduPilotLog, time: Array) -> Array:
-    """Where the last status of the filter said that the horizontal position is estimated."""
+    """Mask (n,) of times at which the filter's last status said that it knows the position."""
     given = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
     if given is None:
         return np.zeros(len(time), bool)
@@ -142,7 +143,7 @@ def _in_order(series: Series) -> Series:
 
 
 def _modes(log: ArduPilotLog) -> tuple[str, ...]:
-    """In which flight modes it was recorded: all but MANUAL have the autopilot in the loop."""
+    """Sentence on the flight modes: in all but MANUAL the autopilot is in the loop."""
     name, field = ("MODE", "ModeNum") if log.kind == "dataflash" else ("HEARTBEAT", "custom_mode")
     if name not in log.series or log.submarine is False:
         return ()

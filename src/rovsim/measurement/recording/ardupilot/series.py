@@ -1,4 +1,4 @@
-"""What a log holds of one type of message."""
+"""The contents of an ArduPilot log: arrays of numbers for each type of message."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,26 +14,31 @@ RE_RECORD = "Download it again from the vehicle or the ground station."
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Messages of one type: `time` (n,) s on the clock of the log, numbers (n,) by field."""
+    """The n messages of one type: `time` (n,) s on the clock of the log, numbers (n,) by field."""
 
     time: Array
     fields: Mapping[str, Array]
 
     def of(self, names: Sequence[str]) -> Array:
-        """Fields (n, len(names)); NaN where the messages have none of that name."""
+        """Numbers (n, c) of c fields by name; NaN for fields that the messages have not."""
         missing = np.full(len(self.time), np.nan)
         return np.stack([self.fields.get(name, missing) for name in names], axis=1)
 
     def where(self, kept: Array) -> "Series":
-        """Some of the messages (n,)."""
+        """The messages that a mask or index array selects."""
         return Series(self.time[kept], {name: v[kept] for name, v in self.fields.items()})
 
 
 @dataclass(frozen=True, eq=False)
 class ArduPilotLog:
-    """A log: its kind (`dataflash`, `telemetry`), series by type of message, and what to know.
+    """What was read of a log.
 
-    `submarine` is None where the log does not say what the vehicle is.
+    Attributes:
+        path: the file.
+        kind: `dataflash` or `telemetry`.
+        series: messages by type.
+        submarine: whether the vehicle is one; None where the log does not say.
+        notes: sentences about the file.
     """
 
     path: Path
@@ -44,7 +49,7 @@ class ArduPilotLog:
 
 
 def no_log(path: Path, found: str) -> BadInput:
-    """The message for a file that is no such log."""
+    """Make the error for a file that is not an ArduPilot log."""
     return BadInput(
         found,
         where=path,

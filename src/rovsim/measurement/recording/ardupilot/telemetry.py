@@ -1,4 +1,4 @@
-"""Telemetry logs (.tlog): MAVLink packets, each behind the time at which it was received."""
+"""Read telemetry logs (.tlog): MAVLink packets, each preceded by its time of reception."""
 
 import re
 import struct
@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 from rovsim.core.extras import require
 from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series, no_log
 
-# https://mavlink.io/en/guide/serialization.html: marker, lengths around the payload
+# https://mavlink.io/en/guide/serialization.html: marker, bytes of a packet besides the payload
 MARKERS = {0xFD: 12, 0xFE: 8}
 MARKER = re.compile(rb"[\xfd\xfe]")
 SIGNED, SIGNATURE = 0x01, 13
@@ -25,10 +25,10 @@ Received = tuple[float, Any]  # s since 1970, message
 
 
 def read_telemetry(path: Path) -> ArduPilotLog:
-    """Read the types of messages that matter, of the vehicle itself.
+    """Read the messages of the types in `WANTED` that the vehicle itself sent.
 
     Raises:
-        BadInput: no such file, or nothing in it can be read.
+        BadInput: not a telemetry log, or nothing in it can be read.
     """
     require("recordings", by="mocap.format: ardupilot with a .tlog")
     from pymavlink.dialects.v20 import ardupilotmega as dialect
@@ -49,7 +49,7 @@ def read_telemetry(path: Path) -> ArduPilotLog:
 
 
 def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]:
-    """Whole messages of these numbers; damaged bytes are passed over."""
+    """Yield whole messages with these type numbers; damaged bytes are skipped."""
     decoder = dialect.MAVLink(None)
     at = 0
     while at + 8 + 6 < len(raw):
@@ -76,7 +76,7 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
 
 
 def _length(raw: bytes, at: int) -> int:
-    """Length of the packet at a place; 0 where there is none."""
+    """Length in bytes of the packet at offset `at`; 0 where there is none."""
     around = MARKERS.get(raw[at], 0)
     if not around:
         return 0
@@ -89,7 +89,11 @@ def _number(packet: bytes) -> int:
 
 
 def _of_vehicle(found: list[Received]) -> tuple[list[Received], bool | None]:
-    """Messages of the first autopilot (not of ground stations or cameras), and what it steers."""
+    """Keep messages of the first autopilot (not of ground stations or cameras).
+
+    Returns:
+        The messages, and whether the vehicle is a submarine; None if there was no heartbeat.
+    """
     beats = [m for _, m in found if m.get_type() == "HEARTBEAT" and m.autopilot != NO_AUTOPILOT]
     if not beats:
         return found, None
@@ -100,7 +104,7 @@ def _of_vehicle(found: list[Received]) -> tuple[list[Received], bool | None]:
 
 
 def _since_boot(message: Any) -> float:
-    """Seconds since boot that a message carries; NaN where it carries none."""
+    """Time since boot in a message, s; NaN where there is none."""
     fields = message.get_fieldnames()
     if "time_boot_ms" in fields:
         return message.time_boot_ms * 1e-3
@@ -108,9 +112,13 @@ def _since_boot(message: Any) -> float:
 
 
 def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
-    """When the vehicle was booted (s since 1970), NaN where its clock does not serve.
+    """Find when the vehicle was booted, s since 1970; NaN where its clock cannot be used.
 
-    The median difference: the usual delay of the radio link counts as none.
+    It is the median of reception time less time since boot, so the usual delay of the radio link
+    counts as zero.
+
+    Returns:
+        The time, and sentences about the clock.
     """
     received = np.array([t for t, _ in found])
     boot = np.array([_since_boot(m) for _, m in found])

@@ -1,8 +1,8 @@
 """ROS 2 bags, sqlite3 or MCAP, by `rosbags`: poses, other channels, commands.
 
 bag          topics, and the numbers of one of them
-definitions  types of messages: of ROS, of mavros, of the bag
-messages     numbers of messages, by their fields
+definitions  types of messages: of ROS, of mavros, of the bag itself
+messages     take numbers out of messages, by their fields
 stamps       when a message was measured
 motion       poses and channels
 commands     pulses, arrays, wrenches, joysticks

@@ -1,4 +1,4 @@
-"""A bag: its topics, and the numbers of one of them by the clock of the bag."""
+"""Open a ROS 2 bag, list its topics, and read numbers of a topic on the clock of the bag."""
 
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -23,7 +23,15 @@ Numbers = Callable[[Any], Sequence[float]]
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Numbers (n, c) of the messages of one topic, by time (n,) s on the clock of the bag."""
+    """Numbers from the n messages of one topic.
+
+    Attributes:
+        topic: its name.
+        kind: type of the messages.
+        time: (n,) s, on the clock of the bag.
+        value: (n, c), c numbers from each message.
+        notes: sentences about the time stamps.
+    """
 
     topic: str
     kind: str
@@ -34,27 +42,33 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Bag:
-    """An open bag."""
+    """An open bag: its path, and the reader of `rosbags`."""
 
     path: Path
     reader: Any
 
     @property
     def topics(self) -> dict[str, str]:
-        """Type by topic, of those that hold messages."""
+        """Message type of each topic that has messages."""
         return {c.topic: c.msgtype for c in self.reader.connections if c.msgcount}
 
     def first(self, topic: str, key: str) -> tuple[str, Any]:
-        """Type of a topic, and one of its messages; raises as `read` does."""
+        """Type of a topic and its first message; raises as `read` does."""
         for kind, _, message in self._messages(topic, key):
             return kind, message
         raise self._nothing(topic, key)
 
     def read(self, topic: str, key: str, numbers: Numbers, expected: str) -> Samples:
-        """What `numbers` takes out of every message of a topic; `key` of campaign.yaml names it.
+        """Take numbers out of every message of a topic.
+
+        Args:
+            topic: its name.
+            key: key of campaign.yaml that names the topic, for errors.
+            numbers: takes the numbers out of a message.
+            expected: what a message should hold, for errors.
 
         Raises:
-            BadInput: no such topic, a type that nobody defines, or one that is not as expected.
+            BadInput: no such topic, a type without definition, or messages that lack the numbers.
         """
         kind, rows = "", []
         for kind, arrived, message in self._messages(topic, key):
@@ -71,7 +85,7 @@ class Bag:
         return Samples(topic, kind, time, value, notes)
 
     def _messages(self, topic: str, key: str) -> Iterator[tuple[str, int, Any]]:
-        """Type, time of arrival in ns and content of each message of a topic."""
+        """Yield type, time of arrival (ns) and content of each message of a topic."""
         connections = [c for c in self.reader.connections if c.topic == topic and c.msgcount]
         if not connections:
             raise self._nothing(topic, key)
@@ -98,7 +112,7 @@ class Bag:
 
 @contextmanager
 def opened(path: Path, by: str) -> Iterator[Bag]:
-    """Open a bag for reading.
+    """Open a bag for reading; `by` says which key of campaign.yaml needs it.
 
     Raises:
         BadInput: it is no bag, or a damaged one.
@@ -112,7 +126,7 @@ def opened(path: Path, by: str) -> Iterator[Bag]:
 
 
 def _storage(path: Path) -> Path:
-    """What rosbags opens: the folder, or the one file in a folder without metadata."""
+    """Path that `rosbags` can open: the bag, or the only file in a folder without metadata."""
     if not path.is_dir():
         if path.suffix in (".db3", ".mcap"):
             return path

@@ -1,4 +1,4 @@
-"""Commands in a bag: pulses, arrays of numbers, wrenches, joysticks, or fields of any message."""
+"""Read commands of a bag: pulses, arrays, wrenches, joysticks, or fields of any message."""
 
 import re
 from pathlib import Path
@@ -36,7 +36,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """Read the topic `commands.topic`, by default the only one that looks like commands.
 
     A column is a field (`thrust.port`, `data[0]`), or ends in the number of its value, from 1
-    (`t1`, `SERVO3`, `RC5`), or is an axis; other names stand for the values in their order.
+    (`t1`, `SERVO3`, `RC5`), or is an axis. Columns with other names are the values in order.
 
     Raises:
         BadInput: no bag, no such topic or column, or values no such command can have.
@@ -62,7 +62,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
 
 def pushed(message: Any, axis: str) -> float:
-    """How far a stick stands, in [-1, 1], by a ManualControl message."""
+    """Deflection of a stick, in [-1, 1], from a ManualControl message."""
     field, center, span = MANUAL[axis]
     return float((getattr(message, field) - center) / span)
 
@@ -80,9 +80,9 @@ def _only_topic(bag: Bag) -> str:
 
 
 def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
-    """Values (m, c) with 0 and 65535 taken for what they mean.
+    """Replace values (m, c) of 0 and 65535, which mean "no pulse"; with sentences about them.
 
-    An output without pulses is a thruster that stands; an input of 0 or 65535 is none.
+    An output without pulses is a thruster at rest; an input without pulses is missing.
     """
     if not found.kind.endswith("RCOut"):
         return pwm.of_inputs(found.value), ()
@@ -91,7 +91,15 @@ def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
 
 
 def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
-    """What takes column k out of a message of this type, of which this is the first."""
+    """Make the function that takes column k out of a message.
+
+    Args:
+        kind: type of the messages.
+        first: the first of them.
+        log: names and axes of the columns.
+        k: index of the column.
+        where: the topic, for errors.
+    """
     name = log.names[k]
     axis = log.axes[k] if log.axes else name
     if kind.endswith("ManualControl") and axis in MANUAL:
@@ -119,7 +127,7 @@ def _is_array(message: Any, field: str) -> bool:
 
 
 def _walk(name: str) -> Get:
-    """A field of a field, and places in arrays counted from 0: `a.b[2].c`."""
+    """Make the function that follows fields and indices from 0, such as `a.b[2].c`."""
     steps = re.findall(r"(\w+)|\[(\d+)\]", name)
 
     def get(message: Any) -> float:
@@ -131,7 +139,7 @@ def _walk(name: str) -> Get:
 
 
 def _number(get: Get, message: Any) -> float:
-    """The value; NaN where an array is too short for it."""
+    """Take a number out of a message; NaN where an array is too short."""
     try:
         return get(message)
     except IndexError:

@@ -1,4 +1,4 @@
-"""Types of messages: those of ROS, of mavros, and those that a bag defines itself."""
+"""Definitions of message types: those of ROS, of mavros, and those that a bag contains."""
 
 import re
 from functools import cache
@@ -22,7 +22,7 @@ FIELD_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 @cache
 def _known() -> Any:
-    """The types of ROS 2 Humble (their layouts are those of its successors) and of mavros."""
+    """Types of ROS 2 Humble (with the same layouts as in later versions) and of mavros."""
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
@@ -32,10 +32,10 @@ def _known() -> Any:
 
 
 def store_for(connection: Any, where: str) -> Any:
-    """A store that knows the type of one connection of a bag.
+    """Find a type store of `rosbags` that knows the message type of a connection of a bag.
 
     Raises:
-        BadInput: neither ROS nor mavros nor the bag defines it.
+        BadInput: neither ROS nor mavros nor the bag defines the type.
     """
     defined = connection.msgdef.data
     if defined:
@@ -78,7 +78,7 @@ def _fields(definition: Any, where: str) -> list:
 
 
 def _named_types(fields: Any) -> list[str]:
-    """Types that fields refer to by name, those of elements of arrays included."""
+    """List the types that fields refer to by name, also as elements of arrays."""
     from rosbags.interfaces import Nodetype
 
     found = []

@@ -1,4 +1,4 @@
-"""Numbers of messages, by their fields: types of one's own are read where they have the same."""
+"""Take numbers out of messages by their fields, so that custom types with the same fields work."""
 
 from dataclasses import dataclass
 from typing import Any, Mapping
@@ -15,7 +15,13 @@ UNKNOWN = float("nan")
 
 @dataclass(frozen=True)
 class Reading:
-    """What is taken out of a message: its numbers, which channels they are, and what it must be."""
+    """How a topic is read.
+
+    Attributes:
+        numbers: takes the numbers out of a message.
+        channels: which of these numbers each kind of channel consists of.
+        expected: what the messages should be, for errors.
+    """
 
     numbers: Numbers
     channels: Mapping[str, slice]
@@ -23,13 +29,13 @@ class Reading:
 
 
 def pose(message: Any) -> list[float]:
-    """Position and quaternion (7) of a pose, of odometry or of a transform."""
+    """Position and quaternion (x, y, z, qw, qx, qy, qz) of a pose, odometry or transform."""
     place, turn = _pose(message)
     return [*_vector(place), turn.w, turn.x, turn.y, turn.z]
 
 
 def readings(mocap: Mocap) -> dict[str, Reading]:
-    """How the topics of other channels are read, by their key in `mocap.topics`."""
+    """How the topics of channels are read, by their key in `mocap.topics`."""
     return {
         "odometry": Reading(
             _twist, {"velocity": slice(0, 3), "rates": slice(3, 6)}, "a twist: linear and angular"
@@ -56,7 +62,7 @@ def _twist(message: Any) -> list[float]:
 
 
 def _velocity(message: Any) -> list[float]:
-    """A velocity along the body's axes, of a twist, a vector or a Doppler log."""
+    """Velocity (u, v, w) along the body axes, m/s, of a twist, a vector or a Doppler log."""
     if getattr(message, "velocity_valid", True) is False:
         return [UNKNOWN] * 3
     for name in ("velocity", "vector"):
@@ -66,7 +72,7 @@ def _velocity(message: Any) -> list[float]:
 
 
 def _attitude(message: Any) -> list[float]:
-    """A quaternion, an orientation, or roll, pitch and yaw in rad."""
+    """Quaternion (w, x, y, z) of an orientation, or of roll, pitch and yaw in rad."""
     for name in ("vector", "quaternion", "orientation"):
         message = getattr(message, name, message)
     if hasattr(message, "pose") or hasattr(message, "transform"):
@@ -77,7 +83,10 @@ def _attitude(message: Any) -> list[float]:
 
 
 def _inertial(message: Any) -> list[float]:
-    """A covariance that starts with -1 says that there is no estimate (sensor_msgs/Imu)."""
+    """Quaternion, rates and specific force (10) of an Imu; NaN for what it does not estimate.
+
+    A covariance that starts with -1 says that there is no estimate (sensor_msgs/Imu).
+    """
     turn = message.orientation
     parts = {
         "orientation": [turn.w, *_vector(turn)],
@@ -92,7 +101,10 @@ def _inertial(message: Any) -> list[float]:
 
 
 def _depth_by(mocap: Mocap) -> Numbers:
-    """A depth of a pressure, of a number (positive down), or of a place's z."""
+    """Make the function that takes a depth (m) from a pressure, a number or the z of a point.
+
+    Numbers are positive down; z is along the world axes of the file.
+    """
     sensors, down = mocap.sensors, -1.0 if mocap.world_axes == "z_up" else 1.0
     weight = sensors.water_density * GRAVITY
 
@@ -113,7 +125,7 @@ def _voltage(message: Any) -> list[float]:
 
 
 def _pose(message: Any) -> tuple[Any, Any]:
-    """Where a message says the position and the orientation are."""
+    """Position and orientation of a message, as its own objects."""
     if hasattr(message, "transform"):
         return message.transform.translation, message.transform.rotation
     inner = _inner(message, "pose")
@@ -121,7 +133,7 @@ def _pose(message: Any) -> tuple[Any, Any]:
 
 
 def _inner(message: Any, name: str) -> Any:
-    """The pose in a pose with covariance in odometry, and the like."""
+    """Follow fields of the same name inwards, as for a pose with covariance in odometry."""
     while hasattr(message, name):
         message = getattr(message, name)
     return message

@@ -1,4 +1,4 @@
-"""What a bag holds of the motion: poses, and channels of other topics."""
+"""Read the motion in a bag: poses, and channels of other topics."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ def read_bag(path: Path, mocap: Mocap) -> Export:
     """Read the topics that `mocap.topics` and `mocap.body` name.
 
     Raises:
-        BadInput: no bag, no such topic, or messages of which nobody knows the type.
+        BadInput: no bag, no such topic, or messages of an unknown type.
     """
     with opened(path, by="mocap.format: rosbag2") as bag:
         topics = mocap.topics or Topics()

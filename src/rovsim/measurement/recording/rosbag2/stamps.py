@@ -1,4 +1,4 @@
-"""When a message was measured: its own stamp where that can be believed, else when it arrived."""
+"""Times of messages: their own stamps where these can be trusted, else the times of arrival."""
 
 from typing import Any
 
@@ -15,11 +15,18 @@ STEADY = 0.5  # s, between the 5th and the 95th percentile
 
 
 def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tuple[str, ...]]:
-    """Times (n,) in s on the clock of the bag, of arrivals and stamps (n,) in ns.
+    """Find the times of messages on the clock of the bag.
 
-    Stamps hold as they are where their clock is that of the bag. Those of another computer are
-    shifted by the median of their difference, so the usual delay of transport counts as none.
-    Returns what had to be done as well.
+    Stamps are used as they are where their clock is that of the bag. Those of another computer are
+    shifted by the median difference from the arrivals, so the usual transport delay counts as zero.
+
+    Args:
+        topic: its name, for the notes.
+        arrived: times of arrival (n,), ns.
+        stamps: time stamps (n,) in the messages, ns; 0 where there is none.
+
+    Returns:
+        Times (n,) s, and sentences about what was done.
     """
     bag = arrived * NANO
     if not stamps.all():
@@ -38,7 +45,7 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
 
 
 def stamp(message: Any) -> int:
-    """Stamp in ns; 0 where there is none."""
+    """Time stamp in the header of a message, ns; 0 where there is none."""
     header = getattr(message, "header", None)
     given = getattr(header, "stamp", None)
     return 0 if given is None else given.sec * 1_000_000_000 + given.nanosec
