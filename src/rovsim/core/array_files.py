@@ -1,4 +1,4 @@
-"""Plain arrays in `.npz` files: no pickle, and nothing larger than the file says it is."""
+"""Read and write plain arrays in `.npz` files, without pickle and safe against huge contents."""
 
 import io
 import zipfile
@@ -29,7 +29,7 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
     """Read an `.npz` written by `write_arrays`; pickled content is refused.
 
     Raises:
-        BadInput: the file is missing, damaged, holds objects or unpacks to far more than it is.
+        BadInput: the file is missing, damaged, holds objects, or unpacks to far more than its size.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -60,7 +60,10 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
 
 
 def _array(raw: bytes) -> np.ndarray:
-    """An array whose header announces the bytes that follow it; NumPy would make room first."""
+    """Read an array after checking that its header announces exactly the bytes that follow.
+
+    NumPy alone would first allocate what the header announces.
+    """
     content = io.BytesIO(raw)
     version = np.lib.format.read_magic(content)
     headers = {

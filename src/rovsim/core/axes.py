@@ -1,4 +1,4 @@
-"""Letters and units of what is along the six axes, surge to yaw, as `rovsim.AXES` names them."""
+"""Letters and units of velocities, forces and spectra along the six axes, surge to yaw."""
 
 VELOCITY = ("u", "v", "w", "p", "q", "r")  # letters of Fossen 2021, table 2.1
 FORCE = ("X", "Y", "Z", "K", "M", "N")

@@ -1,4 +1,4 @@
-"""Values that are made again where they were let go of: more of them than memory holds."""
+"""Caches of bounded size, for more values than memory holds: dropped ones are made again."""
 
 from collections import OrderedDict
 from dataclasses import fields, is_dataclass
@@ -23,9 +23,9 @@ MOST = 1 << 27  # bytes: fifteen runs of 5 min at 100 Hz
 
 
 class Recent(Generic[T]):
-    """The values that were asked for last, up to `most` bytes.
+    """Keeps the most recently used values, up to `most` bytes of arrays.
 
-    The last one stays, however large; with `most` 0 none does.
+    The very last value is kept however large it is; with `most` 0 nothing is kept.
     """
 
     def __init__(self, most: int = MOST) -> None:
@@ -34,7 +34,7 @@ class Recent(Generic[T]):
         self._lock = RLock()  # a server may ask from several threads
 
     def get(self, key: Hashable, make: Callable[[], T]) -> T:
-        """The value of a key, made if it is not there."""
+        """Return the value of a key, and make it if it is not kept."""
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)
@@ -44,7 +44,7 @@ class Recent(Generic[T]):
             return value
 
     def keep(self, key: Hashable, value: T) -> None:
-        """Take in a value, and let go of those that were asked for longest ago."""
+        """Keep a value, and drop the least recently used ones if there are too many bytes."""
         if not self._most:
             return
         with self._lock:
@@ -56,13 +56,13 @@ class Recent(Generic[T]):
 
 
 class Remade(Mapping[str, T]):
-    """Values by name; those asked for last are kept, the others are made again.
+    """Mapping of values by name; the most recently used are kept, the others are made again.
 
     Args:
-        names: of the values, in order.
-        make: a value from its name; every time the same.
+        names: names of the values, in order.
+        make: makes a value from its name, every time the same.
         most: bytes to keep.
-        recent: what keeps them, where other values share its bytes.
+        recent: the cache to use, if other values share its bytes.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Remade(Mapping[str, T]):
     ) -> None:
         self._names, self._make = dict.fromkeys(names), make
         self._recent: Recent[T] = recent or Recent(most)
-        self._own = object()  # tells these values from others of their names
+        self._own = object()  # keeps these values apart from others of the same names in a cache
 
     def __getitem__(self, name: str) -> T:
         if name not in self._names:
@@ -91,13 +91,13 @@ class Remade(Mapping[str, T]):
         return name in self._names
 
     def keep(self, name: str, value: T) -> None:
-        """Take in a value that is there already."""
+        """Add a value that is already made."""
         self._names[name] = None
         self._recent.keep((self._own, name), value)
 
 
 class ReadAgain(Sequence[T]):
-    """Values in files, read each time they are asked for."""
+    """Sequence of values in files, each read whenever it is used."""
 
     def __init__(self, paths: Sequence[Path], read: Callable[[Path], T]) -> None:
         self._paths, self._read = paths, read
@@ -116,12 +116,12 @@ class ReadAgain(Sequence[T]):
 
 
 def read_again(paths: Mapping[str, Path], read: Callable[[Path], T]) -> Remade[T]:
-    """Values in files by name, read each time they are asked for."""
+    """Make a mapping of values in files, each read whenever it is used."""
     return Remade(paths, lambda name: read(paths[name]), most=0)
 
 
 def size(value: object) -> int:
-    """Bytes of the arrays that a value is made of."""
+    """Bytes of the arrays in a value: in mappings, tuples and dataclasses, at any depth."""
     if isinstance(value, np.ndarray):
         return value.nbytes
     if isinstance(value, Mapping):

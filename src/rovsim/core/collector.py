@@ -1,4 +1,4 @@
-"""Memory: the collector is kept from what is no garbage, and what is free is given back."""
+"""Keep Python's garbage collector from needless work, and give free memory back to the system."""
 
 import atexit
 import ctypes
@@ -9,9 +9,9 @@ from types import ModuleType
 
 
 def import_large(name: str) -> ModuleType:
-    """Import a module and all that it imports, in four fifths of the time.
+    """Import a module with the garbage collector off, in four fifths of the time.
 
-    The collector would go through hundreds of thousands of new objects a dozen times.
+    The collector would otherwise go through hundreds of thousands of new objects a dozen times.
     """
     gc.disable()
     try:
@@ -22,15 +22,15 @@ def import_large(name: str) -> ModuleType:
 
 
 def end_at_once() -> None:
-    """Let this process end without a last look at all objects, which takes up to a second."""
+    """Let this process end without a last garbage collection, which takes up to a second."""
     atexit.register(gc.freeze)
 
 
 def give_back_memory() -> None:
-    """Give memory that is free back to the system, where the C library keeps it (glibc).
+    """Give free memory back to the system, where the C library (glibc) would keep it.
 
-    A server that lives for days would seem to grow otherwise: new work finds the holes of the old
-    too small.
+    A server that runs for days would otherwise grow, because new work does not fit into the holes
+    that old work left.
     """
     if os.name == "posix" and hasattr(library := ctypes.CDLL(None), "malloc_trim"):
         library.malloc_trim(0)

@@ -1,4 +1,4 @@
-"""Text that fits a terminal of 80 columns, folded between words; what is typed stays whole."""
+"""Fold text between words to fit a terminal of 80 columns; commands to type are not broken."""
 
 import re
 import textwrap
@@ -9,7 +9,13 @@ WHOLE = "\N{NO-BREAK SPACE}"
 
 
 def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
-    """The lines of one paragraph, after `first`; the following ones after `then`."""
+    """Fold one paragraph into lines.
+
+    Args:
+        text: the paragraph.
+        first: put in front of the first line.
+        then: put in front of the other lines; by default `first`.
+    """
     lines = textwrap.wrap(
         TYPED.sub(lambda found: found[0].replace(" ", WHOLE), text),
         WIDTH,
@@ -22,7 +28,7 @@ def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
 
 
 def fold_page(text: str) -> str:
-    """A text of several paragraphs; lines of a usage (`rovsim …`, then indented) stay apart."""
+    """Fold a text of several paragraphs; lines of a usage (`rovsim …`) stay separate lines."""
     paragraphs = (_fold_paragraph(one) for one in text.strip().split("\n\n"))
     return "\n\n".join("\n".join(lines) for lines in paragraphs)
 

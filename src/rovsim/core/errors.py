@@ -4,7 +4,7 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Iterable, Iterator, Sequence
 
-LONGEST = 1000  # characters of what a message quotes
+LONGEST = 1000  # characters of a text that a message quotes
 MOST = 40  # names that a message lists
 
 
@@ -13,7 +13,14 @@ class RovsimError(Exception):
 
 
 class BadInput(RovsimError):
-    """Input that cannot be used. The command line turns it into one message and exit code 2."""
+    """Input that cannot be used. The command line turns it into one message and exit code 2.
+
+    Attributes:
+        found: what was found.
+        where: the file, and the place in it.
+        expected: what should be there.
+        remedy: what the user can do, in whole sentences.
+    """
 
     def __init__(self, found: str, *, where: object, expected: str, remedy: str) -> None:
         found, where = shortened(found), shortened(str(where))
@@ -27,13 +34,13 @@ class BadInput(RovsimError):
 
 
 def shortened(text: str) -> str:
-    """A text on one line of bounded length: what a file holds may be anything."""
+    """Bring a text, which may come from any file, to one line of at most `LONGEST` characters."""
     line = one_line(text[: LONGEST + 1])
     return line if len(line) <= LONGEST else f"{line[:LONGEST]} …"
 
 
 def one_line(text: str) -> str:
-    """A text without line breaks and control characters: these as they are typed in Python."""
+    """Write line breaks and control characters of a text as Python's escape sequences."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
@@ -43,10 +50,10 @@ def _rebuild(found: str, where: str, expected: str, remedy: str) -> BadInput:
 
 @contextmanager
 def located(file: object) -> Iterator[None]:
-    """Name the file in errors of what is inside, which say where in it they are.
+    """Add the name of a file to errors that only say where in the file they are.
 
     Raises:
-        BadInput: one of these, its place after the file.
+        BadInput: the error, with the file in front of its place.
     """
     try:
         yield
@@ -58,7 +65,7 @@ def located(file: object) -> Iterator[None]:
 
 
 def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> BadInput:
-    """The error of a name that is none of a few: it lists them, and says which is the nearest."""
+    """Make the error for an unknown name: it lists the known ones and suggests the nearest."""
     names = [str(k) for k in known]
     return BadInput(
         found, where=where, expected=f"one of {', '.join(names)}", remedy=_closest(name, names)
@@ -73,6 +80,6 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _closest(name: str, names: Sequence[str]) -> str:
-    """The question whether the nearest name was meant; empty where none is near."""
+    """Ask whether the nearest name was meant; empty where none is near."""
     close = get_close_matches(str(name), names, n=1, cutoff=0.5)
     return f"Did you mean '{close[0]}'?" if close else ""

@@ -4,7 +4,7 @@ from importlib.util import find_spec
 
 from rovsim.core.errors import BadInput
 
-# Packages of each extra by which it is known (pyproject.toml holds what pip installs).
+# Packages by which each extra is recognised (pyproject.toml lists what pip installs).
 PACKAGES = {
     "learn": ("torch", "gpytorch", "sklearn"),
     "tracking": ("mlflow",),
@@ -19,7 +19,7 @@ PACKAGES = {
 
 
 def installed(extra: str) -> bool:
-    """Whether all packages of an extra are here."""
+    """Whether all packages of an extra are installed."""
     return all(find_spec(name) is not None for name in PACKAGES[extra])
 
 

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all. Nothing read here is ever executed."""
+"""Write files that appear whole or not at all, and read them. Nothing read is ever executed."""
 
 import errno
 import glob
@@ -16,8 +16,8 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 
-MARKED = 1 << 16  # bytes in which a result says what it is
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # while a file is written
+MARKED = 1 << 16  # bytes at the start of a result, in which its mark must be
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors while writing that mean: no room
 
 
 @contextmanager
@@ -42,12 +42,15 @@ def appearing(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
-    """Yield a new folder beside `path`, for files that then move there; it goes in the end.
+    """Yield a new temporary folder beside `path`, for files that are then moved; delete it after.
 
-    Messages call it `told`, or `path`: nobody knows that folder.
+    Args:
+        path: the place to which the files will be moved.
+        told: what errors name instead of the temporary folder, which the user does not know; by
+            default `path`.
 
     Raises:
-        BadInput: no folder can be made there, or a file in it not be written.
+        BadInput: the folder cannot be made, or a file in it cannot be written.
     """
     folder = _beside(path, a_folder=True)
     try:
@@ -65,10 +68,10 @@ def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
 
 @contextmanager
 def appearing_together(folder: Path, last: str) -> Iterator[Path]:
-    """Yield a temporary folder; on success its files move into `folder`, over those of their names.
+    """Yield a temporary folder; on success all its files move into `folder` and replace old ones.
 
-    Those in folders inside it, too. All are complete by then, so that a full disk leaves the old
-    ones. The file `last` is moved after all others: where it is new, all are.
+    Files in inner folders move, too. All files are complete before the first moves, so a full disk
+    leaves the old ones intact. The file `last` is moved last: if it is new, all files are.
 
     Raises:
         BadInput: no file can be written there.
@@ -78,15 +81,16 @@ def appearing_together(folder: Path, last: str) -> Iterator[Path]:
         inside = [path.relative_to(made) for path in made.rglob("*") if path.is_file()]
         inside.sort(key=lambda path: (path == Path(last), path))
         for place in {folder / path.parent for path in inside}:
-            make_folder(place)  # before the first file moves: what fails, fails here
+            make_folder(place)  # before the first file moves, so that errors leave the old files
         for path in inside:
             os.replace(made / path, folder / path)
 
 
 def _beside(path: Path, a_folder: bool = False) -> Path:
-    """A new empty file (or folder) in the folder of `path`, which is made if need be.
+    """Make a new empty file (or folder) in the folder of `path`, which is made if it is missing.
 
-    Its name tells what it becomes and who writes it: what a killed process left is cleared away.
+    Its name contains a hash of the final name, the machine and the process, so that what a killed
+    process left behind is recognised and removed here.
     """
     file = sha256(os.fsencode(path.name)).hexdigest()[:12]
     here = f".{file}-{gethostname()[:40]}-"
@@ -127,18 +131,18 @@ def _remove(path: Path) -> None:
 
 
 def _lives(process: str) -> bool:
-    """Whether a process of this machine, by its number, is still there."""
+    """Whether the process of this machine with that number still runs; True if it is unknown."""
     try:
         os.kill(int(process), 0)
     except ProcessLookupError:
         return False
-    except (ValueError, OSError):  # no number, or somebody else's
+    except (ValueError, OSError):  # not a number, or a process of another user
         pass
     return True
 
 
 def unwritable(path: Path, error: OSError) -> BadInput:
-    """The error of a place that no file can be written to."""
+    """Make the error for a place where no file can be written."""
     return BadInput(
         f"cannot be written ({error.strerror})",
         where=path,
@@ -149,13 +153,13 @@ def unwritable(path: Path, error: OSError) -> BadInput:
 
 @contextmanager
 def text_appearing(path: Path) -> Iterator[TextIO]:
-    """Yield a UTF-8 text file to write to; on success it is there in one step."""
+    """Yield a UTF-8 text file to write to; on success it becomes `path` in one step."""
     with appearing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
         yield file
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file atomically; whoever makes the content never sees a disk, which may be full."""
+    """Write a file atomically."""
     with appearing(path) as temporary:
         temporary.write_bytes(content)
 
@@ -186,7 +190,7 @@ def read_json(path: Path) -> Any:
         return json.loads(read_text(path))
     except json.JSONDecodeError as error:
         found, where = error.msg, f"{path}, line {error.lineno}"
-    except (ValueError, RecursionError) as error:  # a number without end, nesting without end
+    except (ValueError, RecursionError) as error:  # a number too long, or nested too deeply
         found, where = str(error), f"{path}"
     raise BadInput(
         f"not JSON ({found})",
@@ -197,10 +201,14 @@ def read_json(path: Path) -> Any:
 
 
 def require_replaceable(path: Path, mark: str) -> None:
-    """Refuse a file that a result would replace although it holds no `mark` of such results.
+    """Refuse to replace a file at `path` that is not an older result of the same kind.
+
+    Args:
+        path: where a result will be written.
+        mark: text near the start of every result of this kind.
 
     Raises:
-        BadInput: there is such a file.
+        BadInput: there is a file without that mark.
     """
     if not path.is_file():
         return

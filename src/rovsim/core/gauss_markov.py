@@ -13,43 +13,55 @@ from numpy import ndarray as Array
 
 
 def decay(step: Array | float) -> Array:
-    """The factor a of a step."""
+    """Factor a of steps in correlation times."""
     return np.asarray(np.exp(-step))
 
 
 def propagate(a: Array, normal: Array, begin: Array) -> Array:
-    """Values (n, ..., c) after each of n steps from `begin` (..., c) on.
+    """Propagate the noise over n steps; return its values (n, ..., c) after each step.
 
     Args:
-        a: of the steps: one number or (c,); of steps that differ (n, ..., c), as broadcast.
-        normal: standard normal numbers (n, ..., c), perhaps scaled; then so are the values.
-        begin: where it starts.
+        a: decay factor of a step: one number or (c,); (n, ..., c) if the steps differ.
+        normal: standard normal numbers (n, ..., c); if they are scaled, so are the values.
+        begin: values (..., c) before the first step.
     """
     kicks = normal * np.sqrt(1.0 - a * a)
     return lag(a, kicks, begin) if a.ndim < 2 else _lag_by_rows(a, kicks, begin)
 
 
 def draw(steps: int, step: float, random: np.random.Generator) -> Array:
-    """Six channels (steps, 6) of unit variance, stationary; `step` in correlation times."""
+    """Draw six channels (steps, 6) of stationary noise of unit variance.
+
+    Args:
+        steps: number of steps.
+        step: length of a step in correlation times.
+        random: source of random numbers.
+    """
     normal = random.normal(size=(steps, 6))
     return propagate(decay(step), normal, random.normal(size=6))
 
 
 def lag(a: Array, kicks: Array, begin: Array) -> Array:
-    """x = a x + kick, row by row of the kicks (n, c), from x = begin (c,) on; `a` one, or (c,)."""
+    """Compute x = a x + kick (n, c) for successive kicks, as a first-order lag does.
+
+    Args:
+        a: factor, one number or (c,).
+        kicks: inputs (n, c).
+        begin: x (c,) before the first kick.
+    """
     each = zip(np.broadcast_to(a, begin.shape), begin, kicks.T, strict=True)
     return np.stack([_lag_column(float(a), float(first), own) for a, first, own in each], axis=1)
 
 
 def _lag_column(a: float, begin: float, kicks: Array) -> Array:
-    # In Python's floats: faster than rows of NumPy, and SciPy's filter takes a second to import.
+    # Python's floats are faster than rows of NumPy, and SciPy's filter takes a second to import.
     column = accumulate(kicks.tolist(), lambda x, kick: a * x + kick, initial=begin)
     next(column)
     return np.fromiter(column, float, len(kicks))
 
 
 def _lag_by_rows(a: Array, kicks: Array, begin: Array) -> Array:
-    """The same by factors (n, ..., c) that differ: of many draws, rows are faster."""
+    """Compute `lag` with factors (n, ..., c) that differ; for many draws, rows are faster."""
     found, x = np.empty_like(kicks), begin
     for k, kick in enumerate(kicks):
         x = a[k] * x + kick
@@ -58,5 +70,9 @@ def _lag_by_rows(a: Array, kicks: Array, begin: Array) -> Array:
 
 
 def variance_of_mean(ratio: Array) -> Array:
-    """Variance of the mean over a time; `ratio` of the correlation time to it."""
+    """Variance of the mean of the noise over a time.
+
+    Args:
+        ratio: correlation time over that time, of any shape.
+    """
     return np.asarray(2.0 * ratio * (1.0 - ratio * -np.expm1(-1.0 / ratio)))

@@ -1,11 +1,11 @@
-"""How far replays look ahead before they start anew, and what these horizons are called."""
+"""Horizons: how far replays look ahead before they restart from the measurement; their names."""
 
-OPEN_LOOP = "open_loop"  # once, over a whole run
-WINDOW = 2.0  # s, the windows that ladder, figures and summaries are of
+OPEN_LOOP = "open_loop"  # a single replay of the whole run
+WINDOW = 2.0  # s, length of the windows in the ladder, in figures and in summaries
 
 
 def name_horizon(seconds: float) -> str:
-    """What replays call windows of so many seconds."""
+    """Name of the horizon of windows of so many seconds."""
     return f"{seconds:g}"
 
 

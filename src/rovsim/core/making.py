@@ -1,6 +1,6 @@
-"""When, from which commit and on which machine something is made.
+"""Say when, from which commit and on which machine a page is made.
 
-Only pages for people say it: a file that programs read is equal for equal inputs.
+Only pages for people contain this: files that programs read are equal for equal inputs.
 """
 
 import os
@@ -12,12 +12,12 @@ from pathlib import Path
 
 import rovsim
 
-SOURCES = Path(rovsim.__file__).parents[2]  # of a clone; of an installed package a folder of others
+SOURCES = Path(rovsim.__file__).parents[2]  # top of a clone; unrelated for an installed package
 PATIENCE = 5.0  # s, for git
 
 
 def tell_making() -> str:
-    """Date, version, commit where it is known, and machine, as a sentence."""
+    """Sentence with date, version, commit (where known) and machine."""
     commit = describe_commit()
     version = f"rovsim {rovsim.__version__}" + (f" (commit {commit})" if commit else "")
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(_now()))
@@ -25,7 +25,7 @@ def tell_making() -> str:
 
 
 def describe_machine() -> str:
-    """Processor, cores and Python."""
+    """Name the processor, the number of cores, and the version of Python."""
     name = platform.processor() or platform.machine()
     with suppress(OSError, StopIteration), open("/proc/cpuinfo", encoding="utf-8") as info:
         name = next(line.split(":")[1].strip() for line in info if "model name" in line)
@@ -33,7 +33,7 @@ def describe_machine() -> str:
 
 
 def describe_commit(sources: Path = SOURCES) -> str:
-    """The commit of the sources that run, and whether they were changed since; empty: no clone."""
+    """Name the commit of the running sources, and say if they were changed; empty if no clone."""
     if not (sources / ".git").exists():
         return ""
     commit = _git(sources, "rev-parse", "--short=12", "HEAD")
@@ -42,8 +42,8 @@ def describe_commit(sources: Path = SOURCES) -> str:
 
 
 def _git(folder: Path, *words: str) -> str:
-    """What git says; nothing where it is not installed, or does not answer."""
-    quiet = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}  # another git may be at work there
+    """Run git in a folder and return its output; empty where git is missing or does not answer."""
+    quiet = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}  # do not disturb another git at work there
     with suppress(OSError, subprocess.SubprocessError):
         done = subprocess.run(
             ["git", "-C", str(folder), *words],

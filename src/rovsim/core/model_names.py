@@ -1,14 +1,20 @@
-"""What models are called, in files, tables and keys; those of users are called by their files."""
+"""Names of models in files, tables and keys; a user's model is named after its file."""
 
 NOMINAL, ZERO_ACCELERATION = "nominal", "zero_acceleration"
 BUILT_IN = (NOMINAL, ZERO_ACCELERATION)  # those that need no file
-REFITTED = "refitted"  # the nominal one, its own parameters fitted to the train runs
-EFFECTS = "effects"  # the nominal one, and all that a diagnosis selected
+REFITTED = "refitted"  # the nominal model with its own parameters fitted to the train runs
+EFFECTS = "effects"  # the nominal model with all effects that a diagnosis selected
 PROPOSED = "proposed_effect"  # the effect that a diagnosis proposes
-NOISE_FLOOR = "noise_floor"  # what a perfect model would show
+NOISE_FLOOR = "noise_floor"  # the error that a perfect model would show
 
 
 def name_learned(kind: str, control: str, base: str = NOMINAL) -> str:
-    """A model with a residual of a kind, learned from runs of a control: [BASE+]KIND_CONTROL."""
+    """Name a model with a learned residual: [BASE+]KIND_CONTROL.
+
+    Args:
+        kind: of the residual.
+        control: of the runs that it was learned from (3dof, 6dof).
+        base: name of the model to which it is added.
+    """
     learned = f"{kind}_{control}"
     return learned if base == NOMINAL else f"{base}+{learned}"

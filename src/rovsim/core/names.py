@@ -1,7 +1,7 @@
-"""Names that people give: one line of text, wherever they are shown or written.
+"""Check names that users give: each must be one line of text, wherever it is shown or written.
 
-A name that breaks its line leaves the comment, text or cell it stands in: in a MATLAB function the
-rest of it would be a command.
+A name with a line break would leave the comment, string or cell in which it is written: in a MATLAB
+function the rest of it would be a command.
 """
 
 from pathlib import Path
@@ -18,7 +18,7 @@ EXPECTED = "a name on one line, without control characters"
 
 
 def is_name(text: str) -> bool:
-    """Whether a text stays on its line, whatever it is written into."""
+    """Whether a text has no characters that break its line."""
     return not any(category(c) in BREAKING for c in text)
 
 
@@ -32,15 +32,15 @@ Name = Annotated[str, AfterValidator(_name)]
 
 
 def as_list(given: str | Iterable[str]) -> list[str]:
-    """What may be named alone or as one of several, as several."""
+    """Make a list of names from one name or several."""
     return [given] if isinstance(given, str) else list(given)
 
 
 def name_of(path: Path) -> str:
-    """What is called by its file: the stem of the file's name.
+    """Name a thing after its file: the stem of the file's name.
 
     Raises:
-        BadInput: the file has a name that nothing can be called by.
+        BadInput: the stem holds control characters.
     """
     if is_name(path.stem):
         return path.stem

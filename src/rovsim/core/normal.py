@@ -1,3 +1,3 @@
-"""Numbers of the normal distribution."""
+"""Constants of the normal distribution."""
 
-Z_95 = 1.96  # standard deviations; as many to either side hold 95 %
+Z_95 = 1.96  # standard deviations to either side of the mean that contain 95 %

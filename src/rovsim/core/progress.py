@@ -1,4 +1,4 @@
-"""Progress with an estimate of the time left: on a terminal, or told to whoever listens."""
+"""Show progress and an estimate of the time left on a terminal, or report it to a listener."""
 
 import sys
 from contextlib import contextmanager
@@ -7,35 +7,40 @@ from typing import Callable, Iterable, Iterator, Mapping, Sequence, TypeVar
 
 T = TypeVar("T")
 HALF = 40  # steps of a stage after which it is shown as half over
-FINEST = 0.002  # share: less is not told
-Tell = Callable[[str, float | None], None]  # what is done, and the share done (None: unknown)
+FINEST = 0.002  # share: smaller progress is not reported
+Tell = Callable[[str, float | None], None]  # takes the task, and the share done (None: unknown)
 
 
 def _nobody(what: str, share: float | None) -> None:
-    """Say nothing."""
+    """Ignore progress."""
 
 
 class _Bar:
-    """How far stages are, of which nobody knows how many steps they have.
+    """Progress of stages whose numbers of steps are unknown.
 
-    Within a stage the share nears the next one's begin, and never gets there; what is begun again
-    goes on from where it was.
+    Within a stage the share approaches the beginning of the next stage but never reaches it. If an
+    earlier stage is begun again, the share does not go back.
+
+    Args:
+        what: name of the task.
+        begins: share of the time that is usually over when each stage begins.
+        tell: takes the reports.
     """
 
     def __init__(self, what: str, begins: Mapping[str, float], tell: Tell) -> None:
         self.what, self.begins, self.tell = what, begins, tell
         self.text, self.low, self.high = what, 0.0, 1.0
-        self.steps, self.share = 0, 0.0  # in this stage; as told
+        self.steps, self.share = 0, 0.0  # steps of this stage; share that was reported last
 
     def begin(self, name: str) -> None:
-        """Tell that a stage begins."""
+        """Report that a stage begins."""
         self.low = max(self.share, self.begins.get(name, 0.0))
         self.high = min((b for b in self.begins.values() if b > self.low), default=1.0)
         self.text, self.steps = f"{self.what}: {name}", 0
         self._tell(self.low)
 
     def step(self) -> None:
-        """Tell that it goes on, if anybody would see that."""
+        """Count a step, and report it if the share has changed visibly."""
         self.steps += 1
         share = self.low + (self.high - self.low) * self.steps / (self.steps + HALF)
         if share - self.share > FINEST:
@@ -52,7 +57,7 @@ _bar: ContextVar[_Bar | None] = ContextVar("bar", default=None)
 
 @contextmanager
 def heard_by(listener: Tell = _nobody) -> Iterator[None]:
-    """Tell all progress to a listener instead of the terminal; by default to nobody."""
+    """Report all progress to a listener instead of the terminal; by default to nobody."""
     token = _listener.set(listener)
     try:
         yield
@@ -70,7 +75,7 @@ def counted(items: Sequence[T], what: str) -> Iterable[T]:
 
 @contextmanager
 def reported(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function to be called with rounds done and rounds in all."""
+    """Yield a function to be called with the number of rounds done and the total number."""
     with _shown(what) as tell:
         yield lambda done, total: tell(what, done / total if total else None)
 
@@ -79,8 +84,11 @@ def reported(what: str) -> Iterator[Callable[[int, int], None]]:
 def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], None]]:
     """Yield a function to be called with the name of each stage as it begins.
 
-    `begins`: share of the time that is usually over when a stage begins. Between two stages every
-    `step` that is told goes on towards the next.
+    Within a stage, every call of `step` moves the progress towards the next stage.
+
+    Args:
+        what: name of the task.
+        begins: share of the time that is usually over when each stage begins.
     """
     with _shown(what) as tell:
         bar = _Bar(what, begins, tell)
@@ -92,14 +100,14 @@ def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], N
 
 
 def step() -> None:
-    """Tell that one of the many steps of a stage is done; nothing where no stages are shown."""
+    """Report that one of the many steps of a stage is done; does nothing outside of `staged`."""
     if bar := _bar.get():
         bar.step()
 
 
 @contextmanager
 def _shown(what: str) -> Iterator[Tell]:
-    """Where progress goes: to the listener, onto a terminal, or nowhere."""
+    """Yield what takes reports: a listener, a terminal, or a function that does nothing."""
     listener = _listener.get()
     if listener is not None or not sys.stderr.isatty():
         tell = listener or _nobody

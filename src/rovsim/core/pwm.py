@@ -5,24 +5,28 @@ from numpy import ndarray as Array
 
 # PWM = 1500 us + 400 us c, as the vehicle files' comments say.
 CENTER, SPAN = 1500.0, 400.0
-NONE = (0.0, 65535.0)  # what MAVLink tells of an output or input without pulses
+NONE = (0.0, 65535.0)  # values with which MAVLink says that an output or input has no pulses
 # ArduSub, "RC input and output": channels of the pilot; throttle is up.
 PILOT = {"RC5": "surge", "RC6": "sway", "-RC3": "heave", "RC2": "roll", "RC1": "pitch",
          "RC4": "yaw"}  # fmt: skip
 
 
 def absent(pulses: Array) -> Array:
-    """Which of them are none."""
+    """Mask, of the same shape, of the values that mean "no pulse"."""
     return np.isin(pulses, NONE)
 
 
 def of_inputs(pulses: Array) -> Array:
-    """Pulses of inputs, of which one without a pulse is unknown (NaN)."""
+    """Pulses of inputs, us, with NaN (unknown) where there is no pulse."""
     return np.where(absent(pulses), np.nan, pulses)
 
 
 def of_outputs(pulses: Array) -> tuple[Array, tuple[str, ...]]:
-    """Pulses of outputs where none stands for a thruster at rest, and a sentence if any does."""
+    """Pulses of outputs, us, with that of a thruster at rest where there is none.
+
+    Returns:
+        The pulses, and a sentence if any was replaced.
+    """
     none = absent(pulses)
     if not none.any():
         return pulses, ()
@@ -31,15 +35,15 @@ def of_outputs(pulses: Array) -> tuple[Array, tuple[str, ...]]:
 
 
 def to_commands(pulses: Array) -> Array:
-    """Commands of pulses."""
+    """Convert pulses in us to commands; 1100 to 1900 us become -1 to 1."""
     return (pulses - CENTER) / SPAN
 
 
 def to_pulses(command: Array) -> Array:
-    """Pulses of commands, in whole us."""
+    """Convert commands in [-1, 1] to pulses in whole us."""
     return np.round(CENTER + SPAN * command)
 
 
 def in_whole_pulses(command: Array) -> Array:
-    """Commands that pulses in whole us mean, nearest to these."""
+    """Round commands to the nearest ones that pulses in whole us can express."""
     return np.round(SPAN * command) / SPAN

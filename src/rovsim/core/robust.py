@@ -1,10 +1,10 @@
-"""Statistics that a few wrong values do not move."""
+"""Statistics that a few wrong values do not change."""
 
 import numpy as np
 from numpy import ndarray as Array
 
 STD_PER_MAD = 1.4826  # standard deviation over the median absolute deviation
-LONG_STEP = 1.5  # of the usual step: one value missing makes it twice as long
+LONG_STEP = 1.5  # usual steps: a longer one is a gap, as a missing value makes it twice as long
 
 
 def usual_range(values: Array) -> tuple[Array, Array]:

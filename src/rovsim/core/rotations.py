@@ -2,9 +2,9 @@
 
 Inside rovsim the world is NED and the body FRD (Fossen 2021, sec. 2.1). Quaternions are unit,
 scalar first (w, x, y, z), and rotate body vectors into the world: x_world = R(q) x_body.
-Every function takes arrays with any leading axes. SciPy turns other forms into quaternions; what
-takes quaternions is computed here, since SciPy refuses those of frames that nobody saw (NaN) and of
-models that diverged, scales all to unit length, and loses their sign.
+Every function takes arrays with any leading axes. SciPy turns other forms into quaternions. What is
+computed from quaternions is computed here, because SciPy refuses those of unseen frames (NaN) and
+of models that diverged, scales all to unit length, and loses their sign.
 """
 
 from typing import Literal, NamedTuple
@@ -23,13 +23,14 @@ HALF_TURN_X = np.array([1.0, -1.0, -1.0])
 def axes_signs(axes: WorldAxes | BodyAxes) -> Array:
     """Signs (3,) that turn components along `axes` into NED or FRD components, and back.
 
-    Readers turn `y_up` into `z_up` and `fur` (forward, up, right) into `flu`, whose signs hold.
+    For `y_up` and `fur` (forward, up, right) they are those of `z_up` and `flu`, into which readers
+    have turned the data before.
     """
     return np.ones(3) if axes in ("ned", "frd") else HALF_TURN_X
 
 
 def half_turn(signs: Array) -> Array:
-    """Quaternion (4,) of the rotation diag(signs): none, or a half turn about x."""
+    """Quaternion (4,) of the rotation diag(signs): identity, or a half turn about x."""
     return np.array([1.0, 0, 0, 0]) if signs[1] > 0 else np.array([0.0, 1, 0, 0])
 
 
@@ -51,7 +52,7 @@ def multiply(a: Array, b: Array) -> Array:
 
 
 def _joined(*parts: Array) -> Array:
-    """Parts (...) as the last axis: `np.stack`, which takes twice as long for few numbers."""
+    """Stack parts (...) along a new last axis; `np.stack` takes twice as long for few numbers."""
     found = np.empty((*parts[0].shape, len(parts)), parts[0].dtype)
     for i, part in enumerate(parts):
         found[..., i] = part
@@ -76,7 +77,7 @@ def rotate(q: Array, x: Array) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    """Cross product (..., 3): that of NumPy, which takes twice as long."""
+    """Cross product (..., 3); that of NumPy takes twice as long."""
     (x, y, z), (u, v, w) = (a[..., 0], a[..., 1], a[..., 2]), (b[..., 0], b[..., 1], b[..., 2])
     return _joined(y * w - z * v, z * u - x * w, x * v - y * u)
 
@@ -105,14 +106,14 @@ def from_matrix(R: Array) -> Array:
 
 
 def continuous(q: Array) -> Array:
-    """Flip signs along the time axis so that neighbours of (time, 4) never differ by a turn."""
+    """Flip signs of quaternions (time, 4) so that neighbours never have opposite signs."""
     flips = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
     flips[flips == 0] = 1.0
     return q * np.concatenate([[1.0], np.cumprod(flips)])[:, None]
 
 
 def unwrapped(angles: Array) -> Array:
-    """Angles (time, c) in rad that go on beyond half a turn, over gaps (NaN) as well."""
+    """Unwrap angles (time, c) in rad along time, also across gaps (NaN)."""
     found = angles.copy()
     for column in found.T:
         known = np.isfinite(column)
@@ -127,7 +128,7 @@ def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:
 
 
 def to_euler(q: Array) -> Array:
-    """Roll, pitch, yaw (..., 3) in rad; pitch within +-pi/2. For people, never for rates."""
+    """Roll, pitch, yaw (..., 3) in rad, pitch within +-pi/2. For display, never for rates."""
     w, x, y, z = _elements(q)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.minimum(np.maximum(2 * (w * y - z * x), -1.0), 1.0))
@@ -136,13 +137,13 @@ def to_euler(q: Array) -> Array:
 
 
 def short_way(angle: Array | float) -> Array:
-    """Angles in rad within -pi .. pi: the short way round."""
+    """Wrap angles in rad to -pi .. pi."""
     return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def exp(rotation: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in rad."""
-    if not np.any(rotation):  # of every model that turns nothing; SciPy is slow to import
+    if not np.any(rotation):  # as for every model without rotated frames; SciPy imports slowly
         return np.tile([1.0, 0.0, 0.0, 0.0], (*np.shape(rotation)[:-1], 1))
     # SciPy takes no read-only array
     return scipy.spatial.transform.Rotation.from_rotvec(np.array(rotation)).as_quat(
@@ -195,5 +196,5 @@ class Rigid(NamedTuple):
 
     @staticmethod
     def by(turn: Array | float = 0.0, shift: Array | float = 0.0) -> "Rigid":
-        """A turn by a rotation vector (3,) in rad, then a shift (3,) in m."""
+        """Make the transform of a turn by a rotation vector (3,) in rad, then a shift (3,) in m."""
         return Rigid(exp(np.zeros(3) + turn), np.zeros(3) + shift)

@@ -1,4 +1,4 @@
-"""Which run a thing belongs to, what was commanded, and where it was: known to all rooms."""
+"""A run's identity, its commands, and where it was recorded; used by all other packages."""
 
 from dataclasses import dataclass, field, replace
 from typing import Literal, Mapping
@@ -7,14 +7,16 @@ import numpy as np
 from numpy import ndarray as Array
 
 CommandKind = Literal["thruster", "demand", "wrench"]
-Between = Literal["held", "linear"]  # what commands do between two logged lines
+Between = Literal["held", "linear"]  # how commands go on between two logged lines
 
 
 def latest(time: Array, at: Array | float) -> Array:
-    """Which of the lines at `time` (m,), increasing, holds at each instant; before all, the first.
+    """Index of the latest line at or before each instant; the first line for earlier instants.
 
-    A line holds from its own instant on; add a tolerance to `at` where these two are computed in
-    different ways.
+    Args:
+        time: times (m,) of the lines, s, increasing.
+        at: instants, s, of any shape. Add a tolerance where they are computed in another way than
+            `time`, because a line holds from its own instant on.
     """
     return np.asarray(np.maximum(np.searchsorted(time, at, side="right") - 1, 0))
 
@@ -38,14 +40,19 @@ class Logged:
 
 @dataclass(frozen=True, eq=False)
 class Commands:
-    """What the pilot sent. A line holds until the next one.
+    """The commands of a run, in m logged lines, each of which holds until the next one.
 
-    `time` (m,) in s on the MoCap clock, increasing. `value` (m, c): commands of the thrusters in
-    [-1, 1] and angles in rad, as `Vehicle.command_columns` says (`thruster`), demands per axis in
-    [-1, 1] (`demand`) or a body wrench in N, N m (`wrench`). `auxiliary`: what else was logged, by
-    name; `voltage` is that of the battery in V. Where this is a part of a recording, `before` and
-    `after` are the s of it that lie on either side.
     Without lines (m = 0) nothing was commanded: free decay, towing, drifting.
+
+    Attributes:
+        time: (m,) s, on the MoCap clock, increasing.
+        value: (m, c). Commands of the thrusters in [-1, 1] and angles in rad, in the columns of
+            `Vehicle.command_columns` (kind `thruster`); demands for each axis in [-1, 1]
+            (`demand`); or a body wrench in N, N m (`wrench`).
+        kind: what the values are.
+        auxiliary: further logged numbers, by name; `voltage` is that of the battery, V.
+        before: time of the recording that lies before this part of it, s.
+        after: time of the recording that lies after this part of it, s.
     """
 
     time: Array
@@ -56,31 +63,41 @@ class Commands:
     after: float = 0.0
 
     def held_at(self, at: Array | float) -> Array:
-        """Values (..., c) that hold at instants (...) s, of a log that has lines."""
+        """Values (..., c) that hold at instants (...), s; the log must have lines."""
         return np.asarray(self.value[latest(self.time, at)])
 
     def within(self, begin: float, end: float) -> "Commands":
-        """The lines between two times, and one on either side: what holds then, what comes next."""
+        """The lines between two times, s, with the one held at `begin` and the one after `end`."""
         first, last = np.searchsorted(self.time, [begin, end], side="right")
         at = slice(max(int(first) - 1, 0), int(last) + 1)
         return replace(self, time=self.time[at], value=self.value[at])
 
     def recording(self, edges: Array) -> tuple[float, float]:
-        """When the recording began and how long it lasted, s; steps between `edges` cover this."""
+        """When the whole recording began, and how long it lasted, s.
+
+        Args:
+            edges: (n,) s, of which the first and the last bound this part of the recording.
+        """
         start = float(edges[0]) - self.before
         return start, float(edges[-1]) + self.after - start
 
     def since_start(self, times: Array) -> Array:
-        """Times as s since the start of the recording; the first is where this begins."""
+        """Times since the start of the whole recording, s.
+
+        Args:
+            times: s on the MoCap clock, of which the first is the beginning of this part.
+        """
         return np.asarray(times - times[0] + self.before)
 
 
 @dataclass(frozen=True, eq=False)
 class Site:
-    """Where it was recorded: `tank` (3, 2) low and high walls in NED m (NaN when unknown).
+    """Where a run was recorded.
 
-    `axes` (3,) are the signs between the MoCap world axes and NED. `level` m NED: where a vehicle
-    that floats is at rest.
+    Attributes:
+        tank: (3, 2), low and high walls along x, y, z of NED, m; NaN when unknown.
+        axes: (3,), signs between the MoCap world axes and NED.
+        level: z in NED at which a floating vehicle is at rest, m.
     """
 
     tank: Array
@@ -89,5 +106,5 @@ class Site:
 
     @staticmethod
     def unknown() -> "Site":
-        """An unbounded place whose MoCap axes are NED."""
+        """Make an unbounded site whose MoCap axes are NED."""
         return Site(np.full((3, 2), np.nan), np.ones(3))

@@ -12,9 +12,10 @@ from rovsim.core.errors import BadInput, unlisted
 
 
 class Section(BaseModel):
-    """A section of a file or of the configuration: typed, immutable, no unknown keys.
+    """A section of a file or of the configuration: typed, immutable, without unknown keys.
 
-    `described`: the page that shows one.
+    Attributes:
+        described: the page of the documentation that shows an example.
     """
 
     described: ClassVar[str] = "docs/formats.md"
@@ -23,7 +24,7 @@ class Section(BaseModel):
 
 
 def _path(text: str) -> str:
-    """Refuse what no file system can name: every look at such a path would fail in its own way."""
+    """Refuse paths that are invalid on any file system; using one would fail in various ways."""
     too_long = len(text) > 4000 or any(len(os.fsencode(p)) > 255 for p in text.split("/"))
     if too_long or "\x00" in text:
         raise ValueError("a path that a file system can name")
@@ -32,12 +33,12 @@ def _path(text: str) -> str:
 
 Axis = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
 PathText = Annotated[str, AfterValidator(_path)]
-# A number as it is: neither true nor '1.5' is one.
+# A number that is written as one: true and '1.5' are refused.
 Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 
 S = TypeVar("S", bound=Section)
 
-# What pydantic misses, in words of somebody who knows YAML and no Python.
+# What pydantic expected, by its type of error, in words for a reader who does not know Python.
 WORDS = {
     **dict.fromkeys(("list_type", "tuple_type"), "a list, as [first, second]"),
     **dict.fromkeys(("float_type", "float_parsing"), "a number"),
@@ -76,8 +77,9 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
 
 
 def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadInput:
+    """Turn pydantic's errors into one message about the first of them."""
     found = error.errors(include_url=False)
-    # A key that is mistyped is unknown and missing; the first says what was meant.
+    # A mistyped key gives two errors, unknown and missing; the unknown key tells what was meant.
     first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
     place = ".".join(str(part) for part in first["loc"] if not _is_type(part))
     if first["type"] == "extra_forbidden":
@@ -102,7 +104,7 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
 
 
 def _too_few(found: list[Any], first: Any, place: str, where: Any) -> BadInput:
-    """A row of numbers that has fewer than it should."""
+    """Make the error for a row of numbers that is too short."""
     row = first["loc"][:-1]
     missing = [one for one in found if one["type"] == "missing" and one["loc"][:-1] == row]
     return BadInput(
@@ -114,12 +116,12 @@ def _too_few(found: list[Any], first: Any, place: str, where: Any) -> BadInput:
 
 
 def _is_type(part: int | str) -> bool:
-    """Whether a part of a place names a member of a union, which does not stand in the file."""
+    """Whether a part of pydantic's location names a type of a union, which is not in the file."""
     return isinstance(part, str) and (part == "str" or "[" in part)
 
 
 def _expected(error: Any, kind: type[Section]) -> str:
-    """What should stand there."""
+    """Say what was expected in the place of an error."""
     if error["type"] in ("model_type", "model_attributes_type", "dict_type"):
         keys = _known_keys(kind, error["loc"])
         return f"keys and values ({', '.join(keys)})" if keys else "keys and values"
@@ -137,7 +139,7 @@ def _several(count: int, bound: str) -> str:
 
 
 def _remedy(error: Any) -> str:
-    """The option that was probably meant, where there are some."""
+    """Suggest the option that was probably meant, if the value must be one of several."""
     given = error.get("input")
     if error["type"] != "literal_error" or not isinstance(given, str):
         return "Correct that value."
@@ -154,9 +156,11 @@ def _sentence(message: str) -> str:
 
 
 def _known_keys(kind: type[BaseModel], place: tuple[Any, ...]) -> list[str]:
-    """Keys of the section found by walking `place` down from `kind`.
+    """List the keys of the section at `place` inside the section `kind`.
 
-    A place names list items by number and members of a union by their `kind`.
+    Args:
+        kind: the outermost section.
+        place: pydantic's location: keys, indices of list items, and the `kind` of union members.
     """
     choices = [kind]
     for part in place:
@@ -168,7 +172,7 @@ def _known_keys(kind: type[BaseModel], place: tuple[Any, ...]) -> list[str]:
 
 
 def _names(kind: type[BaseModel]) -> list[str]:
-    """Keys as they stand in the file."""
+    """List the keys of a section as they are written in the file."""
     return [field.alias or name for name, field in kind.model_fields.items()]
 
 

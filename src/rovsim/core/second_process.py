@@ -1,4 +1,4 @@
-"""A second process for what needs other libraries, while this one computes."""
+"""A second process for work that needs other libraries, while this one computes."""
 
 import os
 import signal
@@ -22,13 +22,17 @@ TIMES, BETWEEN = 10, 0.5  # s, between signals to a process that must end
 
 @contextmanager
 def second_process(*modules: str, first: str | None = None) -> Iterator[Executor]:
-    """An executor of one process, which imports `modules` at once and ends with this one.
+    """Yield an executor with one other process, which ends with this one.
 
-    Where they are imported here already, or there is no core to spare, it is this process itself.
-    Elsewhere it calls `first`, a "module:function", before that.
+    If the modules are already imported here, or no core is free, the executor works in this
+    process instead.
+
+    Args:
+        modules: modules that the other process imports at once.
+        first: function that it calls before that, as "module:function".
 
     Raises:
-        RovsimError: somebody killed the other process.
+        RovsimError: the other process was killed.
     """
     if usable_cores() < 2 or all(module in sys.modules for module in modules):
         yield _ThisProcess()
@@ -42,7 +46,7 @@ def second_process(*modules: str, first: str | None = None) -> Iterator[Executor
     except BaseException as error:
         executor.shutdown(wait=False, cancel_futures=True)
         for process in set(active_children()) - others:
-            _end(process)  # nobody waits for what it does
+            _end(process)  # its results are not needed any more
         if isinstance(error, (BrokenProcessPool, SystemExit)):  # SystemExit is the other's
             raise RovsimError(
                 "a second process was killed, perhaps for want of memory. What was computed is "
@@ -54,14 +58,14 @@ def second_process(*modules: str, first: str | None = None) -> Iterator[Executor
 
 
 def usable_cores() -> int:
-    """Cores that this process may use."""
+    """Number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 class _OtherProcess(ProcessPoolExecutor):
-    """Hands on what it is given; does it itself where the other process is gone."""
+    """Runs functions in the other process, or in this one if the other has died."""
 
     def __init__(self) -> None:
         super().__init__(1, get_context("spawn"), initializer=_obey_the_first)
@@ -74,7 +78,7 @@ class _OtherProcess(ProcessPoolExecutor):
 
 
 class _ThisProcess(Executor):
-    """Does at once what it is given."""
+    """Runs functions at once, in this process."""
 
     def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
         done: Future = Future()
@@ -83,7 +87,7 @@ class _ThisProcess(Executor):
 
 
 def _obey_the_first() -> None:
-    """End when the first process ends, and not before."""
+    """Let the second process end when the first one ends, and ignore Ctrl-C until then."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     exit_on_termination()
     first = parent_process()
@@ -98,8 +102,8 @@ def _obey_the_first() -> None:
 
 
 def _end(process: BaseProcess) -> None:
-    """End a process: it clears away what it was writing, unless that takes long."""
-    for _ in range(TIMES):  # each ends one of the calls that wait for it
+    """End a process; it may clear away unfinished files, but is killed if that takes long."""
+    for _ in range(TIMES):  # each signal ends one of the calls that the process waits for
         process.terminate()
         process.join(BETWEEN)
         if not process.is_alive():
@@ -113,9 +117,9 @@ def _import(modules: tuple[str, ...]) -> None:
 
 
 def call(name: str, *given: Any) -> Any:
-    """Call "module:function", which the first process need not import.
+    """Call a function named "module:function", which the first process need not import.
 
-    Nothing is said of its progress: the terminal may show that of something else.
+    Its progress is not shown: the terminal may show that of another task.
     """
     module, function = name.split(":")
     with heard_by():

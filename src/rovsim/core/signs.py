@@ -1,6 +1,6 @@
-"""Numbers below zero as people write them."""
+"""Write negative numbers with a typographic minus sign."""
 
 
 def minus(number: str) -> str:
-    """A number as people write it: with a minus sign, not a hyphen; a zero has no sign."""
+    """Replace the hyphens of a formatted number by minus signs; a zero gets no sign."""
     return number.replace("-", "−") if number.strip("-0.") else number.lstrip("-")

@@ -1,4 +1,4 @@
-"""SIGTERM, by which schedulers and services end a process, as Ctrl-C: what was begun is undone."""
+"""Treat SIGTERM, with which schedulers and services end a process, like Ctrl-C, to clean up."""
 
 import signal
 import sys
@@ -7,16 +7,16 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Iterator, NoReturn
 
-CODE = 128 + signal.SIGTERM  # what a shell makes of a process that this signal ended
+CODE = 128 + signal.SIGTERM  # exit code that a shell reports for a process that SIGTERM ended
 
 
 class Terminated(KeyboardInterrupt):
-    """Somebody asked this process to end."""
+    """Raised when SIGTERM asks this process to end."""
 
 
 @contextmanager
 def heeding_termination() -> Iterator[None]:
-    """Let SIGTERM raise `Terminated` once, where this thread may say so."""
+    """Let SIGTERM raise `Terminated` once; does nothing outside of the main thread."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -28,12 +28,12 @@ def heeding_termination() -> Iterator[None]:
 
 
 def exit_on_termination() -> None:
-    """Let SIGTERM end this process the ordinary way, so that it leaves no half of a file."""
+    """Let SIGTERM end this process by `SystemExit`, so that it leaves no unfinished file."""
     signal.signal(signal.SIGTERM, _exit)
 
 
 def _terminate(*_: int | FrameType | None) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # nothing disturbs what is now cleared away
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second signal must not disturb the clean-up
     raise Terminated
 
 

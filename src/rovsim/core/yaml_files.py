@@ -1,4 +1,4 @@
-"""Safe YAML 1.2, written and read: no tags that build objects, no bombs."""
+"""Read and write safe YAML 1.2: no tags that build objects, no aliases that expand without end."""
 
 import copy
 import io
@@ -20,12 +20,17 @@ MOST_NODES = 1_000_000  # with everything written out that aliases repeat
 
 
 def write_yaml(path: Path, content: Any, rows: bool = False) -> None:
-    """Write plain YAML atomically, keys in the order given; `rows`: see `yaml_text`."""
+    """Write plain YAML atomically, with keys in the given order; for `rows` see `yaml_text`."""
     write_text(path, yaml_text(content, rows))
 
 
 def yaml_text(content: Any, rows: bool = False) -> str:
-    """Plain YAML, keys in the order given; `rows`: what holds plain values alone is one line."""
+    """Write content as plain YAML, with keys in the given order.
+
+    Args:
+        content: plain values, lists and mappings.
+        rows: whether lists and mappings that hold only plain values are written on one line.
+    """
     yaml, text = YAML(typ="safe", pure=True), io.StringIO()
     # with the quotes and numbers of YAML 1.1, readers of 1.1 and 1.2 agree on every value
     yaml.version, yaml.width, yaml.default_flow_style = (1, 1), 100, None if rows else False
@@ -64,7 +69,7 @@ def read_yaml(path: Path) -> Any:
 
 
 def _depth(text: str) -> int:
-    """Brackets inside each other, at most: those in texts and comments count too."""
+    """Largest number of nested brackets; those in texts and comments count, too."""
     steps = (1 if c in "[{" else -1 for c in text if c in "[]{}")
     return max(accumulate(steps), default=0)
 
@@ -76,16 +81,21 @@ def _refused(where: object, found: str) -> BadInput:
 
 @lru_cache(maxsize=32)
 def _parse(text: str) -> Any:
-    """Content of a YAML text, not to be changed: the parser takes 0.1 s for a vehicle file."""
+    """Parse a YAML text; the result is cached (a vehicle takes 0.1 s) and must not be changed."""
     return YAML(typ="safe", pure=True).load(text)
 
 
 def _count(node: Any, known: dict[int, float]) -> float:
-    """Values in a tree with its aliases written out; infinite where it holds itself."""
+    """Number of values in a tree with its aliases expanded; infinite where it contains itself.
+
+    Args:
+        node: the tree.
+        known: numbers of inner lists and mappings by `id`, filled in here.
+    """
     if not isinstance(node, (dict, list)):
         return 1
     if id(node) not in known:
-        known[id(node)] = inf  # until it is counted: whoever meets it meanwhile is inside it
+        known[id(node)] = inf  # until it is counted: if it is met before, it contains itself
         inside = node.values() if isinstance(node, dict) else node
         known[id(node)] = 1 + sum(_count(child, known) for child in inside)
     return known[id(node)]
