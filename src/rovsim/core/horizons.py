@@ -5,7 +5,7 @@ WINDOW = 2.0  # s, length of the windows in the ladder, in figures and in summar
 
 
 def name_horizon(seconds: float) -> str:
-    """Name of the horizon of windows of so many seconds."""
+    """Name of the horizon of windows that last `seconds`."""
     return f"{seconds:g}"
 
 

@@ -192,4 +192,4 @@ class CampaignFile(Section):
     commands: CommandLog | None = None  # not needed where no run has commands
     runs: Annotated[list[Run], Field(min_length=1)]
     folder: PathText = ""  # where the recordings lie when they are not beside this file
-    source: str = ""  # where to get them, told when they are missing
+    source: str = ""  # where to get the recordings, added to the error when they are missing

@@ -11,7 +11,7 @@ from rovsim.measurement.signals.binned import LONG_BIN
 
 FEWEST = 50  # steps
 NEARER = 0.85  # of the differences, over the axes: noise alone comes to 1
-UNEVEN = 0.1  # of a step, standard deviation: then means of poses and velocities can be told apart
+UNEVEN = 0.1  # of a step, standard deviation: from there on, the readings can be distinguished
 APART = 1.1  # of the differences
 
 
@@ -19,7 +19,7 @@ def doubt_means(recording: Recording) -> Iterator[str]:
     """Yield a sentence where velocities that are read as means are values at the poses' times.
 
     If poses and velocities are means over the same times, they agree like values at the same
-    times. With even steps the two cases cannot be told apart; with uneven ones, the sentence is
+    times. With even steps the two cases cannot be distinguished; with uneven ones, the sentence is
     only given if that reading fits surely worse.
     """
     differences = _differences(recording)

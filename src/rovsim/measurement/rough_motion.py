@@ -13,7 +13,7 @@ from rovsim.measurement.signals.clock import time_step
 
 # A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
 STEP = 0.05  # s
-MOST = 20_000  # steps: a quarter of an hour tells as much as a day
+MOST = 20_000  # steps: a quarter of an hour is as good for a comparison as a day
 BRIDGED = 0.3  # s without a pose over which a straight line still serves
 # Lines over this many steps to either side: their slope is the velocity.
 HALF_WINDOW = 3

@@ -14,9 +14,9 @@ from rovsim.measurement.recording.recording import Recording
 
 WINDOW = 0.5  # s, over which poses and velocities are compared: slower than noise
 FEWEST = 20  # windows
-EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion tells nothing
-ALIKE, UNLIKE = 0.9, 0.6  # cosine between velocities and what poses say
-OTHER_SIZE = 1.3  # times: a sensor's scale is never so far off
+EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion is not compared
+ALIKE, UNLIKE = 0.9, 0.6  # cosine between measured velocities and those from the poses
+OTHER_SIZE = 1.3  # ratio of sizes: the scale of a sensor is never so wrong
 UNITS = {  # by channel: factors of sensors' units
     "velocity": ((100.0, "cm/s"), (1000.0, "mm/s")),
     "rates": ((180.0 / np.pi, "deg/s"),),

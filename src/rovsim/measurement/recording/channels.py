@@ -1,7 +1,7 @@
-"""Measured channels: what was measured of the motion, each kind at its own times.
+"""Measured channels: the measurements of a motion, each kind at its own times.
 
-Not measured is not zero: a kind that nobody measured is absent, a component that was not measured
-at a time is NaN there.
+Not measured does not mean zero: a kind that was never measured is absent, and a component that was
+not measured at some time is NaN there.
 """
 
 from dataclasses import dataclass

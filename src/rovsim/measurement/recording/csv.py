@@ -39,11 +39,11 @@ EXTRA = {  # kind of channel -> columns, beside poses and velocities
     "voltage": ["voltage_v"],
 }
 KNOWN = [*POSITION, *EULER, *QUATERNION, *LINEAR, *ANGULAR, *(n for c in EXTRA.values() for n in c)]
-# Poses are full where position and attitude come in the same lines, and velocities are bin means
-# where they come with the poses: in at least this share of the lines that hold either.
+# In at least this share of the lines with a position or an attitude, both must be given to count as
+# full poses; likewise, poses and velocities must share lines for velocities to count as bin means.
 TOGETHER = 0.5
-NEAR_ZERO = 0.5  # m, rad: beyond what a vehicle does from one line to the next
-NEAR = 0.75  # likeness of names: 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
+NEAR_ZERO = 0.5  # m, rad: more than a vehicle moves from one line to the next
+NEAR = 0.75  # similarity of names: 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,10 +44,10 @@ LIMITS = {  # by channel
     "velocity": Limit(LINEAR, FASTEST, "m/s", ("mm/s", "cm/s")),
     "rates": Limit(ANGULAR, FASTEST_TURN, "rad/s", ("deg/s",)),
 }
-TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and hardly any counts on
-ABOVE, SHARE = -0.1, 0.95  # m: a zero of the sensor that is off; of the lines
-DEEP = 0.5  # m
-UPRIGHT, TUMBLING = 0.9, 0.5  # cosine of the tilt that hardly ever is below: 26 and 60 degrees
+TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and is hardly ever unwrapped
+ABOVE, SHARE = -0.1, 0.95  # m, beyond a wrong zero of the sensor; share of the lines above it
+DEEP = 0.5  # m: a height must reach so far
+UPRIGHT, TUMBLING = 0.9, 0.5  # fifth percentile of the tilt's cosine: 26 and 60 degrees
 RENAME = "Name the column after its unit ({}), and let `rovsim init` make a copy in {}."
 
 

@@ -79,7 +79,8 @@ def csv_lines(path: Path) -> Lines:
         lines, separator = [",".join(line.lstrip("# ").split()) for line in lines], ","
         head = lines[header]
     names = [cell.strip().strip('"') for cell in head.rstrip(f" {separator}").split(separator)]
-    rows = [line if line != lines[header] else "" for line in lines]  # of files put end to end
+    # files that were put end to end repeat the line of names
+    rows = [line if line != lines[header] else "" for line in lines]
     if separator != ",":
         rows = [line.replace(",", ".") for line in rows]
     names, below = with_units(names, rows, header, separator)
@@ -108,7 +109,7 @@ def is_table(head: bytes) -> bool:
 
 
 def _is_quoted(head: str) -> bool:
-    """Whether every name stands in quotes, and so every cell may."""
+    """Whether every name is in quotes; then every cell may be."""
     return bool(re.fullmatch(r'[#\s]*"[^"]*"(\s*[,;\t]\s*"[^"]*")+\s*', head))
 
 

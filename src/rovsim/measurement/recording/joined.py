@@ -26,7 +26,7 @@ def join(exports: Mapping[Path, Export]) -> Export:
     Beside full poses the position and attitude of other files are not used, and a note says so.
 
     Raises:
-        BadInput: two of them hold the same, or have no time in common.
+        BadInput: two of the files hold the same quantity, or have no time in common.
     """
     if len(exports) == 1:
         return next(iter(exports.values()))

@@ -57,7 +57,7 @@ class Anomalies:
 
 
 def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
-    """Read what was measured and commanded in one run; nothing is filtered or filled in.
+    """Read the measurements and commands of one run; nothing is filtered or filled in.
 
     Raises:
         BadInput: a file cannot be used; names the file, the place in it and the remedy.
@@ -119,7 +119,7 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
 
 
 def _shifted(commands: Commands, by: float) -> Commands:
-    """Shift commands to later by so many seconds."""
+    """Add `by` seconds to the times of commands."""
     beside = {k: replace(x, time=x.time + by) for k, x in commands.auxiliary.items()}
     return replace(commands, time=commands.time + by, auxiliary=beside)
 

@@ -17,10 +17,10 @@ from rovsim.measurement.recording.exports import Export
 # A camera is slower than its log if nearly all poses stand in several lines, most in equally many.
 FEWEST, NEARLY_ALL, MOST = 20, 0.9, 0.8  # poses; shares
 UNEVEN = 0.2  # of the lines of a pose; one line at least
-NEARBY = 3  # steps to either side that tell how fast the vehicle moves
-# A jump: the step after a repetition is so many times as fast as the fastest nearby, if one line is
-# repeated (steady motion makes it twice as fast), and if more are. It covers at most MAKES_UP times
-# what the vehicle would cover in the time, and is more than a change of the last digit.
+NEARBY = 3  # steps to either side that show how fast the vehicle moves
+# A jump is a step after a repetition that is faster than the fastest steps nearby, by a factor of
+# JUMP if one line is repeated (steady motion makes it 2), of JUMP_OF_MORE if more are. It covers at
+# most MAKES_UP times the distance of the fastest steps in that time, and is more than a last digit.
 JUMP, JUMP_OF_MORE = 1.5, 2.0
 MAKES_UP = 3.0
 SLOWED = 1 / 3  # of the steps nearby: the last one before a halt is a fifth, if it brakes evenly
@@ -104,7 +104,7 @@ def _lines_of_a_pose(seen: _Seen) -> int:
 
 
 def _slower(export: Export, seen: _Seen, lines: int) -> Export:
-    """Keep one of so many lines of each pose; of a pose that holds longer, one each so many lines.
+    """Keep the first of the lines of each pose, and of a pose that holds longer one per `lines`.
 
     Args:
         export: what was read.

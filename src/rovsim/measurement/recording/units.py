@@ -25,7 +25,7 @@ SPELT = {
     "deg/s": "deg_s", "°/s": "deg_s", "°_s": "deg_s", "dps": "deg_s",
     "m/s2": "m_s2", "m/s^2": "m_s2", "m/s²": "m_s2",
 }  # fmt: skip
-# Units of a line below the names that say nothing of a measured channel.
+# Further words in a line of units, for columns that are no measured channels.
 OTHER = {
     "", "-", "1", "%", "us", "n", "nm", "n m", "n*m", "a", "pa", "mbar", "bar", "hz", "rpm",
 }  # fmt: skip

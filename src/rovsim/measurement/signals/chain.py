@@ -1,6 +1,6 @@
 """From a recording to a motion: outliers, resampling, filter, derivatives.
 
-Recordings that bring their own bin-mean velocities pass the first stages unchanged.
+Recordings with exported velocities, which are bin means, pass the first two stages unchanged.
 """
 
 from dataclasses import replace
@@ -31,7 +31,7 @@ from rovsim.measurement.signals.outliers import OutlierSettings
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
 from rovsim.measurement.signals.track import track_channels
 
-# What a stage hands on: poses, or a binned recording that passes unchanged.
+# The result of the first two stages: poses, or a binned recording that passes unchanged.
 Stage: TypeAlias = Poses | Recording
 
 
@@ -117,7 +117,7 @@ def _at_level(motion: Motion) -> Motion:
 
 
 def read_stage(path: Path) -> Stage:
-    """Read what a stage wrote with its own `write`: poses or a binned recording."""
+    """Read the result of the first or second stage from a file: poses or a binned recording."""
     return Recording.read(path) if "found" in read_arrays(path) else Poses.read(path)
 
 

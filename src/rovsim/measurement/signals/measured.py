@@ -38,7 +38,7 @@ class Measured:
         return SHARE / float(self.cutoff[0])
 
     def part(self, at: slice) -> "Measured":
-        """The same of a slice of the samples."""
+        """What was measured in a slice of the samples."""
         return replace(self, when=self.when[at])
 
     def by_name(self) -> Iterator[tuple[str, Array]]:

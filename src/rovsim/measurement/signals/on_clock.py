@@ -109,7 +109,8 @@ class OnClock:
             What must be added to the integral; NaN in columns without readings.
         """
         ratio = noise_density(direct) / max(noise_density(summed), 1e-12)
-        width = np.clip(np.nan_to_num(ratio), *DRIFT)  # two readings: taken as they are
+        # a noise density is NaN for two readings: then the shortest time
+        width = np.clip(np.nan_to_num(ratio), *DRIFT)
         sigma = np.sqrt(2.0) * width * (direct.rate or 1.0)
         found = np.full((len(self.clock), apart.shape[1]), np.nan)
         for k, column in enumerate(apart.T):

@@ -17,7 +17,7 @@ LOOK_BACK = 1000
 # Leaving found frames out has to be worth more than this many frames, so that a frame of a burst
 # that happens to be within reach is left out with the rest of the burst.
 DETOUR = 3.0
-# Likewise for leaving out an end of the run, where a swap can be judged from one side only.
+# The same for leaving out an end of the run, where a swap can be judged from one side only.
 CUT_END = 1.0
 # s: from such steps on, frames are compared with their neighbours; of faster cameras the filter
 # takes away what the gate lets pass.

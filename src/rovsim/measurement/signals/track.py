@@ -35,7 +35,7 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
         settings: highest rate of the clock, longest gap and shortest stretch.
 
     Raises:
-        BadInput: no channel tells of the motion.
+        BadInput: there is no channel of the motion.
     """
     chosen = choose_channels(recording)
     if not chosen.all:

@@ -119,7 +119,7 @@ def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[
     if not known.any():
         return ["The filter never knew where the vehicle was: its position is not measured."]
     value = position.value[known]
-    if "depth" in channels:  # the filter's height is made of it
+    if "depth" in channels:  # the filter computes its height from the depth
         value = np.where([True, True, False], value, np.nan)
     channels["position"] = Channel(position.time[known], value)
     left = int(np.sum(~known))

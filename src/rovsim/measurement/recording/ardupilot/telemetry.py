@@ -62,7 +62,7 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
             at = marker.start() - 8
             continue
         if _number(packet) not in numbers:
-            # a packet that nobody reads is believed when another one follows it
+            # an unwanted packet is taken for a whole one if another packet follows it
             following = at + 16 + length
             at += 8 + length if following >= len(raw) or raw[following] in MARKERS else 1
             continue

@@ -125,7 +125,7 @@ def _voltage(message: Any) -> list[float]:
 
 
 def _pose(message: Any) -> tuple[Any, Any]:
-    """Position and orientation of a message, as its own objects."""
+    """The parts of a message that hold its position and its orientation."""
     if hasattr(message, "transform"):
         return message.transform.translation, message.transform.rotation
     inner = _inner(message, "pose")

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.core.signs import minus
 
 NANO = 1e-9
-# Transport within one computer or network takes less; another clock is off by more.
+# Transport within one computer or network takes less; clocks of two computers differ by more.
 SAME_CLOCK = 0.5  # s
 # Stamps of one clock differ from the arrivals by a delay that varies by less than this.
 STEADY = 0.5  # s, between the 5th and the 95th percentile
