@@ -1,4 +1,8 @@
-"""Which way the axes of the world and of the body point in a file."""
+"""Find which way the world axes and the body axes of a file point.
+
+What may tell: the body axes along which the motion follows the commands, gravity in an
+accelerometer, a logged depth, and that the vehicle swims upright on average.
+"""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -11,13 +15,13 @@ from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORR
 from rovsim.intake.survey.contents import Track
 from rovsim.measurement.recording.readers import FileAxes
 
-# Columns: forward, starboard, down in the file's body axes.
+# Rotation (3, 3) from FRD into the file's body axes: its columns are forward, starboard and down.
 BODY = {
     "flu": np.diag([1.0, -1.0, -1.0]),
     "frd": np.eye(3),
     "fur": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
 }
-# The way down in the file's world axes.
+# Unit vector that points down, in the file's world axes.
 DOWN = {"z_up": (0.0, 0.0, -1.0), "ned": (0.0, 0.0, 1.0), "y_up": (0.0, -1.0, 0.0)}
 LEVEL = 0.7  # mean of the cosine of the tilt: 45 degrees
 CLOSE = 0.8  # correlation of depth and height
@@ -27,18 +31,33 @@ AXIS = "xyz"
 
 @dataclass(frozen=True)
 class Axes:
-    """World and body axes, empty where nobody can tell, and what speaks for them."""
+    """World and body axes of the files.
+
+    Attributes:
+        world: key of `DOWN`, empty where the files do not tell.
+        body: key of `BODY`, empty where the files do not tell.
+        said: how they are known, or why they are not.
+        likely: pairs of world and body axes in which the vehicle is upright on average, where the
+            body axes have to be asked for.
+    """
 
     world: str
     body: str
     said: str
-    likely: tuple[tuple[str, str], ...] = ()  # pairs of both that are possible
+    likely: tuple[tuple[str, str], ...] = ()
 
 
 def find_axes(
     own: FileAxes, tracks: Sequence[Track], turned: Sequence[tuple[float, Array]]
 ) -> Axes:
-    """The axes of files of a format that may have these; `turned`: correlation along each of 24."""
+    """Find the axes of motions that all are of one format.
+
+    Args:
+        own: the axes that this format may have.
+        tracks: the motion of each run.
+        turned: for each of the 24 rotations (3, 3) from FRD into the file's body axes, the mean
+            correlation of measured and commanded velocities, the best first; empty if unknown.
+    """
     worlds, bodies = own.world, own.body
     if own.fixed:
         return Axes(worlds[0], bodies[0], own.said)
@@ -67,7 +86,7 @@ def find_axes(
 def _upright(
     turned: Sequence[tuple[float, Array]], tracks: Sequence[Track], worlds: Sequence[str]
 ) -> list[tuple[float, Array]]:
-    """The turns in which the vehicle is upright or upside down on average, if any is."""
+    """Keep the rotations in which the vehicle is upright or upside down on average; else all."""
     mean = _mean_attitude(tracks)
     if mean is None:
         return list(turned)
@@ -77,13 +96,17 @@ def _upright(
 
 
 def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
-    """Mean of the rotation matrices (3, 3) over all runs alike; None where none was measured."""
+    """Average the rotation matrices (3, 3), each run with equal weight; None without attitudes."""
     turns = [R.mean(axis=0) for t in tracks if (R := _attitudes(t)) is not None]
     return np.mean(turns, axis=0) if turns else None
 
 
 def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple[str, str]:
-    """Body axes by the motion that the commands cause, and what it says."""
+    """Find the body axes along which the motion follows the commands, and how sure they are.
+
+    Returns:
+        The name of the axes, empty where the commands do not tell, and a sentence on why.
+    """
     if not turned or turned[0][0] < MIN_CORRELATION:
         best = f" (likeness {turned[0][0]:.2f})" if turned else ""
         return "", f"no motion that its commands explain{best}" if turned else ""
@@ -113,7 +136,11 @@ def _named(column: Array) -> str:
 
 
 def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]:
-    """Body axes by gravity: specific force at rest points up."""
+    """Find body axes by gravity: the specific force of a vehicle at rest points up.
+
+    Returns:
+        The name of the axes, empty where this does not tell, and a sentence on why.
+    """
     found = [
         t.export.channels["specific_force"].value
         for t in tracks
@@ -129,7 +156,7 @@ def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]
 def _level(
     tracks: Sequence[Track], worlds: Sequence[str], bodies: Sequence[str]
 ) -> list[tuple[str, str]]:
-    """Pairs of world and body axes in which the vehicle is upright on average."""
+    """List the pairs of world and body axes in which the vehicle is upright on average."""
     mean = _mean_attitude(tracks)
     if mean is None:
         return []
@@ -142,7 +169,7 @@ def _level(
 
 
 def _attitudes(track: Track) -> Array | None:
-    """Rotation matrices (n, 3, 3) of what was measured of the attitude."""
+    """Return measured attitudes as rotation matrices (n, 3, 3) from body to world, file's axes."""
     if track.posed:
         return matrix(track.export.attitude[track.export.found])
     channel = track.export.channels.get("attitude")
@@ -152,7 +179,7 @@ def _attitudes(track: Track) -> Array | None:
 
 
 def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
-    """World axes by a logged depth beside the height."""
+    """Find world axes by how z correlates with a logged depth; empty where that does not tell."""
     signs = []
     for track in tracks:
         depth = track.export.channels.get("depth")

@@ -1,4 +1,4 @@
-"""Which body or topic is the vehicle, where a file holds several."""
+"""Find which rigid body or topic is the vehicle, where a file holds several."""
 
 from dataclasses import dataclass
 from typing import Callable, Sequence
@@ -14,7 +14,13 @@ from rovsim.measurement.quality import STILL_POSITION
 
 @dataclass(frozen=True)
 class Body:
-    """The body, empty where it has to be asked for; those to choose from."""
+    """The rigid body or topic that is the vehicle.
+
+    Attributes:
+        name: of the body, empty where a person has to say it.
+        said: how it is known; empty where there was no choice.
+        choices: bodies that it may be.
+    """
 
     name: str
     said: str
@@ -22,7 +28,11 @@ class Body:
 
 
 def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Body:
-    """The body to read in all files; `score` tells how alike its motion and the commands are.
+    """Find the body that is the vehicle in all files.
+
+    Args:
+        motions: files with motions.
+        score: the mean correlation of the motion of a body and the commands, 0 where unknown.
 
     Raises:
         BadInput: no body is in all of them.
@@ -47,7 +57,7 @@ def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Bod
 
 
 def track_of(contents: Contents, body: str) -> Track:
-    """The motion of a body in a file."""
+    """Return the motion of a body in a file, or the first motion if the file lacks that body."""
     return next((track for track in contents.tracks if track.body == body), contents.tracks[0])
 
 

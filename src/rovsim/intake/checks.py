@@ -1,4 +1,4 @@
-"""What looks wrong in recordings that are beside their commands: clocks, attitudes, thrusters."""
+"""Check motions against their commands: clocks, conventions of attitudes, order of thrusters."""
 
 from itertools import combinations
 from typing import Container, Iterator, Sequence
@@ -22,7 +22,7 @@ from rovsim.measurement.rough_motion import even_poses
 
 
 def unusable(motion: MotionFile) -> str | None:
-    """Why rovsim will not use a motion: too short, or it does not move."""
+    """Say why rovsim will not use a motion (too short, or it does not move); None if it will."""
     export = motion.track.export
     commands = Commands(np.empty(0), np.empty((0, 6)), "wrench")
     recording = Recording(
@@ -41,7 +41,13 @@ def unusable(motion: MotionFile) -> str | None:
 
 
 def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterator[str]:
-    """Runs, but those `told` of, whose motion does not follow its commands, or not in time."""
+    """Tell of runs whose motion does not follow its commands, or comes too early or too late.
+
+    Args:
+        facts: of the campaign.
+        axes: rotation (3, 3) from FRD into the file's body axes.
+        told: positions of runs that a message exists for already; they are skipped.
+    """
     runs = {k: one for k, one in facts.choice.runs.items() if k not in told}
     starts = {k: find_start(facts.pairs[k].motion.path) for k in runs}
     if said := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
@@ -55,7 +61,19 @@ def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterat
 def check_attitudes(
     motion: MotionFile, log: CommandFile, fit: Fit, axes: Sequence[Array], lag: float, angles: bool
 ) -> str:
-    """Whether the commanded motion shows better with attitudes or positions read otherwise."""
+    """Check whether the motion follows its commands better in another convention of poses.
+
+    Args:
+        motion: of one run.
+        log: its commands.
+        fit: the vehicle, which says what velocities the commands cause.
+        axes: rotations (3, 3) from FRD into the file's body axes that are possible.
+        lag: by how much the motion comes after its commands, s.
+        angles: whether the file's z is vertical, so that roll, pitch and yaw can be tried.
+
+    Returns:
+        A sentence on that convention; empty where the present one is as good or nothing tells.
+    """
     caused = log.caused(fit)
     if caused is None or not motion.track.posed or motion.track.export.nu is not None:
         return ""
@@ -64,7 +82,10 @@ def check_attitudes(
 
 
 def _alike(a: Array, b: Array) -> Array:
-    """Correlations (c,) of columns, where all that were measured are known; else NaN."""
+    """Correlate two arrays (n, c) column by column; NaN where a column was never measured.
+
+    Only rows count in which every measured column has a value.
+    """
     here = np.isfinite(a).any(axis=0) & np.isfinite(b).any(axis=0)
     found = np.full(a.shape[1], np.nan)
     a, b = a[:, here], b[:, here]
@@ -76,7 +97,19 @@ def _alike(a: Array, b: Array) -> Array:
 
 
 def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
-    """Whether two outputs swapped, or one reversed, would explain the motion better."""
+    """Check whether the motion follows better if two outputs are swapped, or one is reversed.
+
+    Args:
+        motion: of one run.
+        log: its commands.
+        fit: the vehicle.
+        axes: rotation (3, 3) from FRD into the file's body axes.
+        lag: by how much the motion comes after its commands, s.
+
+    Returns:
+        A sentence on that change; empty where none is clearly better, or commands are not those of
+        thrusters alone.
+    """
     commands, measured = as_logged(log.drive, fit, log.path), motion.measured
     if commands is None or measured is None or any(fit.vehicle.angles):
         return ""
@@ -98,14 +131,17 @@ def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag
 
 
 def _turned(nu: Array, axes: Array) -> Array:
-    """Velocities (n, 6) along FRD, of those along a file's axes; NaN stays with its axis."""
+    """Turn velocities (n, 6) along a file's body axes into FRD; NaN stays with its axis."""
     place = np.argmax(np.abs(axes), axis=0)
     sign = axes[place, np.arange(3)]
     return np.hstack([nu[:, place] * sign, nu[:, 3 + place] * sign])
 
 
 def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
-    """How alike body velocities (n, 6) FRD and those that commands cause are."""
+    """Correlate body velocities (n, 6), FRD, with those that commands cause; mean of the axes.
+
+    Only axes count that the commands excite; 0 where none of these was measured.
+    """
     caused = velocity(fit.vehicle, commands, time)
     excited = caused.std(axis=0) > EXCITED
     alike = _alike(nu, caused)[excited]
@@ -114,7 +150,7 @@ def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
 
 
 def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
-    """The commands as logged, with two outputs swapped, and with one reversed."""
+    """Vary commands (n, c): as logged, then each pair of outputs swapped, then each reversed."""
     yield "", value
     for a, b in combinations(range(len(names)), 2):
         swapped = value.copy()

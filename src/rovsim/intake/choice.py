@@ -1,4 +1,4 @@
-"""Which vehicle: of those whose columns fit, the one that the motion is like."""
+"""Choose the vehicle: of those that the columns fit, the one whose predicted motion is measured."""
 
 from dataclasses import dataclass, replace
 from typing import Sequence
@@ -21,9 +21,16 @@ SAME = 0.03  # correlation by which vehicles of one hull differ
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The vehicle, None where nobody can tell; the correlation of its runs along each body axes.
+    """The vehicle of the runs, and how its predicted motion correlates with the measured one.
 
-    `likeliest`: the vehicle whose correlations these are, where there are any.
+    Attributes:
+        fit: the vehicle, None where the files do not tell.
+        said: how it is known, or why it is not.
+        fits: all vehicles that the columns of the commands fit, the likeliest first.
+        turned: mean correlation of the runs along each of 24 body axes, and these axes, a rotation
+            (3, 3) from FRD into the file's; the best first.
+        runs: correlation of each run that could be compared, by its position among the runs.
+        likeliest: the vehicle that `turned` and `runs` are of, where there is one.
     """
 
     fit: Fit | None
@@ -35,7 +42,10 @@ class Choice:
 
 
 def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
-    """The vehicle of these runs: no other hull explains them nearly as well."""
+    """Choose the vehicle if no other hull explains the runs nearly as well.
+
+    Also chosen is the only vehicle whose file names its columns as the log does.
+    """
     if not fits:
         return Choice(None, "no vehicle file has as many commands", (), (), {})
     compared = {fit.name: _compared(fit, pairs) for fit in fits}
@@ -59,7 +69,7 @@ def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
 
 
 def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]) -> float:
-    """Correlation along the best axes, less where the vehicle is too fast or too slow (Lin 1989).
+    """Score a vehicle: correlation along the best axes, less for wrong speeds (Lin 1989).
 
     The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
     standard deviations.
@@ -69,7 +79,7 @@ def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Arra
 
 
 def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
-    """The best; of one hull with thrusters that do nearly as well, the default vehicle."""
+    """Return the best vehicle, or the default one if it has that hull and is nearly as good."""
     best = ordered[0]
     for fit in ordered:
         near = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
@@ -84,7 +94,7 @@ def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
 
 
 def _one_hull(a: Fit, b: Fit) -> bool:
-    """Whether two vehicles differ in their thrusters' curves alone."""
+    """Whether two vehicles have the same hydrodynamics, so that only their thrusters differ."""
     return a.vehicle.hydrodynamics == b.vehicle.hydrodynamics
 
 

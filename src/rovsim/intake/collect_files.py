@@ -1,4 +1,4 @@
-"""All files that were named: what each holds, or one message for each that cannot be used."""
+"""Look into all files that a user named: what each holds, or why it cannot be used."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,10 +20,14 @@ MOST_TOLD = 5  # files and reasons in one message
 
 @dataclass(frozen=True, eq=False)
 class CollectedFiles:
-    """Files with motions, files with commands alone, and why others of a folder were left out.
+    """What was found in the files.
 
-    `apart`: files that may belong together, and why they were not taken for one run. `unknown`:
-    what else of columns of numbers there is, a sentence a file.
+    Attributes:
+        motions: one for each run, which may have been put together from several files.
+        logs: files that hold commands alone.
+        left_out: for each file of a named folder that is not used, a sentence on why.
+        apart: sentences about files that may be of one run but were not put together.
+        unknown: for each file with columns of numbers that rovsim does not know, a sentence.
     """
 
     motions: tuple[Contents, ...]
@@ -34,7 +38,11 @@ class CollectedFiles:
 
 
 def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
-    """Look into files, bags and folders; copies of files that need one are put into `scratch`.
+    """Look into files, bags and folders.
+
+    Args:
+        paths: that the user named.
+        scratch: folder for copies of files that rovsim can only read under other column names.
 
     Raises:
         RovsimError: a message for each file that was named and cannot be used.
@@ -67,7 +75,7 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
 
 
 def _place(error: BadInput) -> str:
-    """The line and column of an error, in brackets; empty where it tells none."""
+    """Return the line and column of an error, in brackets; empty where it has none."""
     place = error.where.partition(", ")[2]
     return f" ({place})" if place else ""
 
@@ -75,7 +83,11 @@ def _place(error: BadInput) -> str:
 def _look_into_all(
     paths: Sequence[Path], scratch: Path
 ) -> tuple[dict[Path, Contents], dict[Path, BadInput]]:
-    """What each file holds, in their order, or why it cannot be used."""
+    """Look into each file; again where other files tell the unit of its columns.
+
+    Returns:
+        What each file holds, in the order of `paths`, and the errors of the others.
+    """
     found: dict[Path, Contents] = {}
     refused: dict[Path, BadInput] = {}
 
@@ -120,7 +132,7 @@ def _check(
 
 
 def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: object) -> BadInput:
-    """The error of files without a motion: why each was refused, and what may be done about it."""
+    """Make the error of files without a motion: why each was refused, and what may help."""
     held = "no recording"
     if logs:
         held = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"

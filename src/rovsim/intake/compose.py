@@ -1,4 +1,4 @@
-"""From files to a proposal."""
+"""Compose the proposal of a campaign.yaml from files."""
 
 from pathlib import Path
 from typing import Iterator, Sequence
@@ -22,9 +22,13 @@ from rovsim.measurement.velocities import doubt_velocities
 
 
 def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal:
-    """What a campaign.yaml in the folder `out` would say of these files.
+    """Propose a campaign.yaml for recordings.
 
-    Copies of files that only rovsim cannot read as they are lie in `scratch` until it is written.
+    Args:
+        paths: files, bags and folders that the user named.
+        out: folder in which campaign.yaml will be written.
+        scratch: folder for copies of files that rovsim cannot read as they are. It has to exist
+            until the proposal is written.
 
     Raises:
         RovsimError: files that cannot be used, a message for each.
@@ -52,7 +56,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
 
 
 def _lines(facts: Facts) -> Iterator[str]:
-    """A line for each run."""
+    """Describe each run in a line: its files, timing, and what its motion lacks."""
     for name, one in zip(facts.ids, facts.pairs, strict=True):
         log = f" with {one.log.path.name}" if one.log and one.log.path != one.motion.path else ""
         timing = Timing.of(one.motion.track.export.time)
@@ -60,7 +64,7 @@ def _lines(facts: Facts) -> Iterator[str]:
 
 
 def _unused(facts: Facts) -> Iterator[str]:
-    """What may hold commands, and is no run's."""
+    """Tell of files that hold commands, or may hold some, and that no run uses."""
     if not facts.logs:
         for one in facts.collected.unknown:
             yield f"not used as commands: {one}. The runs say 'commands: none'"
@@ -70,7 +74,7 @@ def _unused(facts: Facts) -> Iterator[str]:
 
 
 def _checked(facts: Facts) -> Iterator[str]:
-    """What looks wrong."""
+    """Tell of all that looks wrong in the files."""
     for name, one in zip(facts.ids, facts.pairs, strict=True):
         if reason := checks.unusable(one.motion):
             yield f"{name} will not be used: {reason}"
@@ -86,7 +90,7 @@ def _checked(facts: Facts) -> Iterator[str]:
 
 
 def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
-    """What looks wrong in runs beside their commands."""
+    """Tell of runs whose motion does not go with the motion that a vehicle's commands cause."""
     runs, body = facts.choice.runs, facts.axes.body
     axes = BODY[body] if body else facts.choice.turned[0][1]
     most = max(runs, key=lambda n: int(runs[n].excited.sum()))
@@ -101,7 +105,14 @@ def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
 
 
 def _by_convention(facts: Facts, fit: Fit, axes: Array, most: int) -> Iterator[tuple[int, str]]:
-    """Runs whose attitudes look like those of another convention: `most`, and what is unlike."""
+    """Tell of runs whose poses seem to be in another convention than the format's.
+
+    Only the run that excites most axes, `most`, and runs that do not follow their commands are
+    checked.
+
+    Yields:
+        The position of the run, and a sentence.
+    """
     possible = [axes] if facts.axes.body else rotations()
     angles = "y_up" not in mocap_readers()[facts.motions[0].format].axes.world
     for k, found in facts.choice.runs.items():

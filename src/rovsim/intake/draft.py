@@ -1,4 +1,7 @@
-"""A proposal in the making: content, comments and questions by place."""
+"""A proposal in the making: content, comments and questions of a campaign.yaml.
+
+A place is the dotted path of a key, such as `mocap.body` or `runs.0`.
+"""
 
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
@@ -8,21 +11,37 @@ from rovsim.intake.proposal import ANSWER, Question
 
 @dataclass
 class Draft:
-    """What has been put together so far."""
+    """What has been put together so far.
+
+    Attributes:
+        content: of campaign.yaml, by key.
+        comments: lines above a key, by its place.
+        questions: that a person has to answer.
+    """
 
     content: dict[str, Any] = field(default_factory=dict)
     comments: dict[str, list[str]] = field(default_factory=dict)
     questions: list[Question] = field(default_factory=list)
 
     def say(self, place: str, *lines: str) -> None:
-        """Comments above the line of a place."""
+        """Add comment lines above the key of a place; empty ones are dropped."""
         if any(lines):
             self.comments.setdefault(place, []).extend(line for line in lines if line)
 
     def ask(
         self, place: str, asks: str, answers: Sequence[str] | Mapping[str, str], free: bool = False
     ) -> str:
-        """Ask for a value; returns what stands there until somebody answers."""
+        """Add a question.
+
+        Args:
+            place: of the key that the answer is the value of.
+            asks: the question.
+            answers: to choose from, as a mapping with what each means.
+            free: whether other answers are possible as well.
+
+        Returns:
+            The value that stands there until somebody answers.
+        """
         meant = answers if isinstance(answers, Mapping) else dict.fromkeys(answers, "")
         self.questions.append(Question(place, asks, tuple(meant.items()), free))
         return ANSWER

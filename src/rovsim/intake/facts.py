@@ -1,4 +1,4 @@
-"""What files tell about a campaign, taken together."""
+"""What all files together tell about a campaign: runs, commands, vehicle and axes."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -29,7 +29,17 @@ ATTITUDE = (
 
 @dataclass(frozen=True, eq=False)
 class Facts:
-    """Runs with their commands, the body, the vehicle and the axes; what is not known is empty."""
+    """What the files tell; what they do not tell is empty.
+
+    Attributes:
+        collected: what each file holds.
+        logs: of commands.
+        body: the rigid body or topic that is the vehicle.
+        pairs: the motion of each run and its commands.
+        choice: the vehicle.
+        axes: of the world and of the body.
+        ids: of the runs, in the order of `pairs`.
+    """
 
     collected: CollectedFiles
     logs: tuple[CommandFile, ...]
@@ -41,12 +51,12 @@ class Facts:
 
     @property
     def motions(self) -> tuple[Contents, ...]:
-        """The files of the motions, in the order of the runs."""
+        """The file of each run's motion, in the order of the runs."""
         return self.collected.motions
 
     @property
     def log(self) -> CommandFile | None:
-        """A log that stands for all of them."""
+        """The first log that a run uses, else the first of all, as an example of their columns."""
         paired = [one.log for one in self.pairs if one.log is not None]
         return next(iter([*paired, *self.logs]), None)
 
@@ -57,7 +67,7 @@ class Facts:
 
 
 def find_facts(found: CollectedFiles) -> Facts:
-    """All that the files tell.
+    """Find out all that the files tell.
 
     Raises:
         BadInput: they are not runs of one vehicle, or not logged alike.
@@ -83,7 +93,10 @@ def find_facts(found: CollectedFiles) -> Facts:
 
 
 def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], score) -> float:
-    """How alike a body's motions are to the commands in the same files, or to those of any."""
+    """Score a body: mean over files of its motion's correlation with the commands.
+
+    These are the commands in the same file, else those of the log that correlates best.
+    """
     scores = []
     for contents in found.motions:
         motion = MotionFile(contents.named, track_of(contents, name))
@@ -93,7 +106,7 @@ def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], scor
 
 
 def _logs(found: CollectedFiles) -> list[CommandFile]:
-    """Logs of commands: files of their own, else those in the files of the motions."""
+    """List the logs of commands: files of their own, else those in the files of the motions."""
     alone = [CommandFile(one.named, one.drives[0]) for one in found.logs if one.drives]
     if alone:
         return alone
@@ -106,7 +119,11 @@ def _logs(found: CollectedFiles) -> list[CommandFile]:
 
 
 def _fits(logs: Sequence[CommandFile]) -> list[Fit]:
-    """Vehicles that fit every log."""
+    """List the vehicles that the logs fit.
+
+    Raises:
+        BadInput: two logs have different columns.
+    """
     for log in logs[1:]:
         _check_same(logs[0], log)
     return fitting(logs[0].drive) if logs else []
@@ -124,7 +141,7 @@ def _check_same(first: CommandFile, log: CommandFile) -> None:
 
 
 def _supposing(logs: Sequence[CommandFile], choice: Choice) -> Choice:
-    """No vehicle, where it was compared with commands whose kind has to be asked."""
+    """Withdraw the choice of a vehicle where the kind of the commands has to be asked first."""
     if not any(log.drive.asked for log in logs):
         return choice
     return replace(choice, fit=None, said=f"if the commands are N and N m, {choice.said}")

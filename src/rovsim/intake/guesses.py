@@ -1,4 +1,4 @@
-"""What was taken for a campaign.yaml, and what of it is a guess: lines for whoever reads them."""
+"""Tell what a proposed campaign.yaml says, and which of it is a guess, as lines to be shown."""
 
 from types import MappingProxyType
 from typing import Any, Iterator, Mapping
@@ -11,7 +11,7 @@ GUESS = "guess: "
 
 
 def list_taken(proposal: CampaignProposal) -> list[str]:
-    """Vehicle, axes and commands, with what their words mean; not what is still asked."""
+    """List vehicle, axes and commands with what their words mean; without what is still asked."""
     return [f"{name}: {told}" for name, told in _taken(proposal.content) if told]
 
 
@@ -39,12 +39,16 @@ def _meant(word: str, meanings: Mapping[str, str]) -> str:
 def list_guesses(
     proposal: CampaignProposal, topics: Mapping[str, str] = MappingProxyType({})
 ) -> list[str]:
-    """What was taken and why, a line each: of the campaign, then of runs, alike ones together.
+    """List the guesses and their reasons: first of the campaign, then of runs.
 
-    `topics`: what places are called, where not by their keys.
+    Runs with the same reason share a line.
+
+    Args:
+        proposal: whose comments mark the guesses.
+        topics: what a place is called in a line, where not by its key.
     """
     told: list[str] = []
-    runs: dict[str, list[str]] = {}  # that a reason is of
+    runs: dict[str, list[str]] = {}  # ids of the runs that have a reason
     for place, lines in proposal.comments.items():
         for line in lines:
             why = line.removeprefix(GUESS)
@@ -60,12 +64,12 @@ def list_guesses(
 
 
 def _run(proposal: CampaignProposal, place: str) -> str:
-    """Id of the run that a key is of."""
+    """Return the id of the run to which a place belongs."""
     return _find(proposal, ".".join(place.split(".")[:2]))["id"]
 
 
 def _find(proposal: CampaignProposal, place: str) -> Any:
-    """What campaign.yaml would hold at a place."""
+    """Return what the proposed campaign.yaml holds at a place."""
     value: Any = proposal.content
     for part in place.split("."):
         value = value[int(part)] if isinstance(value, list) else value[part]

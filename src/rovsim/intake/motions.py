@@ -1,4 +1,4 @@
-"""Motions and logs of commands beside each other: how alike, for each vehicle that may be it."""
+"""Correlate measured motions with the motion that logged commands would cause in a vehicle."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,9 +25,12 @@ LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hou
 
 @dataclass(frozen=True, eq=False)
 class MotionFile:
-    """One run's motion; its rough velocities are computed when they are needed.
+    """The motion of one run.
 
-    `beside`: further files of the run.
+    Attributes:
+        path: its file.
+        track: the motion in it.
+        beside: further files of the run.
     """
 
     path: Path
@@ -41,7 +44,10 @@ class MotionFile:
 
     @cached_property
     def measured(self) -> Velocities | None:
-        """Rough body velocities, None where nothing of the kind was measured."""
+        """Rough body velocities in the file's axes; None where these cannot be derived.
+
+        Computed when first needed.
+        """
         if len(self.track.export.time) < 2:
             return None
         found = velocities(self.track.export)
@@ -50,7 +56,7 @@ class MotionFile:
 
 @dataclass(frozen=True, eq=False)
 class CommandFile:
-    """One log of commands, and the velocity that each vehicle would get of it."""
+    """One log of commands, and the velocity that they would cause in each vehicle."""
 
     path: Path
     drive: CommandCandidate
@@ -59,7 +65,12 @@ class CommandFile:
         object.__setattr__(self, "_caused", {})
 
     def caused(self, fit: Fit) -> tuple[Array, Array] | None:
-        """Times (m,) s and body velocities (m, 6) FRD; None where the log is not of that kind."""
+        """Predict the velocity that the commands cause in a vehicle; computed once for each.
+
+        Returns:
+            Times (m,) in s and body velocities (m, 6) in FRD, m/s and rad/s; None where the vehicle
+            cannot take such commands.
+        """
         known: dict = self._caused  # type: ignore[attr-defined]
         if fit.name not in known:
             known[fit.name] = self._velocity(fit)
@@ -73,7 +84,13 @@ class CommandFile:
 
 
 def correlate(motion: MotionFile, log: CommandFile, fit: Fit) -> CrossCorrelation | None:
-    """A motion and what a log would cause, correlated; clocks that never meet are moved first."""
+    """Correlate a motion with the one that a log would cause in a vehicle, at many lags.
+
+    Where the two clocks do not overlap, their starts are aligned first, and longer lags are tried.
+
+    Returns:
+        None where either motion is unknown, or the measured one is too short.
+    """
     caused = log.caused(fit)
     if motion.measured is None or caused is None:
         return None
@@ -88,7 +105,15 @@ def correlate(motion: MotionFile, log: CommandFile, fit: Fit) -> CrossCorrelatio
 
 
 def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
-    """Mean of the best correlation over runs along each of the 24 axes, the best first."""
+    """Average the best correlation of each run along each of the 24 axes.
+
+    Args:
+        found: correlations, by the position of their run.
+
+    Returns:
+        Pairs of mean correlation and rotation (3, 3) from FRD into the file's body axes, the best
+        first.
+    """
     scored = [
         (float(np.mean([one.best(axes)[0] for one in found.values()])), axes)
         for axes in rotations()
@@ -97,5 +122,5 @@ def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
 
 
 def highest(found: CrossCorrelation | None) -> float:
-    """Best mean correlation along any axes; 0 without a comparison."""
+    """Return the highest correlation along any of the 24 axes; 0 without a comparison."""
     return 0.0 if found is None else max(found.best(axes)[0] for axes in rotations())

@@ -1,11 +1,11 @@
-"""What the names of files say: runs, and which files belong together."""
+"""What the names of files say: how runs are called, and which files belong together."""
 
 import re
 from typing import Sequence
 
 from rovsim.core.names import is_name
 
-# Words that say what a file is and not which run.
+# Words that say what a file holds, and not which run it is of.
 ROLES = (
     "6d|6dof_?export|poses?|mocap|motion|track(ing)?|qtm|qualisys|motive|optitrack|take|vicon|export|"
     "commands?|cmds?|pwms?|rc|rcout|thrusters?|thrust|servos?|inputs?|control_?inputs?|actuation|"
@@ -18,27 +18,34 @@ SENSORS = (
     "odometry|battery|voltage|bat|sensors?"
 )
 WORD = re.compile(rf"(^|[_\-\s.]+)({ROLES})(?=$|[_\-\s.]+)", re.IGNORECASE)
-# `depth1` and `pwm1` are of run 1
+# A number may follow at the end: `depth1` and `pwm1` are of run 1.
 OF_SENSOR = re.compile(rf"(^|[_\-\s.]+)({ROLES}|{SENSORS})(?=$|[_\-\s.]+|\d+$)", re.IGNORECASE)
 
 
 def run_key(stem: str) -> str:
-    """What is left of a file's stem without the words that say what it is."""
+    """Return a file's stem without the words for its role, to compare names by.
+
+    Separators become hyphens, and letters are folded to lower case.
+    """
     return re.sub(r"[\s_\-.]+", "-", _without_role(stem)).strip("-").casefold()
 
 
 def sensor_key(stem: str) -> str:
-    """What is left without the words that say which sensor it is of, either."""
+    """As `run_key`, also without the words for a sensor."""
     return re.sub(r"[\s_\-.]+", "-", without_sensor(stem)).strip("-").casefold()
 
 
 def without_sensor(stem: str) -> str:
-    """A stem without the words for its role and for its sensor."""
+    """Remove from a file's stem the words for its role and for its sensor."""
     return _without(OF_SENSOR, stem)
 
 
 def run_ids(stems: Sequence[str]) -> list[str]:
-    """A name for each run: the stem without its role and a leading `run`; all different."""
+    """Name each run by its file's stem, without words for its role and a leading `run`.
+
+    Where such names are empty or not all different, more of the stem is kept; if that does not
+    help, the runs are numbered.
+    """
     for make in (_short, lambda stem: _without_role(stem) or stem, lambda stem: stem):
         ids = [_safe(make(stem)) for stem in stems]
         if all(ids) and len({i.casefold() for i in ids}) == len(ids):
@@ -62,17 +69,17 @@ def _short(stem: str) -> str:
 
 
 def _safe(name: str) -> str:
-    """A name that can be part of a file name (as campaign.yaml demands)."""
+    """Make a name that can be part of a file name, as campaign.yaml demands; may be empty."""
     whole = "".join(c if is_name(c) else "-" for c in name)
     return re.sub(r'[/\\:*?"<>|{}]', "-", whole).strip().lstrip(".-~ ")[:80].strip()
 
 
 def campaign_name(folder: str) -> str:
-    """A name for the campaign in that folder."""
+    """Name a campaign after its folder."""
     return _safe(folder) or "campaign"
 
 
 def said_control(name: str) -> str | None:
-    """`3dof` or `6dof` where a name says so."""
+    """Return `3dof` or `6dof` where a name holds one of them; None where it holds none or both."""
     said = {word.lower() for word in re.findall(r"[36]dof", name, re.IGNORECASE)}
     return said.pop() if len(said) == 1 else None

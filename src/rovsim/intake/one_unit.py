@@ -1,4 +1,7 @@
-"""One unit for columns of one name: what the size of numbers tells in one file holds in all."""
+"""Give columns of one name the same unit in all files.
+
+Where no name states the unit, the size of the numbers in one file may tell it for all.
+"""
 
 from collections import defaultdict
 from dataclasses import replace
@@ -13,7 +16,14 @@ from rovsim.intake.survey.sizes import Key, Unit, UnknownUnit
 def list_others(
     found: Mapping[Path, Contents], refused: Mapping[Path, BadInput]
 ) -> dict[Path, dict[Key, Unit]]:
-    """Files whose own numbers do not tell the unit that others do, and that unit.
+    """List files that have to be read again with a unit that other files tell.
+
+    Args:
+        found: what each readable file holds.
+        refused: the errors of the others.
+
+    Returns:
+        For each such file, the units of its columns, by the names of these columns.
 
     Raises:
         BadInput: two files tell two units for columns of the same names.
@@ -25,7 +35,7 @@ def list_others(
     again: dict[Path, dict[Key, Unit]] = defaultdict(dict)
     for key, units in told.items():
         if len({u.factor for _, u in units if u.sure}) > 1 and not any(u.shared for _, u in units):
-            continue  # each file has its own
+            continue  # such as times: each file may have its own unit
         first, unit = _first(key, units)
         others = [path for path, own in units if unit.sure and own.factor != unit.factor]
         for path in (*others, *_asking(key, refused, unit.sure)):
@@ -34,7 +44,7 @@ def list_others(
 
 
 def _asking(key: Key, refused: Mapping[Path, BadInput], sure: bool) -> list[Path]:
-    """Files that ask for the unit of these columns, and may take that of others."""
+    """List refused files that lack the unit of these columns and may take it from other files."""
     return [
         path
         for path, error in refused.items()
@@ -43,7 +53,11 @@ def _asking(key: Key, refused: Mapping[Path, BadInput], sure: bool) -> list[Path
 
 
 def _first(key: Key, units: list[tuple[Path, Unit]]) -> tuple[Path, Unit]:
-    """The file that tells the unit most surely."""
+    """Return the first file whose numbers surely tell the unit, else the first file; and the unit.
+
+    Raises:
+        BadInput: two files surely tell two different units.
+    """
     sure = {unit.factor: (path, unit) for path, unit in reversed(units) if unit.sure}
     if len(sure) > 1:
         said = " and ".join(f"{_short(unit)} in {path.name}" for path, unit in sure.values())

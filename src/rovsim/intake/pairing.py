@@ -1,4 +1,8 @@
-"""Which log of commands belongs to which motion: by file, by what they cause, by name, by clock."""
+"""Find the log of commands that belongs to each motion.
+
+In this order: commands in the same file, commands whose predicted motion is the measured one, names
+of files, clocks.
+"""
 
 import re
 from dataclasses import dataclass
@@ -16,9 +20,14 @@ from rovsim.intake.names import run_key, sensor_key
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A motion and its commands; `log` None without any or where `options` are to choose from.
+    """The motion of a run and its commands.
 
-    `likely`: the log that its motion speaks for, though something else speaks against it.
+    Attributes:
+        motion: of the run.
+        log: its commands; None where there are none, or where a person has to choose.
+        said: how the log is known, or why it is not.
+        options: logs to choose from, where it is not known.
+        likely: where the name speaks for another log, the log that the motion follows.
     """
 
     motion: MotionFile
@@ -29,7 +38,7 @@ class Pair:
 
     @property
     def shown(self) -> CommandFile | None:
-        """The log whose commands show in the motion, as far as anybody can tell."""
+        """The log of the run, else the likeliest; None where there is neither."""
         return self.log or self.likely
 
 
@@ -38,7 +47,13 @@ def pair(
     logs: Sequence[CommandFile],
     score: Callable[[MotionFile, CommandFile], float],
 ) -> list[Pair]:
-    """The commands of each motion; `score` tells how alike two are, 0 where nobody knows."""
+    """Find the commands of each motion.
+
+    Args:
+        motions: of the runs.
+        logs: of commands.
+        score: the correlation of a motion with what a log would cause, 0 where unknown.
+    """
     own = {log.path: log for log in logs}
     if all(motion.path in own for motion in motions):
         return [Pair(m, own[m.path], "in the same file") for m in motions]
@@ -55,7 +70,14 @@ def pair(
 
 
 def _by_content(table: Array) -> list[int | None]:
-    """The log that is more like each motion than any other, and like no other motion more."""
+    """Find the log that each motion follows; None where another pair is nearly as good.
+
+    Args:
+        table: (motions, logs) of correlations.
+
+    Returns:
+        For each motion the position of its log.
+    """
     found: list[int | None] = []
     for k, row in enumerate(table):
         best = int(np.argmax(row))
@@ -66,10 +88,13 @@ def _by_content(table: Array) -> list[int | None]:
 
 
 def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
-    """The log whose name differs only in the words for motion, sensor and commands.
+    """Find the log whose name differs from the motion's only in words for roles and sensors.
 
-    Where that tells nothing, the one that starts with the same words, else the only log in the
-    folder of a motion that is alone there.
+    Where there is none, take the log whose name starts with the same words, else the only log in
+    the folder of a motion that is alone there.
+
+    Returns:
+        For each motion the position of its log, None where names do not tell.
     """
     found: list[int | None] = [None] * len(motions)
     for key in (_by_role, _by_sensor):
@@ -86,7 +111,14 @@ def _add_by(
     logs: Sequence[CommandFile],
     found: list[int | None],
 ) -> None:
-    """Pairs that share a key with no other file, where none was found."""
+    """Pair a motion without a log with the log of the same key, if no other file has that key.
+
+    Args:
+        key: what of a path is compared.
+        motions: of the runs.
+        logs: of commands.
+        found: position of each motion's log; changed in place.
+    """
     ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
     for k, one in enumerate(ours):
         if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
@@ -96,7 +128,11 @@ def _add_by(
 def _by_first_words(
     motions: Sequence[MotionFile], logs: Sequence[CommandFile]
 ) -> Iterator[tuple[int, int]]:
-    """Pairs whose names start with more words alike than with any other, and end without number."""
+    """Find pairs whose names share more leading words with each other than with any other file.
+
+    Yields:
+        Positions of a motion and of its log.
+    """
     table = np.array([[_alike(m.path.stem, log.path.stem) for log in logs] for m in motions])
     for k, row in enumerate(table):
         best = int(np.argmax(row))
@@ -106,7 +142,7 @@ def _by_first_words(
 
 
 def _alike(one: str, other: str) -> int:
-    """How many words two names start with alike; none where what is left has a number."""
+    """Count the leading words that two names share; 0 where the rest of either has a digit."""
     ours, theirs = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
     pairs = zip(ours, theirs, strict=False)
     count = len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
@@ -127,7 +163,11 @@ def _by_folder(path: Path) -> str:
 
 
 def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
-    """The only log that runs while a motion does, where clocks go on from run to run."""
+    """Find the only log whose times overlap those of a motion and of no other motion.
+
+    Returns:
+        For each motion the position of its log, None where clocks do not tell.
+    """
     spans = [(log.drive.time.min(), log.drive.time.max()) for log in logs]
     meets = np.array([[m.track.start < b and a < m.track.end for a, b in spans] for m in motions])
     return [
@@ -144,6 +184,16 @@ def _decided(
     name: int | None,
     clock: int | None,
 ) -> Pair:
+    """Decide on the log of a motion.
+
+    Args:
+        motion: of the run.
+        logs: all of them.
+        scores: (logs,) correlation of the motion with each log.
+        content: position of the log that the motion follows, if any.
+        name: position of the log that the names speak for, if any.
+        clock: position of the log that the clocks speak for, if any.
+    """
     if content is not None and name in (None, content):
         how = f"its commands cause this motion (likeness {scores[content]:.2f})"
         return Pair(

@@ -1,4 +1,4 @@
-"""Where the recordings lie beside the campaign.yaml that is to be written."""
+"""How the campaign.yaml that is to be written refers to the recordings."""
 
 import os
 from dataclasses import dataclass, field
@@ -13,10 +13,16 @@ CONVERTED = "converted"  # folder of copies whose columns have rovsim's names an
 
 @dataclass(frozen=True)
 class Places:
-    """How campaign.yaml in the folder `out` names the recordings.
+    """Paths of the recordings as campaign.yaml has them.
 
-    `folder` relative to `out`, empty where they lie in it; runs start from `base`, which is
-    absolute. `copies`: files to be written into `out`, by where they are now.
+    Attributes:
+        name: of the campaign.
+        folder: key `folder` of campaign.yaml: the recordings' common folder relative to `out`;
+            empty where they lie in `out`.
+        base: the absolute folder to which the paths of runs are relative.
+        out: the absolute folder in which campaign.yaml will be written.
+        copies: files to be copied, and the path of each copy in `out`.
+        names: path of each recording as a run gives it, by the path that its owner knows.
     """
 
     name: str
@@ -28,14 +34,14 @@ class Places:
 
     @staticmethod
     def beside(found: CollectedFiles, out: Path) -> "Places":
-        """Of the files that were collected: they stay where they are."""
+        """Refer to collected files where they lie, and to copies where these will be written."""
         out = out.absolute()
         every = [file for one in (*found.motions, *found.logs) for file in one.files]
         files = [one.path.absolute() for one in every if one.original is None]
         inside = all(file.is_relative_to(out) for file in files)
         base = out if inside else Path(os.path.commonpath([file.parent for file in files]))
         folder = "" if inside else _relative(base, out)
-        if "$" in folder:  # it would be taken for a variable of the environment
+        if "$" in folder:  # would be read as an environment variable
             folder, base = "", out
         places = Places(campaign_name(out.name), folder, base, out)
         for one in every:
@@ -43,7 +49,7 @@ class Places:
         return places
 
     def of(self, named: Path) -> str:
-        """How a run calls a file that was named."""
+        """Return the path that a run gives for a file of the user's."""
         return self.names[named]
 
     def _place(self, one: Contents) -> str:
@@ -55,7 +61,7 @@ class Places:
 
 
 def _relative(path: Path, base: Path) -> str:
-    """Relative where both share more than the root of the file system."""
+    """Make a path relative to `base`, or keep it where they only share the root directory."""
     shared = os.path.commonpath([path, base])
     if shared == os.path.sep:
         return str(path)

@@ -1,4 +1,4 @@
-"""What is known of a campaign before its owner has said a word, and what has to be asked."""
+"""A proposed campaign.yaml: what the recordings tell, and questions that a person must answer."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -10,9 +10,13 @@ from rovsim.measurement.unanswered import ANSWER
 
 @dataclass(frozen=True)
 class Question:
-    """A key that only a person can fill in: its place, the question, answers and what they mean.
+    """A key whose value only a person can give.
 
-    `free`: other answers are possible as well.
+    Attributes:
+        place: dotted path of the key, such as `mocap.body`.
+        asks: the question.
+        answers: to choose from, each with what it means (may be empty).
+        free: whether other answers are possible as well.
     """
 
     place: str
@@ -23,11 +27,15 @@ class Question:
 
 @dataclass(frozen=True)
 class CampaignProposal:
-    """The content of campaign.yaml with `ANSWER` where something is asked.
+    """A campaign.yaml that is not yet written.
 
-    `comments` by place (`mocap.body`, `runs.0`); `found` are lines about the files, `checks` what
-    looks wrong in them; `copies` are files to be written beside campaign.yaml, by where they are
-    now.
+    Attributes:
+        content: by key, with `ANSWER` where something is asked.
+        comments: lines above a key, by its place (`mocap.body`, `runs.0`).
+        questions: that are still open.
+        found: lines about the files.
+        checks: lines about what looks wrong in the files.
+        copies: files to be copied, and the path of each copy beside campaign.yaml.
     """
 
     content: Mapping[str, Any]
@@ -38,10 +46,13 @@ class CampaignProposal:
     copies: Mapping[Path, str] = field(default_factory=dict)
 
     def fully(self, answers: Mapping[str, str]) -> "CampaignProposal":
-        """The proposal with an answer to every question.
+        """Return the proposal with an answer to every question.
+
+        Args:
+            answers: by place.
 
         Raises:
-            BadInput: one is missing, or not among the choices.
+            BadInput: an answer is missing, or not among the choices.
         """
         found = self.answered(answers)
         for question in found.questions:
@@ -49,10 +60,13 @@ class CampaignProposal:
         return found
 
     def answered(self, answers: Mapping[str, str]) -> "CampaignProposal":
-        """The proposal with answers by place; those that are empty stay open.
+        """Return the proposal with some answers; questions without one stay open.
+
+        Args:
+            answers: by place; an empty one counts as none.
 
         Raises:
-            BadInput: an answer that is not among the choices.
+            BadInput: an answer is not among the choices.
         """
         content, left = _copied(self.content), []
         for question in self.questions:
@@ -92,7 +106,7 @@ def _put(content: Any, place: list[str], answer: str) -> None:
 
 
 def _listed(answer: str) -> str | list[str]:
-    """A list where the answer is written as one: [t1, t2]."""
+    """Parse an answer that is written as a list, such as [t1, t2]; return others as they are."""
     if not (answer.startswith("[") and answer.endswith("]")):
         return answer
     return [part.strip() for part in answer[1:-1].split(",") if part.strip()]

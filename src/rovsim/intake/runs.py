@@ -1,4 +1,4 @@
-"""The runs of a proposal: their names, control, split and files."""
+"""The section `runs` of a proposal: their ids, control, split and files."""
 
 from typing import Sequence
 
@@ -27,7 +27,7 @@ FIRST = "guess: several runs are in this file, one after the other; 'use' says w
 
 
 def runs(facts: Facts, places: Places, draft: Draft) -> None:
-    """All runs."""
+    """Write the section `runs` into the draft, with comments and questions."""
     entries = list_entries(facts)
     controls = [_control(facts, one) for one in entries]
     splits = split([control for control, _ in controls])
@@ -48,7 +48,7 @@ def runs(facts: Facts, places: Places, draft: Draft) -> None:
 
 
 def _remarks(facts: Facts, one: Entry) -> list[str]:
-    """What the files of a run hold, and why it is one."""
+    """List comments on a run: what its files hold, and why it is a run."""
     if one.pause:
         return [PART.format(one.pause)]
     own = [*described(facts.pairs[one.file]), *facts.motions[one.file].notes]
@@ -56,7 +56,7 @@ def _remarks(facts: Facts, one: Entry) -> list[str]:
 
 
 def described(one: Pair) -> list[str]:
-    """What the files of a run hold."""
+    """Describe the files of a run: name and timing of its motion, and of its commands."""
     lines = [f"{one.motion.name}: {Timing.of(one.motion.track.export.time)}{missing(one)}"]
     if one.log is None:
         return lines
@@ -67,7 +67,7 @@ def described(one: Pair) -> list[str]:
 
 
 def missing(one: Pair) -> str:
-    """What a motion lacks."""
+    """Say what a motion lacks (full poses, or some frames), to append to a sentence; or nothing."""
     export = one.motion.track.export
     if not one.motion.track.posed:
         held = [f"{kind} at {c.rate:.3g} Hz" for kind, c in export.channels.items() if c.rate]
@@ -77,12 +77,13 @@ def missing(one: Pair) -> str:
 
 
 def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
-    """The file of the sensors, or the files."""
+    """Return the path of the motion's file, or a list where the run has several."""
     files = [places.of(file.named) for file in facts.motions[k].files]
     return files if len(files) > 1 else files[0]
 
 
 def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> str:
+    """Return the path of a run's commands, `none`, or the placeholder of a question."""
     one = facts.pairs[run.file]
     if one.log is not None:
         return places.of(one.log.path)
@@ -95,7 +96,7 @@ def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> 
 
 
 def _control(facts: Facts, run: Entry) -> tuple[str, str]:
-    """Control of a run, and why where it is a guess."""
+    """Tell the control of a run, `3dof` or `6dof`, and why if it is a guess (else nothing)."""
     one, fit = facts.pairs[run.file], facts.choice.fit
     if said := said_control(one.motion.path.stem):
         return said, ""
@@ -108,14 +109,17 @@ def _control(facts: Facts, run: Entry) -> tuple[str, str]:
 
 
 def _during(run: Entry, time: Array, nu: Array) -> Array:
-    """Velocities (m, 6) that the commands cause during a run; all where the clocks differ."""
+    """Return the rows of velocities (m, 6) that lie in a run; all where the clocks differ."""
     begin, end = run.use or (-np.inf, np.inf)
     during = (time >= begin) & (time <= end)
     return nu[during] if during.any() else nu
 
 
 def split(controls: Sequence[str]) -> list[str]:
-    """`test` for the last run of each control, where there are two."""
+    """Split runs: `test` for the last run of each control that has several, else `train`.
+
+    If no control has several, the last of all runs is a test run, unless it is the only one.
+    """
     last = {control: k for k, control in enumerate(controls) if controls.count(control) > 1}
     if not last and len(controls) > 1:
         last = {"": len(controls) - 1}

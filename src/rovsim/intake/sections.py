@@ -1,4 +1,4 @@
-"""The sections of campaign.yaml: each says what is known, marks guesses, and asks for the rest."""
+"""Write the sections of a proposal: what is known, what is a guess, and what has to be asked."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ WALLS = (
 
 
 def vehicle(facts: Facts, draft: Draft) -> None:
-    """Which vehicle file."""
+    """Write the key `vehicle` into the draft, as a guess or as a question."""
     choice = facts.choice
     if choice.fit is not None:
         draft.content["vehicle"] = choice.fit.name
@@ -44,7 +44,7 @@ def vehicle(facts: Facts, draft: Draft) -> None:
 
 
 def mocap(facts: Facts, draft: Draft) -> None:
-    """What measured the motion, of which body, along which axes."""
+    """Write the section `mocap`: what measured the motion, of which body, along which axes."""
     first, track = facts.motions[0], facts.pairs[0].motion.track
     section: dict[str, Any] = {"format": first.format}
     draft.content["mocap"] = section
@@ -91,7 +91,7 @@ def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
 
 
 def commands(facts: Facts, draft: Draft) -> None:
-    """How the commands were logged."""
+    """Write the section `commands`: how the commands were logged; nothing without a log."""
     if facts.log is None:
         return
     drive, fit = facts.log.drive, facts.choice.fit
@@ -113,21 +113,21 @@ def commands(facts: Facts, draft: Draft) -> None:
 
 
 def _first_asked(facts: Facts) -> CommandCandidate:
-    """The log whose kind has to be asked, if there is one, else that which stands for all."""
+    """Return the commands whose kind has to be asked, if any, else those of `facts.log`."""
     assert facts.log is not None
     asked = (log.drive for log in facts.logs if log.drive.asked)
     return next(asked, facts.log.drive)
 
 
 def _kinds(facts: Facts) -> dict[str, str]:
-    """Kinds to choose from: columns that are named after axes are one of two."""
+    """List kinds to choose from: only demand and wrench for columns that are named after axes."""
     of_axes = ("demand", "wrench")
     asked = facts.kind_asked and _first_asked(facts).kind in of_axes
     return {name: KINDS[name] for name in (of_axes if asked else KINDS)}
 
 
 def _columns(facts: Facts, draft: Draft) -> list[str] | str:
-    """All columns of the log, if every vehicle that fits takes all; else a question."""
+    """Return all columns of the log if every vehicle that fits takes all of them; else ask."""
     assert facts.log is not None
     drive = facts.log.drive
     taken = dict.fromkeys(fit.columns for fit in facts.choice.fits)

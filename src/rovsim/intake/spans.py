@@ -1,4 +1,4 @@
-"""Runs that stand in one file, one after the other: what lies between long pauses."""
+"""Split a file at long pauses into several runs, one after the other."""
 
 from dataclasses import dataclass
 from math import ceil, floor
@@ -15,9 +15,13 @@ SHORT = 10.0  # s: what lasts less between two pauses is no run
 
 @dataclass(frozen=True)
 class Entry:
-    """A run of campaign.yaml: the number of its file, its id, and which span of it, in s.
+    """A run as campaign.yaml will list it.
 
-    `use` None: all of it; `pause` s that went before.
+    Attributes:
+        file: position of its motion among the motions.
+        id: of the run.
+        use: first and last time in s of the part that is used, on the file's clock; None: all.
+        pause: s without the body before it, 0 for the first run of a file.
     """
 
     file: int
@@ -27,13 +31,13 @@ class Entry:
 
 
 def list_entries(facts: Facts) -> list[Entry]:
-    """All runs, in the order of their files."""
+    """List all runs, in the order of their files."""
     files = enumerate(zip(facts.ids, facts.pairs, strict=True))
     return [entry for k, (name, one) in files for entry in _split(k, name, one.motion.track.export)]
 
 
 def find_spans(export: Export) -> list[tuple[float, float]]:
-    """First and last time, s, of each run of a file; none where nothing parts it."""
+    """Find the first and last time in s of each run in a file; none where it is one run."""
     time = export.time[export.found] if export.found.any() else export.time
     last = np.flatnonzero(np.diff(time) > PAUSE)
     begins, ends = time[np.append(0, last + 1)], time[np.append(last, len(time) - 1)]

@@ -1,4 +1,4 @@
-"""Files of one run that hold different sensors: put together by their names, or by their clocks."""
+"""Put together files of one run that hold different sensors, by their names or their clocks."""
 
 from collections import defaultdict
 from dataclasses import replace
@@ -16,7 +16,12 @@ BESIDE = 0.5  # share of the shorter file that lies beside another of its run
 
 
 def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tuple[str, ...]]:
-    """The files of each run as one, and sentences about those that may belong together."""
+    """Put files of one run together.
+
+    Returns:
+        One entry for each run, in the order of their first files, and sentences about files that
+        may be of one run but could not be put together.
+    """
     if len(motions) < 2 or any(one.format != FORMAT for one in motions):
         return tuple(motions), ()
     runs, apart = _by_name(motions)
@@ -28,9 +33,9 @@ def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tup
 
 
 def list_stems(motions: Sequence[Contents]) -> list[str]:
-    """What each run may be called: its file, or what the names of its files share.
+    """List what each run may be called: its file's stem, or what the names of its files share.
 
-    A folder lends its name to files that are called like those in others.
+    The folder's name goes in front where several runs would be called the same.
     """
     stems = [_stem(one) for one in motions]
     return [
@@ -47,7 +52,7 @@ def _stem(one: Contents) -> str:
 
 
 def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
-    """Runs of files in one folder whose names differ in the sensor alone."""
+    """Put together files of one folder whose names differ only in words for sensors and roles."""
     groups: dict[tuple[Path, str], list[Contents]] = defaultdict(list)
     for one in motions:
         groups[one.named.absolute().parent, sensor_key(one.named.stem)].append(one)
@@ -66,7 +71,7 @@ def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
 
 
 def _by_clock(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
-    """Runs of files of different sensors that ran at the same time, if that tells which."""
+    """Put together files of different sensors that ran at the same time, where that is clear."""
     kinds: dict[frozenset[str], list[Contents]] = defaultdict(list)
     for one in motions:
         kinds[_held(one)].append(one)
@@ -86,7 +91,7 @@ def _by_clock(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
 
 
 def _at_that_time(one: Contents, groups: Sequence[Sequence[Contents]]) -> Iterator[Contents]:
-    """The file, and those of other sensors that lie beside it."""
+    """List a file, and the files of other sensors that ran at the same time."""
     yield one
     for group in groups:
         if not any(file is one for file in group):
@@ -94,27 +99,34 @@ def _at_that_time(one: Contents, groups: Sequence[Sequence[Contents]]) -> Iterat
 
 
 def _beside(one: Contents, other: Contents) -> bool:
+    """Whether two files overlap in time by more than `BESIDE` of the shorter one."""
     (a, b), (c, d) = (span_of(x.tracks[0].export) for x in (one, other))
     return min(b, d) - max(a, c) > BESIDE * min(b - a, d - c)
 
 
 def _one_each(run: Sequence[Contents], groups: Sequence[Sequence[Contents]]) -> bool:
+    """Whether a run has at most one file of each sensor."""
     return all(sum(any(f is g for g in group) for f in run) <= 1 for group in groups)
 
 
 def _held(one: Contents) -> frozenset[str]:
+    """Return the kinds of measurements in a file, with those that its poses imply."""
     held = list_held(one.tracks[0].export)
     return frozenset([*held, *(TOLD if POSES in held else ())])
 
 
 def _all_different(files: Sequence[Contents]) -> bool:
-    """Whether no two hold the same."""
+    """Whether no two files hold the same kind of measurement."""
     held = [kind for one in files for kind in _held(one)]
     return len(held) == len(set(held))
 
 
 def _joined(files: Sequence[Contents], said: str) -> Contents:
-    """One run of several files, that with commands first.
+    """Join files to one run; one that holds commands stands for it.
+
+    Args:
+        files: of the run.
+        said: why they are one run.
 
     Raises:
         BadInput: two of them hold the same, or have no time in common.

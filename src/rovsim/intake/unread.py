@@ -1,4 +1,4 @@
-"""Columns of the files that were taken and that nothing uses: named, never dropped in silence."""
+"""List columns of the files that nothing uses: they are named, never dropped in silence."""
 
 from collections import defaultdict
 from pathlib import Path
@@ -14,7 +14,7 @@ MOST = 20  # names of columns or files in a sentence
 
 
 def list_unread(facts: Facts, draft: Draft) -> list[str]:
-    """A sentence for all files whose unused columns are the same."""
+    """List unused columns: a sentence for all files whose unused columns are the same."""
     files: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for one in _every(facts):
         if left := _left(one, facts, draft):
@@ -23,7 +23,7 @@ def list_unread(facts: Facts, draft: Draft) -> list[str]:
 
 
 def tell_unread(facts: Facts, draft: Draft) -> None:
-    """The same as comments above the runs of these files."""
+    """Write unused columns as comments above the first run of each file."""
     known = {one.named: one for one in _every(facts)}
     first = {one.file: n for n, one in reversed([*enumerate(list_entries(facts))])}
     for k, (motion, pair) in enumerate(zip(facts.motions, facts.pairs, strict=True)):
@@ -34,7 +34,7 @@ def tell_unread(facts: Facts, draft: Draft) -> None:
 
 
 def _every(facts: Facts) -> list[Contents]:
-    """All files, with those that are one run apart."""
+    """List all files; those that were put together for one run are listed one by one."""
     found = (*facts.motions, *facts.collected.logs)
     return [file for one in found for file in one.files]
 
@@ -44,7 +44,7 @@ def _log(pair: Pair) -> list[Path]:
 
 
 def _left(one: Contents, facts: Facts, draft: Draft) -> tuple[str, ...]:
-    """Columns that are neither measured nor commands of a run."""
+    """List columns of a file that are neither measurements nor commands of a run."""
     section = draft.content.get("commands", {})
     taken: set[str] = set()
     if any(log.path == one.named for log in facts.logs):

@@ -1,4 +1,4 @@
-"""Which vehicle files fit a log of commands, and how its columns stand in their order."""
+"""Find the vehicle files that a log of commands fits, and the order of its columns for each."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,9 +21,14 @@ OUTPUTS = "SERVO"  # columns of a log that may hold more outputs than thrusters
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A vehicle that a log of commands may belong to, and its columns in the vehicle's order.
+    """A vehicle that a log of commands may be of.
 
-    `by_name`: the log calls its columns as the vehicle file does.
+    Attributes:
+        name: of the vehicle file.
+        vehicle: what it describes.
+        columns: of the log that the vehicle takes, in the order of its thrusters.
+        kind: of the commands.
+        by_name: whether the log names its columns as the vehicle file does.
     """
 
     name: str
@@ -34,7 +39,10 @@ class Fit:
 
 
 def fitting(drive: CommandCandidate) -> list[Fit]:
-    """Vehicles of conf/vehicle/ that the columns allow; only those with the same names, if any."""
+    """List the vehicles of conf/vehicle/ that can take a log's columns.
+
+    If some of them name these columns as the log does, only those are listed.
+    """
     fits = [fit for name in conf_names("vehicle") if (fit := _fit(name, drive)) is not None]
     return [fit for fit in fits if fit.by_name] or fits
 
@@ -48,7 +56,7 @@ def _fit(name: str, drive: CommandCandidate) -> Fit | None:
             if _drives(vehicle, drive)
             else None
         )
-    # port and starboard, fins by name: t1, t2 … are names that anybody gives
+    # names such as port or a fin's are the vehicle's own; t1, t2 … are names that anybody gives
     own = not all(column[-1].isdigit() for column in expected)
     held = {*drive.columns, *(drive.rest if own else ())}
     if expected and (set(expected) == set(drive.columns) or (own and set(expected) <= held)):
@@ -64,7 +72,7 @@ def _fit(name: str, drive: CommandCandidate) -> Fit | None:
 
 
 def _kind(drive: CommandCandidate, vehicle: Vehicle) -> LoggedKind | None:
-    """Kind by the columns of thrusters; those of angles are rad in any log."""
+    """Tell the kind from the columns of thrusters; those of angles are in rad in any log."""
     own = [n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle]
     value = drive.of(own).ravel()
     kinds: tuple[LoggedKind, ...] = ("pwm", "normalized")
@@ -72,7 +80,7 @@ def _kind(drive: CommandCandidate, vehicle: Vehicle) -> LoggedKind | None:
 
 
 def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
-    """Whether the vehicle can do what the log asks of it."""
+    """Whether a vehicle can move along all axes that demands or a wrench ask for."""
     log = drive.log()
     moving = {axis for k, axis in enumerate(log.axis_numbers) if np.nanstd(drive.value[:, k]) > 0}
     if not vehicle.free[list(moving)].all():
@@ -84,7 +92,16 @@ def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
 
 
 def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
-    """The commands of a log as the vehicle takes them; None where they are not of that kind."""
+    """Convert a log to commands as the vehicle takes them.
+
+    Args:
+        drive: the log as read.
+        fit: the vehicle, with the columns and the kind of the commands.
+        path: of the log, for messages.
+
+    Returns:
+        None where the values are not of that kind.
+    """
     log = drive.log(fit.columns, fit.kind)
     angles = [
         n for n, angle in zip(fit.vehicle.command_columns, fit.vehicle.angles, strict=True) if angle
@@ -102,5 +119,5 @@ def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
 
 
 def _pulses(value: Array, log: CommandLog) -> bool:
-    """Whether demands are logged as pulses of a radio."""
+    """Whether demands are logged as pulses of a radio, in us."""
     return log.kind == "demand" and within(value.ravel(), "pwm")

@@ -1,4 +1,4 @@
-"""A proposal becomes campaign.yaml, beside the copies that it needs."""
+"""Write a proposal as campaign.yaml, and the copies of recordings that it needs."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def check_place(out: Path, force: bool = False) -> None:
     """Make sure that nothing is overwritten.
 
     Raises:
-        BadInput: there is a campaign.yaml, or the folder is none.
+        BadInput: `out` has a campaign.yaml and `force` is false, or is not a folder.
     """
     file = out / FILE
     if out.exists() and not out.is_dir():
@@ -31,7 +31,15 @@ def check_place(out: Path, force: bool = False) -> None:
 
 
 def write_proposal(proposal: CampaignProposal, out: Path, force: bool = False) -> Path:
-    """Write campaign.yaml into the folder `out`, which is made if need be; returns the file.
+    """Write campaign.yaml and copies into the folder `out`, which is made if it is missing.
+
+    Args:
+        proposal: what is written.
+        out: the folder.
+        force: whether a campaign.yaml that is there is replaced.
+
+    Returns:
+        The path of campaign.yaml.
 
     Raises:
         BadInput: there is one already, or it cannot be written.

@@ -1,4 +1,4 @@
-"""A proposal as a commented campaign.yaml."""
+"""Format a proposal as the text of a commented campaign.yaml."""
 
 import io
 import textwrap
@@ -18,7 +18,7 @@ HEAD = (
 
 
 def as_yaml(proposal: CampaignProposal) -> str:
-    """The text of campaign.yaml; every question is a comment above the line it asks for."""
+    """Return the text of campaign.yaml; each question is a comment above the key it is about."""
     document = CommentedMap()
     for key, value in proposal.content.items():
         document[key] = _node(value, flow=False)
@@ -48,7 +48,13 @@ def _asked(question: Question) -> list[str]:
 
 
 def _node(value: Any, flow: bool) -> Any:
-    """Nodes that take comments; lists of scalars and what lies in a list stand on one line."""
+    """Convert plain content to YAML nodes, which can carry comments.
+
+    Args:
+        value: mapping, list or scalar.
+        flow: whether it is written on one line. A list of scalars, and a mapping in a list, are
+            always written on one line.
+    """
     found: CommentedMap | CommentedSeq
     if isinstance(value, Mapping):
         found = CommentedMap((key, _node(inner, flow)) for key, inner in value.items())
@@ -64,7 +70,7 @@ def _node(value: Any, flow: bool) -> Any:
 
 
 def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
-    """Put a comment above the line of a place; inside a flow mapping: above the whole of it."""
+    """Put a comment above the key of a place; above the whole entry where that is in a list."""
     node: Any = document
     depth = 0
     for part in place[:-1]:
@@ -83,7 +89,7 @@ def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
 
 
 def _texts(old: Any) -> list[str]:
-    """Comments that already stand above a key; setting them again would lose them."""
+    """Take the comments above a key away and return them, to be set again with new ones."""
     tokens = (old[1] or []) if old and len(old) > 1 else []
     found = [token.value.strip().removeprefix("# ").removeprefix("#") for token in tokens]
     if old and len(old) > 1:

@@ -1,4 +1,4 @@
-"""Motions and commands in ROS 2 bags."""
+"""Find motions and commands in ROS 2 bags."""
 
 import re
 from pathlib import Path
@@ -18,9 +18,9 @@ from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
 from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
 
-# Topics that say where the vehicle should be, or where something else is.
+# Topics that say where the vehicle should be, or where something else is: never read.
 WISHES = re.compile(r"goal|waypoint|setpoint|initialpose|target|desired|landing|mission|gp_", re.I)
-# Key of `mocap.topics` -> types, and the words of the topic that is taken first and of none.
+# Key of `mocap.topics` -> message types, regex of topics preferred, regex of topics never taken.
 CHANNELS = {
     "imu": (("Imu",), "data$", "raw"),
     "depth": (("FluidPressure",), "static|depth|bar", "diff"),
@@ -31,7 +31,7 @@ CHANNELS = {
     ),
     "battery": (("BatteryState",), "battery", "$^"),
 }
-# Types of commands, what was told to the thrusters first.
+# Message types of commands, in order of preference: what was sent to the thrusters comes first.
 OUTPUTS = (
     "RCOut",
     "MultiArray",
@@ -53,10 +53,10 @@ NOT_COMMANDS = (
 
 
 def look_into_bag(path: Path) -> Contents:
-    """Read which topics tell of motion and of commands, and try each.
+    """Find out which topics of a bag tell of motion and of commands, and read each.
 
     Raises:
-        BadInput: no bag, or nothing of the kind in it.
+        BadInput: it is no bag, or holds neither motion nor commands.
     """
     notes: list[str] = []
     with opened(path, by="rovsim init") as bag:
@@ -87,7 +87,14 @@ def look_into_bag(path: Path) -> Contents:
 
 
 def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[str, ...]:
-    """A sentence on topics of such names and types that rovsim does not read, if there are any."""
+    """Make a sentence on topics that rovsim does not read, if there are any.
+
+    Args:
+        topics: message type by topic.
+        named: regex that is searched for in a topic's name.
+        kind: regex of the whole short message type.
+        said: the sentence, with {} for the topics.
+    """
     found = [
         topic
         for topic, name in topics.items()
@@ -97,10 +104,11 @@ def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[s
 
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:
+    """List topics that hold poses of the vehicle, Odometry last."""
     found = [t for t, kind in topics.items() if _short(kind) in POSES and not WISHES.search(t)]
     alone = [t for t in found if _short(topics[t]) != "Odometry"]
     stems = {t.rsplit("/", 1)[0] for t in alone}
-    # the odometry beside a pose says the same once more
+    # Odometry in the namespace of a pose repeats that pose
     return alone + [t for t in found if t not in alone and t.rsplit("/", 1)[0] not in stems]
 
 
@@ -109,6 +117,7 @@ def _short(kind: str) -> str:
 
 
 def _channel(topics: dict[str, str], key: str) -> str | None:
+    """Return the topic to read for a key of `mocap.topics`; None where the bag has none."""
     types, first, never = CHANNELS[key]
     found = [
         topic
@@ -122,6 +131,7 @@ def _channel(topics: dict[str, str], key: str) -> str | None:
 
 
 def _tracks(path: Path, topics: list[str], notes: list[str]) -> Iterator[Track]:
+    """Read the motion of each topic of poses; notes tell of those that cannot be read."""
     for topic in topics:
         mocap = Mocap(format="rosbag2", body=topic, world_axes="z_up", body_axes="flu")
         try:
@@ -131,6 +141,7 @@ def _tracks(path: Path, topics: list[str], notes: list[str]) -> Iterator[Track]:
 
 
 def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterator[Track]:
+    """Read the motion of a bag without poses from its sensors, by key of `mocap.topics`."""
     mocap = Mocap(format="rosbag2", world_axes="z_up", body_axes="flu", topics=Topics(**beside))
     try:
         yield Track("", tidy_export(read_bag(path, mocap), path)[0], beside)
@@ -139,6 +150,7 @@ def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterat
 
 
 def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
+    """Read what may be commands, in the order of `OUTPUTS`; notes tell of what cannot be read."""
     found = [t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)]
     for topic in sorted(found, key=lambda topic: _place(bag.topics[topic])):
         try:
@@ -150,6 +162,7 @@ def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
 
 
 def _place(kind: str) -> int:
+    """Return the position of a message type in `OUTPUTS`, its length where it is no command."""
     matching = [k for k, name in enumerate(OUTPUTS) if _short(kind).endswith(name)]
     return min(matching, default=len(OUTPUTS))
 
@@ -189,7 +202,7 @@ def _drive(bag: Bag, topic: str) -> CommandCandidate:
 
 
 def _padded(field: str, count: int) -> Callable[[Any], list[float]]:
-    """The first `count` numbers of an array; NaN where a message holds fewer."""
+    """Make a function that takes `count` numbers of a message's array, NaN where it holds fewer."""
     return lambda m: [
         *map(float, getattr(m, field)[:count]),
         *[np.nan] * (count - len(getattr(m, field))),
@@ -207,6 +220,7 @@ def _numbers(bag: Bag, topic: str, numbers: Callable) -> tuple[Array, Array]:
 
 
 def _kind(value: Array) -> tuple[LoggedKind | None, str]:
+    """Tell the kind of an array of numbers by their size, None where unknown; and why."""
     for kind, said in (("pwm", "pulses in us"), ("normalized", "within -1 and 1")):
         if within(value.ravel(), kind):  # type: ignore[arg-type]
             return kind, said  # type: ignore[return-value]
@@ -214,7 +228,7 @@ def _kind(value: Array) -> tuple[LoggedKind | None, str]:
 
 
 def _given(found: Samples) -> Array:
-    """Which channels (c,) ever carried a pulse."""
+    """Mark the channels (c,) that ever carried a pulse."""
     return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
 
 

@@ -1,4 +1,4 @@
-"""What columns of csv files are called: our channels in other words."""
+"""Find our channels in csv files whose columns have other names."""
 
 import re
 from collections import defaultdict
@@ -9,7 +9,7 @@ from rovsim.measurement.recording.delimited import Lines
 from rovsim.measurement.recording.named_columns import TIME
 from rovsim.measurement.recording.units import TIMES, split_unit
 
-# Names after their units, brackets and case are gone; `{}` stands for a letter of the channel.
+# Our name -> regex of names that mean the same, once unit, brackets and case are removed.
 FORMS = {
     TIME: "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
     "rostime",
@@ -31,7 +31,7 @@ FORMS = {
 FORMS["roll_rad"] += "|phi"
 FORMS["pitch_rad"] += "|theta"
 FORMS["yaw_rad"] += "|psi|heading"
-# What a topic of ROS with poses has behind its name.
+# Columns of a ROS topic with poses: the group of our channels, and the regex of their names.
 IN_POSES = (
     (POSITION, r"(.*_pose)_position_([xyz])"),
     (QUATERNION, r"(.*_pose)_orientation_([wxyz])"),
@@ -39,10 +39,13 @@ IN_POSES = (
 
 
 def find_columns(lines: Lines) -> dict[str, int]:
-    """Places of our channels in a file, by our names.
+    """Find the column of each of our channels.
 
-    Our own name goes before it without the unit, that before other words, these in the order of the
-    file, and a topic of ROS comes last: where there are several, nobody can tell which is meant.
+    Preferred is our own name, then our name without its unit, then other words in the order of the
+    file, and last a ROS topic with poses: with several topics, it is unknown which is meant.
+
+    Returns:
+        Positions of columns, by our names; without channels that the file lacks.
     """
     names = list(map(split_unit, lines.names))
     found = ((ours, next(_places(ours, lines, names), None)) for ours in FORMS)
@@ -50,7 +53,7 @@ def find_columns(lines: Lines) -> dict[str, int]:
 
 
 def _places(ours: str, lines: Lines, names: Sequence[tuple[str, str]]) -> Iterator[int]:
-    """Places of the columns that may be one of our channels, the likeliest first."""
+    """List positions of the columns that may be one of our channels, the likeliest first."""
     yield from (k for k, name in enumerate(lines.names) if name == ours)
     fitting = [k for k, (_, unit) in enumerate(names) if not unit or _fits(ours, unit)]
     own = split_unit(ours)[0]
@@ -63,7 +66,7 @@ def _fits(ours: str, unit: str) -> bool:
 
 
 def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:
-    """Places of whole positions and quaternions of the one topic that has them."""
+    """Find positions and quaternions of a ROS topic, if exactly one topic has all components."""
     found: dict[str, int] = {}
     for group, form in IN_POSES:
         topics: dict[str, dict[str, int]] = defaultdict(dict)

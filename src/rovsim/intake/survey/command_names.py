@@ -1,4 +1,4 @@
-"""What the names of columns say of commands: forces and moments, sticks, units that are none."""
+"""What the names of columns say of commands: forces and moments, sticks, units of no command."""
 
 import re
 from typing import Collection, Mapping, Sequence
@@ -10,7 +10,7 @@ from rovsim import AXES
 from rovsim.measurement.recording.commands import guess_unit
 from rovsim.measurement.recording.units import in_words
 
-# Names in lower case with underscores, without their units.
+# Axis -> regex of names in lower case with underscores, without their units.
 WRENCH = dict(
     zip(
         AXES,
@@ -32,9 +32,12 @@ FULL_STICK = 1000.0
 
 
 def find_wrench(names: Collection[str]) -> dict[str, str]:
-    """Columns by the axis along or about which they push: Fx, Mz, wrench.force.x, surge [N], tau_k.
+    """Find columns of forces and moments: Fx, Mz, wrench.force.x, surge [N], tau_k.
 
-    Nothing without two of them, one a force: mx, my, mz alone may be a magnetic field.
+    At least two have to be found, one of them a force: mx, my, mz alone may be a magnetic field.
+
+    Returns:
+        Names of columns, by the axis along or about which they push; empty where there are none.
     """
     own = {stem(name): name for stem in (in_words, _without_force) for name in names}
     for form in ("{}", "tau_{}", "tau{}"):
@@ -52,13 +55,13 @@ def find_wrench(names: Collection[str]) -> dict[str, str]:
 
 
 def _without_force(name: str) -> str:
-    """A name in lower case with underscores, without a unit of forces or moments."""
+    """Write a name in lower case with underscores, without a unit of forces or moments."""
     text = in_words(name)
     return re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
 
 
 def has_other_unit(name: str) -> bool:
-    """Whether a name says a unit that is that of no pulse and of no share."""
+    """Whether a name states a unit (N, %, rpm …) that neither pulses nor shares have."""
     return bool(NO_SHARE.fullmatch(name))
 
 
@@ -73,7 +76,7 @@ def are_sticks(columns: Mapping[str, Array]) -> bool:
 
 
 def hint(columns: Mapping[str, Array]) -> str:
-    """What columns of numbers may be, and what to do with them, in a sentence; else nothing."""
+    """Say what columns of numbers may be, and what to do with them; empty where unknown."""
     if are_sticks(columns):
         return (
             "They may be MANUAL_CONTROL: write surge = x / 1000, sway = y / 1000, heave = "
@@ -91,5 +94,5 @@ def hint(columns: Mapping[str, Array]) -> str:
 
 
 def find_range(values: Sequence[Array]) -> tuple[float, float]:
-    """The least and the largest number in columns."""
+    """Return the smallest and the largest number in columns, without NaN."""
     return min(float(np.nanmin(v)) for v in values), max(float(np.nanmax(v)) for v in values)

@@ -18,8 +18,10 @@ LoggedKind = Literal["pwm", "normalized", "demand", "wrench"]
 class Track:
     """The motion of one body or topic, sorted by time, in the file's own axes.
 
-    `body` as `mocap.body` names it, empty where the format has none; `topics` of a bag by what is
-    read of them.
+    Attributes:
+        body: as `mocap.body` names it; empty where the format has no bodies.
+        export: times, poses and channels of sensors.
+        topics: of a bag without poses, by the key of `mocap.topics` for which they are read.
     """
 
     body: str
@@ -28,7 +30,7 @@ class Track:
 
     @property
     def posed(self) -> bool:
-        """Whether there are full poses."""
+        """Whether there are full poses (position and attitude)."""
         return bool(self.export.found.any())
 
     @property
@@ -44,11 +46,20 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class CommandCandidate:
-    """What looks like commands: `time` (m,) s and `value` (m, c) as logged.
+    """What looks like a log of commands.
 
-    `kind` None: their size does not say; `asked`: it is only the likeliest. `said` is how the rest
-    is known. `axes` and `topic` as in the section `commands`; `rest` are other columns of numbers
-    (m,), such as angles of fins.
+    Attributes:
+        format: of the file.
+        columns: names of the c columns; a leading minus turns the sign.
+        time: (m,) s.
+        value: (m, c) as logged.
+        kind: None where the size of the numbers does not tell it.
+        said: how the kind is known.
+        topic: of a bag, as in the section `commands`.
+        axes: of demands or a wrench, as in the section `commands`.
+        auxiliary: other columns that are kept, such as the voltage.
+        rest: other columns of numbers (m,), such as angles of fins, by name.
+        asked: whether the kind is only the likeliest, and has to be asked for.
     """
 
     format: str
@@ -64,19 +75,24 @@ class CommandCandidate:
     asked: bool = False
 
     def of(self, names: Sequence[str]) -> Array:
-        """Columns (m, len(names)) by their names, of all that there are."""
+        """Return columns (m, len(names)) by their names, those of `rest` included."""
         known = dict(zip(self.bare, self.value.T, strict=True)) | dict(self.rest)
         return np.stack([known[name] for name in names], axis=1)
 
     @property
     def bare(self) -> tuple[str, ...]:
-        """Columns without the minus that turns their sign."""
+        """Names of columns, without the minus that turns their sign."""
         return tuple(name.removeprefix("-") for name in self.columns)
 
     def log(
         self, columns: tuple[str, ...] | None = None, kind: LoggedKind | None = None
     ) -> CommandLog:
-        """The section `commands` that reads it."""
+        """Return the section `commands` of campaign.yaml that reads this log.
+
+        Args:
+            columns: names to read; None: all.
+            kind: of the commands; None: that of this candidate.
+        """
         content: dict[str, Any] = {
             "format": self.format,
             "kind": kind or self.kind,
@@ -89,20 +105,26 @@ class CommandCandidate:
 
     @property
     def moves(self) -> bool:
-        """Whether any column changes."""
+        """Whether any column changes over time."""
         return bool(len(self.value) > 1 and np.nanmax(np.ptp(self.value, axis=0), initial=0.0) > 0)
 
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """One file (or bag folder): its format, motions to choose from, commands to choose from.
+    """What one file or bag folder holds.
 
-    `path` is what the readers open; `original` the file that was named, another one where only a
-    copy with other column names can be read. `notes` are sentences for its owner. `beside`: other
-    files of the same run, whose sensors are joined in the track. `unknown`: columns of numbers that
-    are nothing that is known, where there are no commands. `unread`: columns that are no channel;
-    some may be commands. `units`: those that the size of its numbers tells, by names of columns.
-    `doubts`: what looks wrong in the file.
+    Attributes:
+        path: what the readers open.
+        format: as `mocap.format` names it.
+        tracks: motions to choose from.
+        drives: commands to choose from.
+        original: the file that the user named, where `path` is a copy with other column names.
+        notes: sentences for the user.
+        beside: other files of the same run, whose sensors are joined in the track.
+        unknown: if there are no commands, a text on columns of numbers that rovsim does not know.
+        unread: columns that are no measured channel; some may be commands.
+        units: that the size of the numbers tells, by names of columns.
+        doubts: sentences on what looks wrong in the file.
     """
 
     path: Path
@@ -119,10 +141,10 @@ class Contents:
 
     @property
     def files(self) -> tuple["Contents", ...]:
-        """The file, and those beside it."""
+        """This file and the other files of its run."""
         return (self, *self.beside)
 
     @property
     def named(self) -> Path:
-        """The file as its owner knows it."""
+        """The path that the user knows."""
         return self.original or self.path

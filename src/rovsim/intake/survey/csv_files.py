@@ -1,4 +1,4 @@
-"""Motions and commands in csv files."""
+"""Find motions and commands in csv files."""
 
 import re
 from dataclasses import replace
@@ -43,18 +43,21 @@ class UnknownColumns(BadInput):
 
 
 def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = None) -> Contents:
-    """Read what a csv file holds, of a copy in `scratch` where its columns have other names.
+    """Find out what a csv file holds.
 
-    `known`: units that other files tell.
+    Args:
+        path: of the file.
+        scratch: folder for a copy under our names of columns, where the file has others.
+        known: units that other files tell for columns of the same names.
 
     Raises:
-        BadInput: neither a measured channel nor what looks like commands.
+        BadInput: the file holds neither a measured channel nor what looks like commands.
     """
     units = Units(known or {})
     place, notes = rewritten(path, scratch, units)
     try:
         return replace(_look(path, place, notes), units=units.found)
-    except BadInput as error:  # of a copy that is gone when its owner reads this
+    except BadInput as error:  # it names the copy, which is gone when the user reads it
         if place == path:
             raise
         where = error.where.replace(str(place), f"{path}, read as a copy with other columns")
@@ -64,7 +67,7 @@ def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = 
 
 
 def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
-    """What `place` holds, which is `path` or a copy of it."""
+    """Find out what the file at `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
     check_unmixed(replace(lines, path=path))
     known = [name for name in lines.names if name in KNOWN]
@@ -86,7 +89,13 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
 
 
 def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
-    """The error of a file without anything that is known; `unknown` as `_unknown` tells it."""
+    """Make the error of a file without channels or commands.
+
+    Args:
+        path: the file as the user knows it.
+        lines: of the file.
+        unknown: its columns of unknown numbers, as `_unknown` lists them.
+    """
     if TIME not in lines.names:
         return no_time(path, lines.names)
     if not unknown:
@@ -115,7 +124,7 @@ def _track(path: Path) -> Track:
 
 
 def _unknown(others: Columns) -> str:
-    """Columns of numbers that change and are nothing that is known, with their sizes and a hint."""
+    """List columns of unknown numbers that change, with their ranges and what they may be."""
     _, columns = find_numbers(others)
     moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
     if not moving:
@@ -126,7 +135,7 @@ def _unknown(others: Columns) -> str:
 
 
 def _drive(lines: Lines, others: Columns) -> CommandCandidate | None:
-    """Columns that look like commands, if there are any."""
+    """Return the columns that look like commands, if there are any."""
     voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
     found = _commands(*find_numbers(others), voltage)
     if found is None:
@@ -138,6 +147,13 @@ def _drive(lines: Lines, others: Columns) -> CommandCandidate | None:
 def _commands(
     time: Array, columns: dict[str, Array], voltage: tuple[str, ...]
 ) -> CommandCandidate | None:
+    """Find commands among columns of numbers: radio channels, forces, pulses or shares.
+
+    Args:
+        time: (m,) s.
+        columns: (m,) each, by name.
+        voltage: name of a column of battery voltage, if there is one.
+    """
     if radio := _radio(columns):
         value = np.stack([columns[name] for name in radio.values()], axis=1)
         signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
@@ -187,7 +203,7 @@ def _commands(
 
 
 def _radio(columns: dict[str, Array]) -> dict[str, str]:
-    """Columns of a pilot's radio, by the channels of ArduSub: RC1, or chan1_raw of RC_CHANNELS."""
+    """Find columns of a pilot's radio, such as RC1 or chan1_raw, by ArduSub's channels."""
     numbered = {
         f"RC{int(found[1])}": name
         for name, value in columns.items()
@@ -197,9 +213,12 @@ def _radio(columns: dict[str, Array]) -> dict[str, str]:
 
 
 class _LikelyCommands(NamedTuple):
-    """Columns that are likely commands; `kind` None where their numbers do not tell it.
+    """Columns that are likely commands.
 
-    `said` tells a person how both are known.
+    Attributes:
+        kind: of the commands; None where the numbers do not tell it.
+        columns: their names; none where there are no commands.
+        said: how both are known, for a person to read.
     """
 
     kind: LoggedKind | None
@@ -242,7 +261,7 @@ def _rests_at_half(values: list[Array]) -> bool:
 
 
 def within(value: Array, kind: LoggedKind) -> bool:
-    """Whether a column can be of that kind, by the size of its numbers."""
+    """Whether a column can be commands of a kind, by the size of its numbers."""
     if kind == "pwm":
         return are_pulses(value)
     low, high = ALLOWED[kind][:2]
@@ -251,7 +270,7 @@ def within(value: Array, kind: LoggedKind) -> bool:
 
 
 def ordered(names: list[str]) -> list[str]:
-    """Names in the order of the numbers they end in, where they differ in nothing else."""
+    """Sort names by the numbers they end in, if they differ in nothing else."""
     parts = [re.fullmatch(r"(.*?)(\d+)", name) for name in names]
     if not all(parts) or len({part[1] for part in parts if part}) > 1:
         return names
@@ -259,7 +278,7 @@ def ordered(names: list[str]) -> list[str]:
 
 
 def _wrench(values: list[Array]) -> str:
-    """What columns of axes beyond shares may be: their size does not tell forces from percent."""
+    """Say what columns named after axes may be: their size does not tell forces from percent."""
     low, high = find_range(values)
     said = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
     if max(-low, high) <= PERCENT:

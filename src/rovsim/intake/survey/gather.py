@@ -1,4 +1,4 @@
-"""The files that were named, and those in the folders that were."""
+"""Gather the files that the user named, and the files in named folders."""
 
 from pathlib import Path
 from typing import Sequence
@@ -15,12 +15,15 @@ OTHERS = ("campaign.yaml", "truth.yaml", "metadata.yaml")
 
 
 def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Files and bag folders that were named, and those that lie in named folders.
+    """Gather recordings.
 
-    A folder without recordings of its own stands for the folders in it, one a run.
+    In a folder without recordings of its own, each folder inside is taken as one run.
+
+    Returns:
+        Files and bag folders that were named, and those that lie in named folders.
 
     Raises:
-        BadInput: one of them is not there, is too large, or is no folder of recordings.
+        BadInput: a path does not exist, is too large, or is no folder of recordings.
     """
     named: list[Path] = []
     inside: list[Path] = []

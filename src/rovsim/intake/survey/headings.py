@@ -1,6 +1,7 @@
-"""Csv files whose columns have other names or units: a copy that says the same as `time_s, x_m, …`.
+"""Copy csv files whose columns have other names or units than ours (`time_s, x_m, …`).
 
-The format csv takes columns by name and unit, so other names need a copy; what was done is told.
+The reader of the format csv takes columns by name and unit, so a file with other names is read as a
+copy, and the user is told what was renamed and converted.
 """
 
 import re
@@ -32,7 +33,14 @@ HALF_TURN = 180.0  # degrees
 
 @dataclass(frozen=True)
 class Column:
-    """A column of ours: its place in the file, the factor to our unit, and how it is known."""
+    """A column of the file that is one of our channels.
+
+    Attributes:
+        ours: our name of the channel.
+        place: position of the column in the file.
+        factor: from the file's unit to ours.
+        said: the unit and how it is known, to append to a sentence; may be empty.
+    """
 
     ours: str
     place: int
@@ -41,9 +49,15 @@ class Column:
 
 
 def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str, ...]]:
-    """The file to read: itself, or a copy in `scratch` with our names and units, and what changed.
+    """Copy a csv file under our names and in our units, if it has others.
 
-    `units`: those that other files tell; it keeps those that are found by size.
+    Args:
+        path: of the file.
+        scratch: folder for the copy.
+        units: that other files tell; units that are found by size are added to it.
+
+    Returns:
+        The file to read (itself or the copy), and sentences on what was changed.
 
     Raises:
         BadInput: not a csv file, or its units cannot be told.
@@ -61,7 +75,7 @@ def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str,
 
 
 def _without_unit(ours: str) -> str:
-    """The name of a column without our unit, where the file's own is told."""
+    """Remove our unit from a name of ours, to tell the file's own unit instead."""
     return re.sub(r"_(s|m|rad)(_s2?)?$", "", ours)
 
 
@@ -91,7 +105,7 @@ def _cell(text: str, column: Column | None, filler: float | None) -> str:
 
 
 def _columns(lines: Lines, units: Units) -> list[Column]:
-    """Columns that are ours under another name or unit."""
+    """Find the columns that are our channels, under any name or unit; none without times."""
     unit_at = [split_unit(name)[1] for name in lines.names]
     places = find_columns(lines)
     _drop_ambiguous(places, lines)
@@ -116,7 +130,14 @@ def _columns(lines: Lines, units: Units) -> list[Column]:
 
 
 def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
-    """Bare letters are channels only in company: 'roll' may be a demand, 'p' and 'u' anything."""
+    """Drop channels with ambiguous names: 'roll' may be a demand, and 'p' and 'u' anything.
+
+    They are kept where other channels of their group speak for them.
+
+    Args:
+        places: positions of columns by our names; changed in place.
+        lines: of the file.
+    """
     renamed = {ours for ours, place in places.items() if lines.names[place] != ours}
     whole = all(name in places for name in QUATERNION)
     demanded = bool({"surge", "sway", "heave"} & set(lines.names)) or "x_m" not in places
@@ -135,7 +156,7 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
 
 
 def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
-    """Whether x, y, z are those of a stick, beside an r and no angle."""
+    """Whether x, y, z are a pilot's stick: beside a column r, and no attitude in the file."""
     turned = any(name in places for name in (*EULER, *QUATERNION))
     named = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
     if turned or len(named) < len(STICKS):
@@ -144,12 +165,14 @@ def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
 
 
 def _values(lines: Lines, place: int) -> Array:
+    """Return a column (n,) of numbers, NaN where the file has a filler for missing values."""
     value = _raw(lines, place)
     filler = find_filler(value)
     return value if filler is None else np.where(value == filler, np.nan, value)
 
 
 def _raw(lines: Lines, place: int) -> Array:
+    """Return a column (n,) of numbers, all NaN where it holds words."""
     whole, cut = without_cut_line(lines, [place])
     try:
         return np.concatenate([numbers(whole, [place])[:, 0], np.full(cut, np.nan)])
@@ -160,11 +183,20 @@ def _raw(lines: Lines, place: int) -> Array:
 def _group(
     lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
 ) -> list[Column]:
-    """Columns of one kind; those without a unit in their name get one by their size."""
+    """Make the columns of one group of channels; a unit that is not named is found by size.
+
+    Args:
+        lines: of the file.
+        here: positions of these columns, by our names.
+        units: that names state, by position; empty where a name states none.
+        time: (n,) s.
+        told: units that other files tell.
+    """
     if not here:
         return []
     names, columns = list(here), list(here.values())
-    numbers(without_cut_line(lines, columns)[0], columns)  # refuses words, in the owner's own file
+    # refuses words already here, where the message names the user's own file
+    numbers(without_cut_line(lines, columns)[0], columns)
     value = np.stack([_values(lines, place) for place in here.values()], axis=1)
     if names[0] in QUATERNION:
         return [Column(n, p, 1.0, "") for n, p in here.items()]
@@ -180,7 +212,7 @@ def _group(
 def _depth(
     lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, told: Units
 ) -> Column:
-    """A depth; where it is a height in this file, or in another, its sign is turned."""
+    """Make the column of a depth; its sign is turned where it is a height, here or elsewhere."""
     ((ours, place),) = here.items()
 
     def decide() -> Unit:

@@ -1,4 +1,4 @@
-"""Motions and commands in ArduPilot logs."""
+"""Find motions and commands in ArduPilot logs."""
 
 from pathlib import Path
 from typing import Iterator
@@ -21,7 +21,7 @@ def look_into_log(path: Path) -> Contents:
     """Read the channels of a log, its outputs and the pilot's radio.
 
     Raises:
-        BadInput: no such log, or nothing measured in it.
+        BadInput: it is no such log, or holds no measurement.
     """
     mocap = Mocap(format="ardupilot", world_axes="ned", body_axes="frd")
     track = Track("", tidy_export(read_log(path, mocap), path)[0])
@@ -30,6 +30,7 @@ def look_into_log(path: Path) -> Contents:
 
 
 def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
+    """List outputs to thrusters and the pilot's radio, without channels that carry no pulse."""
     for kind, (name, field) in SOURCES[log.kind].items():
         if name not in log.series:
             continue

@@ -1,4 +1,4 @@
-"""What a file holds, by the reader of its format."""
+"""Find out what a file holds, with the reader of its format."""
 
 from pathlib import Path
 from types import MappingProxyType
@@ -15,7 +15,7 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import MocapReader, mocap_readers
 from rovsim.measurement.recording.tidying import tidy_export
 
-# Formats whose files may hold commands, or sensors to choose from; of others a reader says enough.
+# Formats whose files may hold commands, or sensors to choose from. Others need only their reader.
 WITH_COMMANDS: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
     "csv": look_into_csv,
     "rosbag2": lambda path, scratch, units: look_into_bag(path),
@@ -24,12 +24,15 @@ WITH_COMMANDS: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] =
 
 
 def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType({})) -> Contents:
-    """What a file or bag holds; a copy that only rovsim can read is put into `scratch`.
+    """Find out what a file or bag holds.
 
-    `units`: those that other files tell for columns of the same names.
+    Args:
+        path: of the file or the bag's folder.
+        scratch: folder for a copy, where a file can only be read under other column names.
+        units: that other files tell for columns of the same names.
 
     Raises:
-        BadInput: it is no recording, and neither a log of commands.
+        BadInput: it is neither a recording nor a log of commands.
     """
     try:
         name = sniff(path)
@@ -46,6 +49,7 @@ def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType
 
 
 def _of_bodies(path: Path, reader: MocapReader) -> Contents:
+    """Read all rigid bodies of a motion-capture export."""
     names = reader.bodies(path)
     tracks = tuple(_tracks(path, reader, names))
     if tracks:
@@ -59,7 +63,11 @@ def _of_bodies(path: Path, reader: MocapReader) -> Contents:
 
 
 def _tracks(path: Path, reader: MocapReader, bodies: Sequence[str]) -> Iterator[Track]:
-    """The bodies that were found in at least two frames; one that is alone may say why not."""
+    """Read the bodies that were found in at least two frames.
+
+    Raises:
+        BadInput: the only body of the file cannot be read.
+    """
     world, own = reader.axes.world[0], reader.axes.body[0]
     for body in bodies:
         # signs, and the axes y_up and fur of Motive, are applied later: these are the file's own

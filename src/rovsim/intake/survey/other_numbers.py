@@ -1,6 +1,6 @@
-"""Columns of a csv file that hold numbers and are no measured channel: commands may be among them.
+"""Read columns of a csv file that hold numbers and are no measured channel: perhaps commands.
 
-On every line, or on lines of their own where several topics share a file.
+Commands may stand on every line, or on lines of their own where several topics share a file.
 """
 
 import re
@@ -17,7 +17,7 @@ from rovsim.measurement.recording.named_columns import TIME, column_places
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.times import times
 
-# Columns that count or watch something, whatever their size.
+# Columns that count or monitor something, whatever the size of their numbers.
 WATCHED = re.compile(
     r"(frame|index|idx|count|seq|id|line|row|unnamed.*|volt.*|battery.*|bat|current.*|amp.*|temp.*|"
     r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
@@ -29,7 +29,7 @@ Columns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by th
 
 
 def read_others(lines: Lines) -> Columns:
-    """Columns of numbers that are neither measured nor watched; none without times."""
+    """Read columns of numbers that are neither channels nor `WATCHED`; none without times."""
     if TIME not in lines.names:
         return np.empty(0), {}
     kept = [
@@ -48,13 +48,17 @@ def read_others(lines: Lines) -> Columns:
 
 
 def find_numbers(others: Columns) -> Columns:
-    """Columns that have a value on most lines."""
+    """Select the columns that have a value on at least half of the lines."""
     time, columns = others
     return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= SOME}
 
 
 def find_sparse(others: Columns) -> Columns:
-    """Numbered columns, or such named after axes, that share lines of their own: these lines."""
+    """Select the longest series of columns that have values on the same few lines.
+
+    A series is columns whose names differ in a number, or that are named after axes. Only the lines
+    on which they have values are returned.
+    """
     time, columns = others
     series: dict[tuple[str, bytes], list[str]] = defaultdict(list)
     for name, value in columns.items():
@@ -69,12 +73,12 @@ def find_sparse(others: Columns) -> Columns:
 
 
 def _stem(name: str) -> str:
-    """What the names of a series share: `t1`, `channels[3]`, or surge to yaw."""
+    """Return what the names of a series share, such as `t#` for t1; empty for names of axes."""
     return "" if name in AXES else re.sub(r"\d+(?=\D*$)", "#", name)
 
 
 def _numbers(table: Lines, place: int) -> Array | None:
-    """A column (n,), None where it is no column of numbers or empty."""
+    """Return a column (n,) of numbers; None where it holds words or is empty."""
     try:
         value = numbers(table, [place])[:, 0]
     except BadInput:

@@ -1,4 +1,4 @@
-"""Quaternions whose columns are numbered: which of them is w, no file says."""
+"""Refuse quaternions whose columns are numbered: which of them is w cannot be known."""
 
 import re
 from collections import defaultdict
@@ -17,7 +17,7 @@ UNIT = 0.01  # off length one
 
 
 def check_quaternion(lines: Lines) -> None:
-    """Refuse four numbered columns of unit length beside no column that says w, x, y, z.
+    """Refuse four numbered columns of unit length, unless the file has qw, qx, qy, qz as well.
 
     Raises:
         BadInput: there are such columns.

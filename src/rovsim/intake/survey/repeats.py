@@ -1,4 +1,4 @@
-"""Several runs or bodies in one file, and times that repeat since their stamps are too coarse."""
+"""Find several runs or bodies in one file, and times that repeat as they are too coarse."""
 
 from typing import Iterator, Sequence
 
@@ -21,7 +21,9 @@ APART = 10.0  # times as far as a body moves from one of its lines to its next
 
 
 def check_unmixed(lines: Lines) -> None:
-    """Refuse a file whose times begin anew, or that jumps to and fro, as another column changes.
+    """Refuse a file of several runs or bodies that a column of labels tells apart.
+
+    Times begin anew where the label of a run changes; positions jump where that of a body changes.
 
     Raises:
         SeveralRuns: it holds several runs, or several bodies.
@@ -38,7 +40,11 @@ def check_unmixed(lines: Lines) -> None:
 
 
 def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
-    """Columns (count,) of few words or numbers, that are no measurement, by their names."""
+    """List columns of at most `LABELS` different words or numbers that are no measurement.
+
+    Yields:
+        The name of a column, and its first `count` cells.
+    """
     places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN, TIME)]
     glance = _cells(lines, min(count, GLANCE), places)
     few = [k for k, column in zip(places, glance, strict=True) if len(set(column)) <= LABELS]
@@ -48,7 +54,7 @@ def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
 
 
 def _cells(lines: Lines, count: int, places: Sequence[int]) -> list[list[str]]:
-    """Cells of the first lines, a list for each of these columns."""
+    """Return the first `count` cells of each of the columns at `places`."""
     columns: list[list[str]] = [[] for _ in places]
     for row in range(count if places else 0):
         cells = lines.cells(row)
@@ -58,7 +64,7 @@ def _cells(lines: Lines, count: int, places: Sequence[int]) -> list[list[str]]:
 
 
 def _jumps(lines: Lines, labels: Array) -> bool:
-    """Whether positions jump where the labels (n,) change, and do not where these are the same."""
+    """Whether positions jump where labels (n,) change, compared to the steps within a label."""
     places = [lines.names.index(name) for name in POSITION if name in lines.names]
     if not places:
         return False
@@ -88,7 +94,7 @@ def _several(
 
 
 def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
-    """A sentence where many lines that hold one of these columns share their times; else none."""
+    """Warn where many lines that hold a value of one of these columns share their times."""
     places = [lines.names.index(name) for name in columns]
     time = _times(lines, places)
     if _double(time) < MANY * len(time) or not columns:
@@ -103,11 +109,17 @@ def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
 
 
 def _double(time: Array) -> int:
+    """Count the times that repeat an earlier one."""
     return len(time) - len(np.unique(time))
 
 
 def _times(lines: Lines, others: Sequence[int] = ()) -> Array:
-    """Times (n,) s of the lines that hold the other columns as well; none without a column."""
+    """Return times (n,) s of the lines, without a last line that is cut off before a column.
+
+    Args:
+        lines: of the file.
+        others: positions of columns that a line has to reach beside the times.
+    """
     if TIME not in lines.names:
         return np.empty(0)
     place = lines.names.index(TIME)

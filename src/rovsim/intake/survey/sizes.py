@@ -1,4 +1,4 @@
-"""Units that the size of the numbers tells, where no name does."""
+"""Find units by the size of the numbers, where the names of columns do not state them."""
 
 from dataclasses import dataclass, field
 from typing import Callable, Mapping
@@ -29,11 +29,14 @@ Key = tuple[str, ...]  # names of columns in a file
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit that the size of numbers tells: the factor to ours, and how it is known.
+    """A unit that the size of the numbers tells.
 
-    `sure`: no numbers of another unit would look like these; small ones may be of either.
-    `shared`: columns of these names have it in all files. Times need not: those of the cameras may
-    be in s and those of a microcontroller in ms.
+    Attributes:
+        factor: from the file's unit to ours.
+        said: the unit and how it is known, to append to a sentence; may be empty.
+        sure: whether numbers of another unit could not look like these; small ones could.
+        shared: whether columns of these names have this unit in all files. Times need not: those of
+            cameras may be in s and those of a microcontroller in ms.
     """
 
     factor: float
@@ -44,22 +47,30 @@ class Unit:
 
 @dataclass(frozen=True)
 class Units:
-    """Units that other files tell for columns of these names, and those that are found here."""
+    """Units of columns without a unit in their names.
+
+    Attributes:
+        known: units that other files tell, by names of columns.
+        found: units that this file's numbers tell; filled by `settle`.
+    """
 
     known: Mapping[Key, Unit] = field(default_factory=dict)
     found: dict[Key, Unit] = field(default_factory=dict)
 
     def settle(self, key: Key, decide: Callable[[], Unit]) -> Unit:
-        """The unit of columns: that of the other files, else what their own size tells."""
+        """Return the unit of columns: that of other files, else what `decide` returns."""
         if key not in self.known:
             self.found[key] = decide()
         return self.known.get(key) or self.found[key]
 
 
 class UnknownUnit(BadInput):
-    """Columns without a unit whose numbers allow two.
+    """Columns without a unit, whose numbers may be of two units.
 
-    `key`: their names; `large`: the numbers are no small ones, of which those of other files tell.
+    Attributes:
+        key: names of the columns.
+        large: whether the numbers are large. Small ones take an unsure unit of another file; large
+            ones only a sure one.
     """
 
     def __init__(
@@ -72,9 +83,18 @@ class UnknownUnit(BadInput):
 def find_by_size(
     lines: Lines, here: Mapping[str, int], value: Array, time: Array, units: Units
 ) -> tuple[float, str]:
-    """Factor to our unit where the size of the numbers says one, and how; else 1 and nothing.
+    """Find the unit of positions or angles by the size of their numbers.
 
-    `here`: our names and the places of these columns (n, c).
+    Args:
+        lines: of the file.
+        here: positions of the c columns, by our names.
+        value: (n, c) numbers.
+        time: (n,) s.
+        units: that other files tell; what is found is added.
+
+    Returns:
+        The factor to our unit and how it is known; 1 and nothing for other columns, and for units
+        that the names state.
 
     Raises:
         UnknownUnit: the columns name no unit, or a wrong one, and their numbers allow two.
@@ -103,7 +123,16 @@ def find_by_size(
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Columns (n, c) of one kind, by our names and their own, at the times (n,) s."""
+    """Columns of one group of channels.
+
+    Attributes:
+        lines: of the file.
+        key: the file's names of the columns.
+        names: our names of them.
+        value: (n, c) numbers.
+        time: (n,) s.
+        named: whether the file's names state units.
+    """
 
     lines: Lines
     key: Key
@@ -113,11 +142,12 @@ class _Columns:
     named: bool
 
     def asked(self, found: str, expected: str, *, large: bool = False) -> UnknownUnit:
-        """The error that asks for the unit of these columns."""
+        """Make the error that asks for the unit of these columns."""
         return UnknownUnit(found, self.lines, self.key, expected, large=large)
 
 
 def _metres(of: _Columns) -> Unit:
+    """Tell the unit of positions by how far and how fast a vehicle would move in m."""
     low, high = usual_range(of.value)
     far, fast = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
     if fast > CREEPING:
@@ -135,6 +165,7 @@ def _metres(of: _Columns) -> Unit:
 
 
 def _radians(of: _Columns) -> Unit:
+    """Tell the unit of angles by how large roll and pitch are, and how fast angles change."""
     size = np.nanmax(np.abs(of.value), axis=0)
     turns = [s for n, s in zip(of.names, size, strict=True) if n != "yaw_rad"]
     tilted = max(turns, default=0.0)
@@ -144,7 +175,10 @@ def _radians(of: _Columns) -> Unit:
 
 
 def _named_radians(of: _Columns, tilted: float, degrees: bool) -> Unit:
-    """Angles that count on may be large: only what no vehicle does speaks against a name."""
+    """Tell the unit of angles whose names say rad: rad, unless they turn too fast for a vehicle.
+
+    Their size alone tells nothing: angles that count full turns may be large.
+    """
     fast = usual_speed(unwrapped(of.value), of.time)
     if fast <= FASTEST_TURN:
         return Unit(1.0, "", False)
@@ -159,6 +193,13 @@ def _named_radians(of: _Columns, tilted: float, degrees: bool) -> Unit:
 
 
 def _free_radians(of: _Columns, size: Array, degrees: bool) -> Unit:
+    """Tell the unit of angles without a unit in their names.
+
+    Args:
+        of: the columns.
+        size: (c,) the largest absolute number of each.
+        degrees: whether roll or pitch is too large for rad.
+    """
     heading = of.value[:, of.names.index("yaw_rad") if "yaw_rad" in of.names else 0]
     spread = float(np.nanmax(heading) - np.nanmin(heading))
     fast = usual_speed(of.value, of.time) > FASTEST_TURN and spread > 2.02 * np.pi

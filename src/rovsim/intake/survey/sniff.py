@@ -1,4 +1,4 @@
-"""Which format a file has, by what stands in it and not by its name."""
+"""Tell the format of a file by its first bytes, not by its name."""
 
 import re
 from pathlib import Path
@@ -9,7 +9,7 @@ from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.recording.signature import HEAD, Signature, decoded, head_lines
 
 AS_CSV = "docs/formats.md lists the columns"
-# First bytes of files that people take for recordings, and what to do about them.
+# First bytes of files that people take for recordings -> what they are, and what to do about it.
 KNOWN = {
     b"#ROSBAG V": ("a ROS 1 bag", "Turn it into a ROS 2 bag with `rosbags-convert`."),
     b"MATLAB 5.0": ("a MATLAB file", f"Save its signals as csv: {AS_CSV}."),
@@ -48,10 +48,10 @@ FORMATS = "a QTM, Motive, C3D or csv export, a ROS 2 bag or an ArduPilot log"
 
 
 def sniff(path: Path) -> str:
-    """The format, as `mocap.format` calls it; of a folder it is that of a bag.
+    """Tell the format of a file, as `mocap.format` names it; a folder is taken for a bag.
 
     Raises:
-        BadInput: none of ours; says what it seems to be.
+        BadInput: rovsim does not read this format; the message says what the file seems to be.
     """
     readers = mocap_readers().values()
     if path.is_dir():
@@ -90,7 +90,7 @@ def _refuse_known(path: Path, head: bytes) -> None:
 
 
 def _known_text(lines: list[str]) -> tuple[str, str] | None:
-    """What a text is by its first line, and what to do about it."""
+    """Tell by its first line what a text is, and what to do about it; None where unknown."""
     first = lines[0].strip() if lines else ""
     if first.startswith(MARKERS):
         return (

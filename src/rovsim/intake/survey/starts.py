@@ -1,4 +1,4 @@
-"""When a recording began, by the header of its file."""
+"""Read from the header of a file when its recording began."""
 
 import re
 from datetime import UTC, datetime
@@ -16,7 +16,7 @@ STAMPS = re.compile(
 
 
 def find_start(path: Path) -> float | None:
-    """The local time at which a motion began, as s since 1970; None where the file says none."""
+    """Read the local time at which a motion began, as s since 1970; None where it is not given."""
     if not path.is_file():
         return None
     with path.open("rb") as file:

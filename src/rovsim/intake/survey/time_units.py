@@ -1,4 +1,4 @@
-"""The unit of times that no name tells: by their size, their steps, and how long they last."""
+"""Find the unit of times by their size, their steps and how long they last."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -19,12 +19,20 @@ EXPECTED = "time_s, or time_ms, time_us, time_ns, time_min; days times 86400 are
 def find_time_unit(
     lines: Lines, place: int, value: Array, unit: str, units: Units
 ) -> tuple[float, str]:
-    """Factor to seconds of times (n,), and how it is known.
+    """Find the factor from times to seconds.
 
-    `unit`: behind the column's name, empty where there is none.
+    Args:
+        lines: of the file.
+        place: position of the column of times.
+        value: (n,) the times as logged.
+        unit: that the column's name states; empty where it states none.
+        units: that other files tell; what is found is added.
+
+    Returns:
+        The factor, and how it is known.
 
     Raises:
-        UnknownUnit: no unit is named, and their steps allow two, or none.
+        UnknownUnit: no unit is stated, and the steps of the times allow two units, or none.
         BadInput: these are no times.
     """
     if not np.isfinite(value).any():
@@ -47,6 +55,11 @@ def find_time_unit(
 
 
 def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
+    """Tell the unit of times by their usual step and their duration, both in the file's unit.
+
+    Raises:
+        UnknownUnit: several units suit, or none.
+    """
     names = [n for n in ("s", "ms", "us", "ns") if _is_step(step * FACTORS[n])]
     long = [n for n in names if _is_recording(step * FACTORS[n], lasts * FACTORS[n])]
     if len(long) == 1:
@@ -63,8 +76,10 @@ def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
 
 
 def _is_step(seconds: float) -> bool:
+    """Whether two lines of a recording can be so far apart."""
     return SHORTEST_STEP <= seconds < LONGEST_STEP
 
 
 def _is_recording(step: float, lasts: float) -> bool:
+    """Whether a recording of this step and duration, in s, is long enough for its rate."""
     return lasts >= SHORTEST or step >= 1.0 / FASTEST_CAMERA

@@ -1,4 +1,4 @@
-"""Rates, jitter and gaps of times."""
+"""Measure rate, jitter and gaps of the times in a file."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,15 @@ JITTERY = 0.1  # share of the usual step; clocks of computers stay below
 
 @dataclass(frozen=True)
 class Timing:
-    """`rows` over `seconds`, at `rate` Hz; `jitter` is the spread of steps over the usual one.
+    """Timing of the rows of a file.
 
-    `gaps` are steps longer than twice the usual, `longest` s the longest step.
+    Attributes:
+        rows: how many there are.
+        seconds: from the first to the last.
+        rate: Hz, by the median step.
+        jitter: standard deviation of the steps, without long ones, over the median step.
+        gaps: number of steps longer than twice the median.
+        longest: step, s.
     """
 
     rows: int
@@ -26,7 +32,7 @@ class Timing:
 
     @staticmethod
     def of(time: Array) -> "Timing":
-        """Of increasing times (n,) s, n > 1."""
+        """Measure the timing of increasing times (n,) s, n > 1."""
         steps = np.diff(time)
         usual = float(np.median(steps))
         regular = steps[steps < LONG_STEP * usual]
