@@ -1,4 +1,4 @@
-"""Where Hydra looks: in each folder of the configuration, the working folder's own first."""
+"""Let Hydra search every folder of the configuration, the working folder's own first."""
 
 from hydra.core.config_search_path import ConfigSearchPath
 from hydra.core.plugins import Plugins
@@ -8,15 +8,15 @@ from rovsim.core.shipped import conf_folders
 
 
 class ConfFolders(SearchPathPlugin):
-    """Adds the folders after the first, which Hydra is given."""
+    """Adds all folders of the configuration but the first, which Hydra gets directly."""
 
     def manipulate_search_path(self, search_path: ConfigSearchPath) -> None:
-        """Called by Hydra as it sets itself up."""
+        """Append the folders; Hydra calls this as it starts."""
         for folder in conf_folders()[1:]:
             search_path.append("rovsim", f"file://{folder}")
 
 
 def first_folder() -> str:
-    """The folder to give to Hydra, which searches the others from now on too."""
+    """Return the folder to give to Hydra, and make Hydra search the others from now on."""
     Plugins.instance().register(ConfFolders)
     return str(conf_folders()[0])

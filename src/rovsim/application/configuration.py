@@ -1,4 +1,4 @@
-"""The configuration: Hydra composes it from conf/, once; the library gets plain typed values."""
+"""Compose the configuration from conf/ with Hydra, once, into plain typed settings."""
 
 from pathlib import Path
 from typing import Any, Sequence
@@ -12,8 +12,11 @@ from rovsim.core.shipped import conf_folders, conf_names
 def compose(overrides: Sequence[str]) -> Settings:
     """Compose conf/config.yaml with Hydra overrides.
 
+    Args:
+        overrides: words such as `residual=knn`.
+
     Raises:
-        BadInput: an override Hydra does not understand, or a value that does not fit.
+        BadInput: an override that Hydra does not understand, or a value that is not allowed.
     """
     from hydra import compose as hydra_compose
     from hydra import initialize_config_dir
@@ -26,12 +29,16 @@ def compose(overrides: Sequence[str]) -> Settings:
             return settings_of(hydra_compose("config", overrides=words))
     except RovsimError:
         raise
-    except Exception as error:  # Hydra's own, and what odd words make it stumble over
+    except Exception as error:  # Hydra's own errors, and any that odd words cause in it
         raise _refused(overrides, str(error)) from None
 
 
 def sweep_folder(overrides: Sequence[str]) -> Path:
-    """Where a sweep writes that begins now, by overrides of its first run that `compose` takes."""
+    """Return the folder into which a sweep writes that begins now.
+
+    Args:
+        overrides: of its first run; `compose` has accepted them.
+    """
     from hydra import compose as hydra_compose
     from hydra import initialize_config_dir
 
@@ -45,15 +52,20 @@ def sweep_folder(overrides: Sequence[str]) -> Path:
 
 
 def _allow_unlisted(word: str) -> str:
-    """An override of the tank that Hydra takes though no file of `conf/tank` lists its key.
+    """Let Hydra accept an override of a key of the tank that no file of `conf/tank` lists.
 
-    A tank lists what is special about it; what else there is, `TankSettings` checks.
+    A file there lists only what is special about a tank. `TankSettings` checks the keys later.
     """
     return f"++{word}" if word.startswith("tank.") else word
 
 
 def _refused(overrides: Sequence[str], message: str) -> BadInput:
-    """What is wrong with an override that Hydra refused, and what was probably meant."""
+    """Make the error for overrides that Hydra refused, with what was probably meant.
+
+    Args:
+        overrides: all of them.
+        message: of Hydra's error.
+    """
     chosen = [word for word in overrides if _is_choice(word)]
     for word in overrides:
         key, _, value = word.lstrip("+~").partition("=")
@@ -92,7 +104,11 @@ def _is_choice(word: str) -> bool:
 
 
 def _keys(chosen: Sequence[str]) -> list[str]:
-    """Every key of the configuration with these options, dotted, and every group."""
+    """List every dotted key of the configuration, and every group.
+
+    Args:
+        chosen: overrides that choose options of groups.
+    """
     from rovsim.core.mappings import flattened
 
     groups = [path.name for folder in conf_folders() for path in folder.iterdir() if path.is_dir()]
@@ -100,7 +116,11 @@ def _keys(chosen: Sequence[str]) -> list[str]:
 
 
 def settings_of(composed: Any) -> Settings:
-    """Typed settings of a composed Hydra configuration."""
+    """Convert a composed Hydra configuration to typed settings.
+
+    Raises:
+        BadInput: a value is not allowed.
+    """
     from omegaconf import OmegaConf
 
     plain = OmegaConf.to_container(composed, resolve=True)

@@ -1,6 +1,6 @@
-"""Where a result came from: recordings, code, settings, versions, machine.
+"""Describe where a result came from: recordings, code, settings, versions, machine.
 
-No clock: equal inputs, equal files.
+No time is recorded, so that equal inputs give equal files.
 """
 
 import ast
@@ -27,10 +27,17 @@ PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pys
 
 
 def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> str:
-    """Digest of modules of rovsim and of all they import, however deep, but for a package.
+    """Digest modules of rovsim and all that they import, directly or indirectly.
 
-    A package stands for all its modules: what is found by looking has no import to follow. Files
-    in which vehicles and effects are `described` count for modules that know either.
+    Args:
+        names: of modules. A package stands for all its modules, since plug-ins that are found by
+            looking into a folder have no import to follow.
+        without: a package that is left out.
+        described: files that describe a vehicle or a user's effects; included where one of the
+            modules depends on models or vehicles.
+
+    Returns:
+        The first 16 hexadecimal digits of a SHA-256.
     """
     wanted = find_modules(*names)
     if without:
@@ -39,14 +46,18 @@ def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> st
 
 
 def imports_of(script: Path) -> list[str]:
-    """Modules of rovsim that a script imports."""
+    """List the modules of rovsim that a script imports."""
     tree = ast.parse(script.read_text(encoding="utf-8"))
     found = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     return sorted({name for name in found if name and name.startswith("rovsim")})
 
 
 def find_modules(*names: str) -> set[str]:
-    """These modules of rovsim and all they import, however deep, as `digest` takes them."""
+    """Find modules of rovsim and all that they import, directly or indirectly.
+
+    Args:
+        names: of modules; a package stands for all its modules.
+    """
     graph = _graph()
 
     def found(packages: Iterable[str]) -> set[str]:
@@ -58,7 +69,7 @@ def find_modules(*names: str) -> set[str]:
 
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:
-    """Digest of a package's own modules, whatever they import, and of `described` (`digest`)."""
+    """Digest a package's own modules without their imports, and the files of `described`."""
     return _digest(sorted(_file(package).parent.rglob("*.py")), described)
 
 
@@ -73,15 +84,19 @@ def _digest(modules: Iterable[Path], described: Iterable[Path]) -> str:
 
 
 def _without_comments(source: bytes) -> bytes:
-    """What Python reads in an effect of somebody's own: a comment there changes no result."""
+    """Reduce the source of a user's effect to its syntax tree: comments change no result."""
     try:
         return ast.dump(ast.parse(source)).encode()
     except (SyntaxError, ValueError):
-        return source  # refused where it is read
+        return source  # raises where the effect is loaded
 
 
 def _discovered(modules: set[str]) -> set[str]:
-    """Packages found by looking into their folder; a model may hold any effect, and is compiled."""
+    """List packages whose plug-ins these modules find by looking into the folder.
+
+    A model may hold any effect and compiles its engine: modules that depend on models depend on all
+    effects and on the engine.
+    """
     found = {package for package in LOOKED_INTO if package in modules}
     return found | (set(OF_MODELS) if MODEL in modules else set())
 
@@ -99,7 +114,7 @@ def _file(module: str) -> Path:
 
 
 def _version(package: str) -> str | None:
-    """None where it is not installed: a learner's library is an extra."""
+    """Return a package's version; None where it is not installed, as learners are extras."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -107,7 +122,7 @@ def _version(package: str) -> str | None:
 
 
 def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
-    """Code, with the user's own effects, and versions behind a result."""
+    """Describe the code, with the user's own effects, and the versions behind a result."""
     packages = {name: installed for name in PACKAGES if (installed := _version(name))}
     system = f"{platform.system()} {platform.machine()}"
     versions = {
@@ -125,10 +140,13 @@ def provenance(
     campaign: Campaign | None,
     recordings: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Recordings, vehicle file, settings, code and versions behind a result.
+    """Describe recordings, vehicle file, settings, code and versions behind a result.
 
-    Settings without influence are left out; so are recordings that these make (None).
-    `recordings`: their digests, where these are known (`digest_recordings`).
+    Args:
+        settings: of the command or rule; those that do not influence a result are left out.
+        catalogue: all effects, with those of the user's own files.
+        campaign: that was used; None where the settings create it (a synthetic one).
+        recordings: digests of its files that are known (`digest_recordings`).
     """
     chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
     origin = {"settings": chosen, **describe_origin(catalogue)}
@@ -142,15 +160,20 @@ def provenance(
 
 
 def digest_files(campaign: Campaign, known: Mapping[str, str] | None = None) -> dict[str, str]:
-    """The first 16 digits of the SHA-256 of every file of a campaign, by its path from there.
+    """Digest every file of a campaign: the first 16 hexadecimal digits of its SHA-256.
 
-    Those that are `known` are not read again.
+    Args:
+        campaign: whose files are read.
+        known: digests that are not computed again.
+
+    Returns:
+        Digests by path relative to the campaign's folder.
     """
     return _digest_each(campaign, campaign.files, known or {})
 
 
 def digest_recordings(campaign: Campaign) -> dict[str, str]:
-    """The same of the files of its runs alone, without the campaign file."""
+    """As `digest_files`, for the files of the runs alone, without the campaign file."""
     return _digest_each(campaign, [path for path in campaign.files if path != campaign.file], {})
 
 

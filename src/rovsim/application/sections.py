@@ -12,14 +12,20 @@ from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 
 class SimulationSections(SimulationSettings):
-    """Both sections, as a configuration must have them: what it lacks is not made up."""
+    """The sections `signals` and `replay`; a configuration has to have both, without defaults."""
 
     signals: SignalSettings
     replay: ReplaySettings
 
 
 class TimingSettings(Section):
-    """How long inference is measured."""
+    """How long the inference of a residual is timed.
+
+    Attributes:
+        calls: of each predictor, one at a time.
+        warmup: calls before these, not timed.
+        seconds: after which no further call of a predictor starts.
+    """
 
     calls: PositiveInt = 10000
     warmup: PositiveInt = 200
@@ -33,7 +39,13 @@ class PredictorSettings(SimulationSections):
 
 
 class TrainingSettings(SimulationSections):
-    """What a trained residual depends on: which learner, on the runs of which control."""
+    """What a trained residual depends on.
+
+    Attributes:
+        residual: kind and settings of the learner, as in conf/residual.
+        control: of the runs to learn from.
+        seed: of the training.
+    """
 
     residual: dict[str, Any]
     control: Control
@@ -41,7 +53,11 @@ class TrainingSettings(SimulationSections):
 
     @property
     def learner(self) -> LearnerSettings:
-        """The residual's own settings."""
-        from rovsim.learning.learner import learner_settings  # with it every learner
+        """Checked settings of the learner.
+
+        Raises:
+            BadInput: there is no such learner, or a value is not allowed.
+        """
+        from rovsim.learning.learner import learner_settings  # slow: imports every learner
 
         return learner_settings(self.residual, "conf/residual")

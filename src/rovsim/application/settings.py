@@ -1,4 +1,4 @@
-"""What each command and rule takes of the configuration (`configuration` composes it)."""
+"""Settings that each command and rule takes from the configuration (see `configuration`)."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -15,7 +15,13 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 
 class StudySettings(Section):
-    """Which residuals the workflow trains, on which runs; which also on top of the effects."""
+    """Which residuals the workflow trains.
+
+    Attributes:
+        residuals: kinds that are trained on the nominal model.
+        controls: of the runs to learn from; each residual is trained once for each.
+        on_effects: residuals, as kind_control, that are also trained on top of the effects found.
+    """
 
     residuals: tuple[str, ...] = ("knn", "gp", "svgp")
     controls: tuple[Control, ...] = ("3dof", "6dof")
@@ -23,11 +29,14 @@ class StudySettings(Section):
 
 
 class FoldSettings(Section):
-    """Each run held out once.
+    """Cross-validation in which each run is held out once.
 
-    `published` is a csv beside the recordings, of errors that others reached on the same runs. Each
-    residual is trained on the nominal model and on the effects, on the runs of each control.
-    `pitfalls`: also what four mistakes of the thesis' public code cost on these runs.
+    Attributes:
+        leave_one_run_out: whether this is done.
+        published: csv beside the recordings, of errors that others reached on the same runs.
+        pitfalls: whether to measure what four mistakes of the thesis' public code cost on them.
+        residuals: kinds that are trained, on the nominal model and on the effects.
+        controls: of the runs to learn from; each residual is trained once for each.
     """
 
     leave_one_run_out: bool = False
@@ -44,7 +53,16 @@ class FoldSettings(Section):
 
 
 class BenchSettings(Section):
-    """The speed benchmark: calls of each own path, s for a library's, runs of `duration` s."""
+    """The speed benchmark.
+
+    Attributes:
+        calls: of each of rovsim's own predictors.
+        warmup: calls before these, not timed.
+        seconds: for which a library is called.
+        sweep_seconds: the same in the sweeps of sizes.
+        duration: of the simulated runs, s.
+        page: file that is written.
+    """
 
     calls: PositiveInt = 100000
     warmup: PositiveInt = 200
@@ -55,7 +73,16 @@ class BenchSettings(Section):
 
 
 class BlindSettings(Section):
-    """The blind benchmark: which cases, who flies and who answers; `share` of a suite's cases."""
+    """The blind benchmark.
+
+    Attributes:
+        simulator: that makes the recordings.
+        suite: of cases.
+        share: of the suite's cases that are run, 0 to 1.
+        seeds: those to develop with, or those to report on.
+        methods: that have to find the hidden effects.
+        page: file that is written.
+    """
 
     simulator: Literal["tank", "independent"] = "tank"
     suite: Literal[
@@ -68,9 +95,12 @@ class BlindSettings(Section):
 
 
 class TrackingSettings(Section):
-    """Where MLflow keeps runs (`uri`) and their files (`artifacts`, for a local database).
+    """Where MLflow keeps runs.
 
-    `name` of a run; None: residual and control.
+    Attributes:
+        uri: of the database or server.
+        artifacts: folder of the runs' files, for a local database.
+        name: of a run; None: residual and control.
     """
 
     uri: str
@@ -79,9 +109,12 @@ class TrackingSettings(Section):
 
 
 class CommandSettings(Section):
-    """What every command takes: effects of one's own, where it writes, what it prints.
+    """Settings of every command.
 
-    `out` None: a folder under results/.
+    Attributes:
+        effects_file: files that declare the user's own effects.
+        out: where the command writes; None: a folder under results/.
+        output: what it prints.
     """
 
     effects_file: PathText | list[PathText] | None = None
@@ -95,14 +128,28 @@ class CommandSettings(Section):
 
 
 class CampaignSettings(SimulationSections, CommandSettings):
-    """What every command on a campaign takes."""
+    """Settings of every command on a campaign.
+
+    Attributes:
+        campaign: folder of the campaign; None where none was given (the study: a synthetic one).
+        model: names of built-in models, or model files.
+    """
 
     campaign: PathText | None
     model: PathText | Annotated[list[PathText], Field(min_length=1)]
 
 
 class WorkbenchSettings(TrainingSettings, CampaignSettings):
-    """What the workbench takes: a campaign, and how it is diagnosed and learned from."""
+    """Settings of the workbench: a campaign, and how it is diagnosed and learned from.
+
+    Attributes:
+        search: how a diagnosis searches.
+        diagnosis: file of a diagnosis to show; None: the workbench makes one.
+        seconds: of a planned flight.
+        design: how a flight is planned.
+        port: of the server.
+        open: whether a browser is opened.
+    """
 
     search: SearchSettings
     diagnosis: PathText | None
@@ -113,7 +160,25 @@ class WorkbenchSettings(TrainingSettings, CampaignSettings):
 
 
 class Settings(WorkbenchSettings):
-    """conf/config.yaml, composed and checked; each command and rule is given its part of it."""
+    """conf/config.yaml, composed and checked; each command and rule gets its part of it.
+
+    Attributes:
+        command: module of the command that is run.
+        tank: the synthetic tank.
+        effects: of a diagnosis, by id, that are added to a model; None: the selected ones.
+        to: the model that effects are added to, or the simulator that a model is written for.
+        between: two effects that a planned flight should tell apart.
+        know: parameters, as effect.parameter, that a planned flight should make better known.
+        fly: log of commands that the tank flies as one more train run.
+        files: files and folders of recordings to be looked into.
+        force: whether a campaign.yaml that is there is replaced.
+        study: which residuals the workflow trains.
+        folds: each run held out once.
+        timing: of the inference of residuals.
+        bench: the speed benchmark.
+        blind: the blind benchmark.
+        tracking: where MLflow keeps runs.
+    """
 
     command: str | None = None
     tank: TankSettings
@@ -133,5 +198,10 @@ class Settings(WorkbenchSettings):
 
 
 def select(settings: Section, kind: type[S]) -> S:
-    """The part of settings that a command or a function takes."""
+    """Select the part of settings that a command or a function takes.
+
+    Args:
+        settings: that have at least the fields of `kind`.
+        kind: class of the part.
+    """
     return kind(**{name: getattr(settings, name) for name in kind.model_fields})

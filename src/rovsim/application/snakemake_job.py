@@ -1,4 +1,4 @@
-"""What surrounds the script of a rule: its files and settings, a log, errors in one message."""
+"""The surroundings of a rule's script: its files and settings, a log, errors in one message."""
 
 import json
 import logging
@@ -29,13 +29,17 @@ if TYPE_CHECKING:  # a study has a hundred jobs: each imports what it uses, wher
 
 @dataclass(frozen=True)
 class Job:
-    """One job of a rule, in the library's terms; `snakemake` is what Snakemake gives a script."""
+    """One job of a rule: its files and settings, read as objects of the library.
+
+    Attributes:
+        snakemake: the object that Snakemake gives a script.
+    """
 
     snakemake: Any
 
     @cached_property
     def catalogue(self) -> "Catalogue":
-        """Effects that models can have, those of the user's files among them."""
+        """All effects that models can have, with those of the user's own files."""
         from rovsim.dynamics.catalogue import load_catalogue
 
         return load_catalogue(
@@ -44,87 +48,91 @@ class Job:
 
     @property
     def params(self) -> Any:
-        """What the rule gives beside files and settings."""
+        """Parameters of the rule."""
         return self.snakemake.params
 
     @property
     def wildcards(self) -> Any:
-        """What the rule's wildcards stand for."""
+        """Values of the rule's wildcards."""
         return self.snakemake.wildcards
 
     def paths(self, name: str) -> list[Path]:
-        """Input files of a name, none where the rule left it empty."""
+        """Return the input files under a name, none where the rule left it empty."""
         given = self.snakemake.input.get(name) or []
         return [Path(path) for path in as_list(given)]
 
     def path(self, name: str) -> Path:
-        """The one input file of a name."""
+        """Return the one input file under a name."""
         (path,) = self.paths(name)
         return path
 
     def output(self, name: str | int = 0) -> Path:
-        """An output file."""
+        """Return an output file by its name or position."""
         return Path(self.snakemake.output[name])
 
     def outputs(self) -> dict[str, list[Path]]:
-        """Output files by name."""
+        """Return all output files by name."""
         return {
             name: [Path(path) for path in as_list(given)]
             for name, given in self.snakemake.output.items()
         }
 
     def contents(self, *names: str) -> dict[str, Path]:
-        """Those of the input files of these names that the rule has."""
+        """Return the input files under these names; names that the rule lacks are left out."""
         return {name: path for name in names for path in self.paths(name)}
 
     def section(self, kind: type[S]) -> S:
-        """The rule's settings, JSON, as a section of the configuration.
+        """Parse the rule's settings, which are JSON, as a section of the configuration.
 
         Raises:
-            BadInput: one of them does not fit.
+            BadInput: a value is not allowed.
         """
         return checked(kind, json.loads(self.params.settings), "conf")
 
     def motions(self, name: str = "motions") -> ReadAgain[Motion]:
-        """Runs, each read when it is asked for."""
+        """Return the motions of input files, each read when it is asked for."""
         return ReadAgain(self.paths(name), Motion.read)
 
     @property
     def campaign(self) -> "Campaign":
-        """That of the input `campaign`."""
+        """The campaign of the input `campaign`."""
         from rovsim.measurement.loading import load_campaign
 
         return load_campaign(self.path("campaign"))
 
     @property
     def vehicle(self) -> "Vehicle":
-        """That of the campaign."""
+        """The vehicle of the campaign."""
         from rovsim.application.pipeline.reading import load_campaign_vehicle
 
         return load_campaign_vehicle(self.campaign)
 
     def model(self, name: str) -> "Model":
-        """The input `model`, or a built-in model, under a name."""
+        """Load the input `model`, or without such an input the built-in model of this name.
+
+        Args:
+            name: that the model gets.
+        """
         from rovsim.dynamics.model_file import load_model
 
         spec = str(self.path("model")) if self.paths("model") else name
         return load_model(spec, self.vehicle, self.catalogue).called(name)
 
     def models(self) -> "list[Model]":
-        """The input `models`, each called by its folder."""
+        """Read the input `models`; each is named after its folder."""
         from rovsim.dynamics.model_file import read_model
 
         files = self.paths("models")
         return [read_model(path, self.catalogue).called(path.parent.name) for path in files]
 
     def runs(self) -> "Runs":
-        """The usable ones of the input `motions`, with their poses before the filter."""
+        """Read the usable runs of the input `motions`, with their poses before the filter."""
         from rovsim.measurement.runs import Runs
 
         return Runs.read(self.paths("motions"), self.paths("stages"))
 
     def replays(self) -> "dict[str, Remade[Replay]]":
-        """The input `replays` by model and run, in the order of the rule; read when asked for."""
+        """Return the input `replays` by model and run, in the rule's order; read when asked for."""
         from rovsim.simulation.prediction import Replay
 
         found: dict[str, dict[str, Path]] = {}
@@ -135,7 +143,10 @@ class Job:
 
 @contextmanager
 def job(snakemake: Any) -> Iterator[Job]:
-    """Log to the rule's log; an expected error becomes one message and exit code 2."""
+    """Run a script's body as a job that logs to the rule's log file.
+
+    A `RovsimError` becomes one message and exit code 2; other errors are logged and raised.
+    """
     end_at_once()
     path = snakemake.log[0]
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s")

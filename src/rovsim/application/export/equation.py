@@ -32,7 +32,13 @@ E = TypeVar("E", bound=Effect)
 
 @dataclass(frozen=True, eq=False)
 class RigidInertia:
-    """A rigid body: `mass` kg, `center` (3,) m of gravity, `inertia` (3, 3) kg m2 about it."""
+    """A rigid body.
+
+    Attributes:
+        mass: kg.
+        center: (3,) centre of gravity relative to CO, m, FRD.
+        inertia: (3, 3) about the centre of gravity, kg m2.
+    """
 
     mass: float
     center: Array
@@ -40,7 +46,7 @@ class RigidInertia:
 
     @staticmethod
     def of(M: Array) -> "RigidInertia":
-        """Of its inertia (6, 6) at CO (Fossen 2021, eq. 3.49)."""
+        """Take a rigid body apart, from its inertia matrix (6, 6) at CO (Fossen 2021, eq. 3.49)."""
         mass = float(M[0, 0])
         center = np.array([M[2, 4], M[0, 5], M[1, 3]]) * [-1.0, -1.0, -1.0] / mass
         S = cross_matrix(center)
@@ -49,18 +55,18 @@ class RigidInertia:
 
 @dataclass(frozen=True, eq=False)
 class Equation:
-    """What stands in the equation of motion of a model whose effects are all held."""
+    """Constants in the equation of motion of a model of whose effects a target can hold all."""
 
     model: Model
 
     @property
     def body(self) -> Body:
-        """The constants."""
+        """Constants of the body in SI, FRD at CO."""
         return self.model.body
 
     @cached_property
     def rigid(self) -> RigidInertia:
-        """The dry vehicle with what it carries."""
+        """Rigid-body inertia of the vehicle with its payload, without added mass."""
         return RigidInertia.of(self.body.M_RB)
 
     @property
@@ -75,7 +81,7 @@ class Equation:
 
     @cached_property
     def products(self) -> dict[str, float]:
-        """Coefficients of products of velocities under their SNAME names, as in vehicle files."""
+        """Coefficients of products of velocities by SNAME name (Yuv), as in vehicle files."""
         found: dict[str, float] = {}
         for flow in self._those(CrossFlow):
             found |= {name: found.get(name, 0.0) + c for name, c in flow.products.items()}
@@ -89,22 +95,22 @@ class Equation:
 
     @property
     def constant(self) -> Array:
-        """A wrench (6,) that is always there, N and N m."""
+        """Constant wrench (6,), N and N m, FRD."""
         return sum((e.values for e in self._those(ConstantWrench)), np.zeros(6))
 
     @property
     def friction(self) -> Array:
-        """Dry friction (6,): tau_i = -c_i tanh(nu_r,i / 0.01)."""
+        """Coefficients c (6,) of dry friction, N and N m: tau_i = -c_i tanh(nu_r,i / 0.01)."""
         return sum((e.values for e in self._those(DryFriction)), np.zeros(6))
 
     @property
     def names(self) -> list[str]:
-        """Of the thrusters, in the vehicle file's order."""
+        """Names of the n thrusters, in the vehicle file's order."""
         return [unit.name for unit in self.model.vehicle.thrusters.units]
 
     @property
     def columns(self) -> Array:
-        """Which command (n,), counted from 0, each thruster follows."""
+        """Position (n,) of the command that each thruster follows, counted from 0."""
         order = np.arange(self.model.thrust_path.thrusters.count)[None]
         for swapped in self._those(ThrusterOrder):
             order = swapped.thruster_command(order)
@@ -112,22 +118,22 @@ class Equation:
 
     @property
     def deadband(self) -> float:
-        """Commands up to this size do nothing."""
+        """Width of the deadband: commands up to this size, within [-1, 1], do nothing."""
         return max((e["width"] for e in self._those(ThrusterDeadband)), default=0.0)
 
     @property
     def curves(self) -> list[ForceCurve]:
-        """The force curve of each thruster (n); tables by voltage are those of the nominal one."""
+        """Force curve of each of the n thrusters; tables by voltage at the nominal voltage."""
         return [curve.at_nominal_voltage for curve in self.model.thrust_path.thrusters.curves]
 
     @property
     def exponent(self) -> float:
-        """F -> sign(F) F_max (|F| / F_max)^e, with F_max (2, n) of `full`."""
+        """Exponent e in F -> sign(F) F_max (|F| / F_max)^e, where F_max is `full`."""
         return float(np.prod([e["exponent"] for e in self._those(CurveExponent)]))
 
     @property
     def full(self) -> Array:
-        """Size of the force (2, n) at full command backwards and forwards, N."""
+        """Absolute force (2, n) at full command, backwards and forwards, N."""
         return np.abs(self.model.thrust_path.full_force)
 
     @property
@@ -140,24 +146,27 @@ class Equation:
 
     @property
     def backwards(self) -> float:
-        """Factor on forces that are then negative."""
+        """Factor on forces that are negative after curve and gain."""
         return float(np.prod([e["ratio"] for e in self._those(ThrustAsymmetry)]))
 
     @property
     def reach(self) -> Array:
-        """Length (n,) of the directions, which a vehicle file may round: 1 within a hundredth."""
+        """Norm (n,) of the thrusters' directions: 1 up to rounding in the vehicle file (0.01)."""
         thrusters = self.model.thrust_path.thrusters
         return np.asarray(np.linalg.norm(thrusters.directions[: thrusters.count], axis=1))
 
     @property
     def most(self) -> Array:
-        """What no thruster (n,) exceeds, up to 0.1 N: a curve may peak below full command."""
+        """Limit (n,) of each thruster's force, N, rounded up to 0.1 N.
+
+        All commands are looked at, since a curve may peak below full command.
+        """
         commands = np.tile(np.linspace(-1.0, 1.0, 201)[:, None], (1, len(self.names)))
         peak = np.abs(self.static_force(commands)).max(axis=0, initial=0.0) * self.reach
         return np.ceil(10.0 * (1.001 * peak)) / 10.0
 
     def static_force(self, command: Array) -> Array:
-        """Forces (m, n) in N of commands (m, n)."""
+        """Compute the steady forces (m, n), N, of commands (m, n) in [-1, 1]."""
         return self.model.thrust_path.static(command, np.zeros(len(command)), 1.0)
 
     def _those(self, kind: type[E]) -> list[E]:

@@ -1,4 +1,4 @@
-"""What of a model another simulator holds, and what is left out, by name."""
+"""Find which parts of a model another simulator can hold, and which are left out, by name."""
 
 from dataclasses import dataclass, replace
 from typing import Callable, Iterator
@@ -20,7 +20,7 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.file import HeldAxes
 from rovsim.dynamics.vehicle.thrusters import Thrusters
 
-# Constants of the equation of motion that every target has, and what a table of forces says.
+# Ids of effects that are constants of the equation of motion, or part of a table of thrust.
 RIGID = ("rigid_body", "payload", "net_buoyancy", "buoyancy_center", "thrusters")
 DAMPING = ("linear_damping", "quadratic_damping", "coupled_damping")
 INERTIA = ("added_mass", "added_mass_coupling")
@@ -50,10 +50,15 @@ Missing = Callable[[Model, Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class Left:
-    """Something that a target leaves out: the model before and after, and why.
+    """A part of a model that a target leaves out.
 
-    `missing` (model, states (n, 13)) -> (n, 6): a force, N and N m, that is left out beside what
-    tells the two models apart.
+    Attributes:
+        name: of the part.
+        why: it is left out.
+        before: the model with this part.
+        after: the model without it.
+        missing: function (model, states (n, 13)) -> wrench (n, 6), N and N m: what is left out in
+            addition to the difference of the two models; None: nothing.
     """
 
     name: str
@@ -64,28 +69,32 @@ class Left:
 
 
 def whole(effect: Effect) -> tuple[Effect, str]:
-    """Everything of an effect."""
+    """Keep the whole effect; as a `Hold`."""
     return effect, ""
 
 
 def nothing(effect: Effect) -> tuple[Effect, str]:
-    """Nothing of an effect; why follows from its kind."""
+    """Keep nothing of an effect: return it at values that do nothing, and why, by its kind."""
     gone = HeldAxes() if isinstance(effect, HeldAxes) else effect.neutral()
     return gone, next((why for kind, why in WHY if isinstance(effect, kind)), "it has no such term")
 
 
 class Fixed(Thrusters):
-    """Thrusters that stay at the angle zero, whatever they are told."""
+    """Thrusters that stay at the angle zero, whatever angles are commanded."""
 
     def resolved(
         self, force: Array, cosine: Array | None = None, sine: Array | None = None
     ) -> Array:
-        """All along the direction of the angle zero."""
+        """Resolve forces along the directions of the angle zero."""
         return super().resolved(force)
 
 
 def unpowered(thrusters: Thrusters) -> tuple[Thrusters, str]:
-    """Thrusters of a target that knows no battery: they push as at the nominal voltage."""
+    """Convert thrusters for a target without a battery: thrust is that at the nominal voltage.
+
+    Returns:
+        The thrusters, and what is left out; empty where thrust does not depend on voltage.
+    """
     tables = [curve.tables for curve in thrusters.curves if curve.tables is not None]
     several = [one for one in tables if len(one.volts) > 1]
     if not several:
@@ -101,7 +110,11 @@ def unpowered(thrusters: Thrusters) -> tuple[Thrusters, str]:
 
 
 def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
-    """Thrusters of a target that knows no battery, and in which none turns."""
+    """Convert thrusters for a target without a battery and without azimuth thrusters.
+
+    Returns:
+        The thrusters, and what is left out; empty where that is nothing.
+    """
     held, why = unpowered(thrusters)
     if not thrusters.turning.any():
         return held, why
@@ -110,9 +123,14 @@ def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
 
 
 def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
-    """What a target leaves out of a model, one after the other; the last `after` is held whole.
+    """List what a target leaves out of a model, one part after the other.
 
-    Effects stay where they are, at values that change nothing, so that one engine serves all.
+    The target can hold the last `after` as a whole. Effects that are left out stay in the model at
+    values that do nothing, so that one compiled engine serves all these models.
+
+    Args:
+        model: that is exported.
+        hold: returns what the target can hold of an effect, and why not all; empty: it is all.
     """
     effects = list(model.effects)
     for k, effect in enumerate(model.effects):
@@ -132,5 +150,5 @@ def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
 
 
 def acts(effect: Effect) -> bool:
-    """Whether an effect is more than its defaults, which change nothing."""
+    """Whether an effect has other values than its defaults, which do nothing."""
     return not effect.listed or bool(effect.given())

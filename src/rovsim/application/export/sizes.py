@@ -1,7 +1,7 @@
-"""How large a force is that a target leaves out: over the runs of a campaign, or a typical flight.
+"""Measure how large a force is that a target leaves out, over recorded runs or a typical flight.
 
-The force is M (nu_dot - nu_dot'), with the accelerations of the model before and after at the same
-states and commands: what would have to push for the poorer model to accelerate alike.
+The force is M (nu_dot - nu_dot'), with the accelerations of the model before and after a part is
+left out, at the same states and commands: with this force added, both would accelerate alike.
 """
 
 from dataclasses import dataclass, replace
@@ -35,7 +35,13 @@ ROOM = 30.0  # m each way, where the vehicle does not stay in the tank
 
 @dataclass(frozen=True)
 class Sized:
-    """What is left out, why, and the RMS (6,) of its force by axis, N and N m."""
+    """A part of a model that is left out, and the size of its force.
+
+    Attributes:
+        name: of the part.
+        why: it is left out.
+        rms: (6,) of its force by axis, N and N m, FRD.
+    """
 
     name: str
     why: str
@@ -43,26 +49,31 @@ class Sized:
 
     @property
     def acts(self) -> bool:
-        """Whether it pushed at all."""
+        """Whether its force was ever different from zero."""
         return any(self.rms)
 
 
 def size_all(left: Sequence[Left], motions: Sequence[Motion]) -> list[Sized]:
-    """Each of them with its size over some true motions."""
+    """Measure the force of each part over some true motions."""
     return [Sized(one.name, one.why, _rms(one, motions)) for one in left]
 
 
 def flights(model: Model, motions: Iterable[Motion] | None) -> list[Motion]:
-    """True motions behind measured ones, as the model says they were; without any, a flight."""
+    """Return true motions: measured ones corrected by the model's view of the motion capture.
+
+    Args:
+        model: that is exported.
+        motions: as measured; None: a typical flight is simulated instead.
+    """
     if motions is None:
         return [typical_flight(model)]
     return [undo_mocap_view(model, motion) for motion in motions]
 
 
 def typical_flight(model: Model) -> Motion:
-    """A minute in which a pilot flies a model about, in the default tank or in open water.
+    """Simulate a minute in which a pilot flies a model about, in the default tank or open water.
 
-    Its own effects act, its residual does not. What is logged are commands of the thrusters, or
+    The model's effects act, its residual does not. The commands of the thrusters are logged, or
     demands per axis where an effect acts on these.
     """
     demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in model.effects)
@@ -83,7 +94,7 @@ def typical_flight(model: Model) -> Motion:
 
 
 def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
-    """A tank that suits a vehicle, in which nothing pushes that no model knows."""
+    """Return a tank that suits a vehicle, without turbulence, which no model describes."""
     suits = SUITABLE["surfaces"] if vehicle.surfaces else {}
     suits = SUITABLE["waterplane"] if vehicle.floats else suits
     box = Box(**suits["tank"]) if suits else Box()
@@ -119,7 +130,7 @@ def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
 
 
 def _force(left: Left, motion: Motion) -> Array:
-    """The force (n, 6) that is left out, at the states of a motion."""
+    """Compute the wrench (n, 6), N and N m, that is left out at the states of a motion."""
     both = (left.before, left.after)
     before, after = (accelerate_as_logged(model, motion, ReplaySettings()) for model in both)
     force = (before - after) @ left.before.M.T

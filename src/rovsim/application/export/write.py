@@ -1,4 +1,4 @@
-"""A model written for another simulator, with what that simulator cannot hold."""
+"""Write a model for another simulator, and say what that simulator cannot hold."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,17 +20,26 @@ WRITTEN = "written by rovsim for"  # stands in every file
 
 @dataclass(frozen=True, eq=False)
 class Export:
-    """A model as a target holds it: the file's text, and what is left out with its size."""
+    """A model as a target can hold it.
+
+    Attributes:
+        text: of the file.
+        left: parts that are left out, with the sizes of their forces.
+    """
 
     text: str
     left: tuple[Sized, ...]
 
 
 def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
-    """What a target holds of a model, and all that it leaves out.
+    """Reduce a model to what a target can hold.
+
+    Returns:
+        That model, and all parts that are left out.
 
     Raises:
-        BadInput: a model that does not move by forces, or that without held axes cannot exist.
+        BadInput: the model does not react to forces, or lacks inertia along axes that are held in
+            the model but free in the target.
     """
     if model.inert:
         raise BadInput(
@@ -55,14 +64,15 @@ def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
 def export_model(
     model: Model, target: Target, flights: Callable[[], Sequence[Motion]], over: str, origin: str
 ) -> Export:
-    """The file of a model, and what it leaves out.
+    """Convert a model to a target's file, and measure what is left out.
 
     Args:
         model: what is written.
         target: the simulator it is written for.
-        flights: true motions over which forces are sized; asked for where something is left out.
-        over: what they are, for the reader.
-        origin: what the model is made of.
+        flights: returns true motions over which forces are measured; called only if something is
+            left out.
+        over: description of these motions, for the reader.
+        origin: description of what the model is made of.
 
     Raises:
         BadInput: the target cannot hold such a model at all.
@@ -75,7 +85,7 @@ def export_model(
 
 
 def model_parts(model: Model) -> str:
-    """What a model is made of, in a line."""
+    """Describe in a line what a model is made of."""
     parts = [model.vehicle.name, *(repr(effect) for effect in model.added)]
     return " + ".join(parts + (["a learned residual"] if model.residual else []))
 
@@ -84,14 +94,14 @@ def write_export(export: Export, out: Path) -> None:
     """Write the file, whole or not at all.
 
     Raises:
-        BadInput: another file of the user's is there.
+        BadInput: `out` is a file that rovsim did not write.
     """
     require_replaceable(out, WRITTEN)
     write_text(out, export.text)
 
 
 def _listed(sized: Sequence[Sized], over: str) -> list[str]:
-    """What is left out, as lines of a comment."""
+    """List what is left out, as lines of a comment."""
     if not sized:
         return ["Nothing of the model is left out."]
     units = f"{', '.join(AXES[:3])} in N, {', '.join(AXES[3:])} in N m"

@@ -1,4 +1,4 @@
-"""What targets that are written as XML have in common: numbers, comments, tables of thrust."""
+"""Write XML for several targets: documents, comments, numbers, tables of thrust."""
 
 import re
 from typing import Sequence
@@ -10,13 +10,13 @@ from numpy import ndarray as Array
 from rovsim.application.export.equation import Equation
 from rovsim.core.errors import one_line
 
-# what no document of XML 1.0 holds (sec. 2.2)
+# characters that no document of XML 1.0 may hold (sec. 2.2)
 ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 TABLE = np.linspace(-1.0, 1.0, 11)  # commands
 
 
 def document(root: ET.Element) -> str:
-    """The file of a tree, indented."""
+    """Return the text of an XML file, indented."""
     for tag in root.iter():
         tag.text, tag.tail = _legal(tag.text), _legal(tag.tail)
         tag.attrib.update({key: _legal(value) or "" for key, value in tag.attrib.items()})
@@ -25,29 +25,29 @@ def document(root: ET.Element) -> str:
 
 
 def comment(parent: ET.Element, lines: Sequence[str]) -> None:
-    """Put in lines as they may stand in XML, where two hyphens end a comment."""
+    """Add lines as a comment, with spaces between hyphens, since two hyphens would end it."""
     inside = "\n".join(f"  {one_line(line)}" for line in lines)
     inside = re.sub("-(?=-)", "- ", inside)
     parent.append(ET.Comment(f"\n{inside}\n"))
 
 
 def _legal(text: str | None) -> str | None:
-    """A text as XML may hold it: what it cannot hold, even escaped, as it is typed in Python."""
+    """Replace characters that XML cannot hold, even escaped, by their Python escapes."""
     return text and ILLEGAL.sub(lambda found: repr(found[0])[1:-1], text)
 
 
 def numbers(values: Sequence[float] | Array) -> str:
-    """Numbers with spaces between them."""
+    """Format numbers with spaces between them."""
     return " ".join(number(v) for v in values)
 
 
 def number(value: float) -> str:
-    """A number to 15 digits."""
+    """Format a number to 15 significant digits."""
     return f"{float(value) + 0.0:.15g}"
 
 
 def force_tables(equation: Equation) -> list[str]:
-    """Newtons of commands, for whoever sends newtons to a simulator that takes no commands."""
+    """List each thruster's force in N by command, for simulators whose thrusters take newtons."""
     count = len(equation.names)
     if not count:
         return []

@@ -1,4 +1,4 @@
-"""How surely models predict: bands of their replays, and what of the test runs lies inside."""
+"""Uncertainty bands of replays, and how much of the test runs lies inside them."""
 
 from functools import partial
 from typing import Mapping, Sequence
@@ -20,9 +20,12 @@ from rovsim.simulation.settings import SimulationSettings
 def bands_when_asked(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> dict[str, Remade[Band | None]]:
-    """Bands of the replays that figures show, of the models whose uncertainty is known.
+    """Prepare uncertainty bands of the replays that figures show, in windows of 2 s.
 
-    Made when they are asked for; all models share what is kept of them.
+    A band is computed when it is asked for; those asked for last are kept, for all models together.
+
+    Returns:
+        Bands by model and run, of models whose uncertainty is known.
     """
     recent = Recent[Band | None]()
     sure = [model for model in models if model.uncertainty is not None]
@@ -38,9 +41,10 @@ def bands_when_asked(
 def cover_test_runs(
     models: Sequence[Model], data: MeasuredCampaign, settings: SimulationSettings
 ) -> Bands | None:
-    """What the bands of models hold of the test runs, in windows of 2 s and longer.
+    """Measure how much of the test runs lies in the models' bands, in windows of 2 s and longer.
 
-    None where no model has bands.
+    Returns:
+        None where no model has bands.
     """
     runs = [run for run in data.runs.of("test") if run in data.motions]
     asked = [

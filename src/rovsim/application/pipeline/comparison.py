@@ -1,4 +1,4 @@
-"""Replays, scores, conditions of the error and forces of some models, together."""
+"""Compare models: replays, scores, conditions of their errors, and forces."""
 
 from typing import Sequence
 
@@ -26,9 +26,9 @@ DRAWN = 12  # runs: a report of fifty figures can still be read
 def compare(
     data: MeasuredCampaign, models: Sequence[Model], settings: SimulationSettings
 ) -> ReportData:
-    """Replays, scores and findings of all models, forces of the last.
+    """Replay and score all models on all runs; balance the forces of the last model.
 
-    Once over the runs, one after the other: what memory holds does not grow with their number.
+    Runs are taken once, one after the other, so that memory does not grow with their number.
     """
     scored = Scored((model.name for model in models), settings.replay.longest)
     searches = _searches(data, models, settings)
@@ -62,7 +62,13 @@ def compare(
 
 
 def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tuple[str, ...]:
-    """Runs that have figures: all, or those on which the model errs most, in their order."""
+    """Choose runs to draw: all, or the `DRAWN` runs with the largest errors, in their order.
+
+    Args:
+        comparison: errors of all models.
+        model: whose errors count, relative to the median over runs, averaged over axes.
+        runs: to choose from.
+    """
     if len(runs) <= DRAWN:
         return tuple(runs)
     found = comparison.models[model].runs

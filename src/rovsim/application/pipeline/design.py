@@ -1,4 +1,4 @@
-"""The next flight: planned, and as it is reported."""
+"""Plan the next flight, and write its commands, picture and instructions."""
 
 import textwrap
 from dataclasses import dataclass
@@ -32,7 +32,13 @@ UNITS = {"pwm": "µs", "normalized": "−1 to 1", "demand": "−1 to 1", "wrench
 
 @dataclass(frozen=True, eq=False)
 class Designed:
-    """What is written: the result, the log, the picture."""
+    """A planned flight, as it is written.
+
+    Attributes:
+        experiment: the result, without the digest of the log.
+        log: text of the file of commands, in the format of the campaign's own logs.
+        picture: what the figure shows.
+    """
 
     experiment: Experiment
     log: str
@@ -44,8 +50,15 @@ def design(
 ) -> Designed:
     """Plan the next flight of a campaign.
 
+    Args:
+        data: the campaign as measured.
+        model: of physics, as it is known so far.
+        question: what the flight should tell.
+        catalogue: all effects.
+
     Raises:
-        BadInput: a model that is not of physics, a question that makes no sense, or no flight.
+        BadInput: the model has a trained residual or no physics, the question makes no sense, or
+            there is no such flight.
     """
     require_physics(model, "design with")
     _refuse(question)
@@ -85,7 +98,7 @@ def write_flight(out: Path, found: Designed) -> None:
 
 
 def format_instructions(instructions: Sequence[str]) -> str:
-    """Numbered steps, and under them what belongs to each, as a text."""
+    """Format instructions as a text of numbered steps, each with its parts below."""
     lines: list[str] = []
     for number, (step, parts) in enumerate(list_steps(instructions), 1):
         lines.append(_fill(step, f"{number}. "))

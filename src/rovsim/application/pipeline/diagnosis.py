@@ -1,4 +1,4 @@
-"""Which effects a model lacks."""
+"""Diagnose which effects a model lacks."""
 
 from dataclasses import replace
 from typing import Callable, Mapping
@@ -21,11 +21,16 @@ def diagnose(
     recordings: Mapping[str, str],
     failing: Callable[[ErrorConditions], None] = lambda where: None,
 ) -> Diagnosed:
-    """Diagnose a model of physics: on the train runs, its worth on the test runs.
+    """Diagnose a model of physics on the train runs, and measure the improvement on the test runs.
 
-    `recordings`: digests of the files that the runs were read from (`digest_recordings`), which the
-    diagnosis keeps. `failing` is told under which conditions the base fails, while the diagnosis
-    goes on.
+    Args:
+        runs: of the campaign.
+        base: the model that may lack effects.
+        settings: how it is diagnosed.
+        catalogue: all effects.
+        recordings: digests of the files that the runs were read from (`digest_recordings`), which
+            the diagnosis keeps.
+        failing: called with the conditions under which the base fails, as soon as they are known.
 
     Raises:
         BadInput: the model has a trained residual, or no physics.

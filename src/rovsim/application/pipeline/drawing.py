@@ -1,4 +1,4 @@
-"""Figures of a study, from what its steps wrote."""
+"""Draw the figures of a study from files that its steps wrote."""
 
 from pathlib import Path
 from typing import Mapping, Sequence
@@ -13,7 +13,14 @@ from rovsim.simulation.prediction import Replay
 def draw_study(
     figure: str, contents: Mapping[str, Path], quality: Mapping[str, Path], out: Path
 ) -> None:
-    """Draw a figure of all runs into `out`, as PNG and PDF; files by the name of their content."""
+    """Draw a figure of all runs.
+
+    Args:
+        figure: its name.
+        contents: files by the name of their content.
+        quality: reports on quality, by run.
+        out: path of the figure; PNG and PDF are written under this name.
+    """
     save(ReportData.read(contents, quality).draw(figure), out.parent, out.stem)
 
 
@@ -24,7 +31,15 @@ def draw_run(
     budgets: Sequence[ForceBudget],
     out: Path,
 ) -> None:
-    """Draw a figure of one run into `out`, as PNG and PDF."""
+    """Draw a figure of one run.
+
+    Args:
+        figure: its name.
+        motion: the run as measured.
+        replays: of this run by models.
+        budgets: of forces in this run.
+        out: path of the figure; PNG and PDF are written under this name.
+    """
     run = motion.run.id
     data = ReportData(
         motions={run: motion},

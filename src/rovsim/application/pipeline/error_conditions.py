@@ -1,4 +1,4 @@
-"""Under which conditions a model fails."""
+"""Find the conditions under which a model fails."""
 
 from typing import Sequence
 
@@ -14,7 +14,7 @@ from rovsim.simulation.settings import SimulationSettings
 def find_error_conditions(
     model: Model, motions: Sequence[Motion], settings: SimulationSettings
 ) -> ErrorConditions:
-    """What the errors of a model vary with, on the runs it may be judged on."""
+    """Find conditions with which the errors of a model vary, over some runs."""
     splits = [motion.run.split for motion in motions]
     search = ConditionSearch(model, splits, settings)
     for motion in counted(motions, "searching"):

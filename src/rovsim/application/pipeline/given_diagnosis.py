@@ -1,4 +1,4 @@
-"""A diagnosis that a user gives: of the open campaign, wherever that lies now."""
+"""Read a diagnosis file that a user gives, if it is of the open campaign's recordings."""
 
 from pathlib import Path
 from typing import Mapping
@@ -11,10 +11,10 @@ from rovsim.results.diagnosis import Diagnosis
 
 
 def read_given_diagnosis(path: Path, campaign: Campaign) -> Diagnosis:
-    """A diagnosis of the recordings of a campaign.
+    """Read a diagnosis, and check that it is of the recordings of a campaign.
 
-    Their contents count, not their names and folders. Files of earlier versions do not say which
-    recordings they are of, and are taken as they are.
+    Recordings are compared by content, not by name or folder. Diagnoses of earlier versions do not
+    say which recordings they are of, and are not checked.
 
     Raises:
         BadInput: the file is missing or damaged, or it is a diagnosis of other recordings.

@@ -1,4 +1,4 @@
-"""A held-out run: scored with models that never saw it, beside published errors, with pitfalls."""
+"""Score held-out runs with models that never saw them; compare with published errors; pitfalls."""
 
 from pathlib import Path
 from typing import Mapping, Sequence
@@ -21,7 +21,7 @@ from rovsim.simulation.settings import SimulationSettings
 def score_held_out(
     models: Sequence[Model], motion: Motion, settings: SimulationSettings
 ) -> Comparison:
-    """Scores of one run."""
+    """Replay and score one held-out run."""
     return score_models(models, {motion.run.id: motion}, settings).comparison
 
 
@@ -58,7 +58,14 @@ def measure_pitfalls_by_run(
     learners: Mapping[str, LearnerSettings],
     settings: SimulationSettings,
 ) -> Pitfalls:
-    """What mistakes cost; `models`: the effects found while that run was held out."""
+    """Measure on each held-out run what common mistakes cost.
+
+    Args:
+        motions: all runs.
+        models: for each run, the model with the effects found while that run was held out.
+        learners: settings, by kind of residual.
+        settings: how runs are cleaned and replayed.
+    """
     runs = {
         test.run.id: measure_pitfalls(
             model,

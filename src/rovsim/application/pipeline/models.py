@@ -1,4 +1,4 @@
-"""Models by name or file, and effects added to one of them."""
+"""Load models by name or file, and add the effects of a diagnosis to one of them."""
 
 from pathlib import Path
 from typing import Mapping, Sequence
@@ -16,13 +16,18 @@ from rovsim.results.diagnosis import Diagnosis
 
 
 def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> list[Model]:
-    """The models that names and files stand for, each once.
+    """Load models, each once.
 
-    A model is called by its file's stem; files that share one, or have a built-in model's, are
-    called `folder-stem`, with as many folders as it takes.
+    A model is named after its file's stem. Where files share a stem, or have a built-in model's
+    name, they become `folder-stem`, with as many folders as necessary.
+
+    Args:
+        specs: names of built-in models, or model files.
+        vehicle: of built-in models.
+        catalogue: all effects.
 
     Raises:
-        BadInput: one cannot be loaded, or two are of the same file.
+        BadInput: a model cannot be loaded, or two are of the same file.
     """
     given = list(dict.fromkeys(as_list(specs)))
     loaded = [load_model(spec, vehicle, catalogue) for spec in given]
@@ -31,7 +36,7 @@ def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalog
 
 
 def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
-    """Different names of models: those that are taken, with the folders of their files in front.
+    """Make names of models different by putting the folders of their files in front.
 
     Args:
         names: of the models, a file's stem or that of a built-in model.
@@ -61,16 +66,16 @@ def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
 
 
 def _with_folders(name: str, file: Path, depth: int) -> str:
-    """The name with the last `depth` folders of its file in front, as far as there are some."""
+    """Put the last `depth` folders of a file in front of a name, or fewer if there are fewer."""
     folders = [part for part in file.parent.parts[1:][-depth:] if is_name(part)]
     return "-".join([*folders, name])
 
 
 def load_one_model(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalogue) -> Model:
-    """The one model that was named.
+    """Load the one model that was named.
 
     Raises:
-        BadInput: there are several, or it cannot be loaded.
+        BadInput: several were named, or it cannot be loaded.
     """
     loaded = load_models(specs, vehicle, catalogue)
     if len(loaded) == 1:
@@ -84,7 +89,11 @@ def load_one_model(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Cata
 
 
 def require_physics(model: Model, doing: str) -> None:
-    """Refuse a model that is not of physics alone; `doing` says what cannot be done with it.
+    """Refuse a model that is not of physics alone.
+
+    Args:
+        model: that is checked.
+        doing: what cannot be done with it, such as "diagnose", for the message.
 
     Raises:
         BadInput: it has a trained residual, or no physics.
@@ -106,7 +115,7 @@ def write_with_effects(
     out: Path,
     story: Mapping[str, object],
 ) -> apply.Added:
-    """Write `base` with effects that a diagnosis fitted as a model file.
+    """Write a model file: a base with effects that a diagnosis fitted.
 
     Args:
         diagnosis: its file.
@@ -114,7 +123,7 @@ def write_with_effects(
         effects: ids; None: those that the diagnosis selected.
         catalogue: all effects.
         out: the model file.
-        story: what else its provenance tells.
+        story: further entries of its provenance.
 
     Raises:
         BadInput: no such diagnosis, effect or model, or `out` is another file of the user's.

@@ -1,4 +1,4 @@
-"""Tables and the report of a study, from what its steps wrote."""
+"""Write the tables and the report of a study from files that its steps wrote."""
 
 from pathlib import Path
 from typing import Mapping, Sequence
@@ -16,7 +16,7 @@ QUANTITIES = ("velocity_rmse", "velocity_mae", "acceleration_rmse")
 
 
 def write_tables(comparison: Path, ladder: Path, folder: Path) -> None:
-    """The ladder and the errors on the test runs, as LaTeX and CSV."""
+    """Write the ladder and the errors on the test runs into a folder, as LaTeX and CSV."""
     tabulate_ladder(Ladder.read(ladder)).write(folder, "ladder")
     for quantity in QUANTITIES:
         table = tabulate_errors(Comparison.read(comparison), quantity=quantity)
@@ -32,12 +32,22 @@ def write_report(
     catalogue: Catalogue,
     out: Path,
 ) -> None:
-    """Everything on one page; files by the name of their content, reports by run."""
+    """Write the report of a study: everything on one page.
+
+    Args:
+        campaign: its name.
+        contents: files by the name of their content.
+        quality: reports on quality, by run.
+        figures: files of the pictures.
+        provenance: of the study.
+        catalogue: all effects.
+        out: the page.
+    """
     data, pictures = ReportData.read(contents, quality), [_read_picture(path) for path in figures]
     report.write(out, report.Report(campaign, data, pictures, provenance, catalogue))
 
 
 def _read_picture(path: Path) -> Picture:
-    """A figure's file is called by the figure, or by figure-run."""
+    """Read a figure's file, which is named after the figure, or `figure-run`."""
     name, _, run = (path.stem, "", "") if path.stem in kinds() else path.stem.partition("-")
     return Picture.read(path, name, describe(name, run), run)

@@ -1,4 +1,4 @@
-"""Raw exports in, recordings out; then what speaks for and against them."""
+"""Read raw exports as recordings, and report on their quality."""
 
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.dynamics.vehicle.units import doubt_units
@@ -13,15 +13,17 @@ from rovsim.simulation.command_columns import mark_angles
 
 
 def load_campaign_vehicle(campaign: Campaign) -> Vehicle:
-    """The vehicle a campaign was recorded with."""
+    """Load the vehicle that a campaign was recorded with."""
     return load_vehicle(campaign.vehicle, named_in=campaign.file)
 
 
 def read_recording(campaign: Campaign, run: str) -> tuple[Recording, Anomalies]:
-    """One raw export in NED and FRD, nothing filtered, and what was wrong with its files.
+    """Read the raw export of one run, and what was wrong with its files.
+
+    The recording is in NED and FRD; nothing is filtered.
 
     Raises:
-        BadInput: it cannot be read.
+        BadInput: the run cannot be read.
     """
     return read_run(mark_angles(campaign, load_campaign_vehicle(campaign)), run)
 
@@ -29,7 +31,12 @@ def read_recording(campaign: Campaign, run: str) -> tuple[Recording, Anomalies]:
 def judge_recording(
     campaign: Campaign, recording: Recording, anomalies: Anomalies, outliers: Outliers
 ) -> Quality:
-    """How good a recording is; of one that can be used also what speaks against its campaign."""
+    """Report on the quality of a recording.
+
+    For one that can be used, the report also tells of numbers of the vehicle file that may be in
+    another unit, of a motion that does not go with its commands, and of train runs that a test run
+    repeats.
+    """
     quality = report_quality(recording, anomalies, outliers)
     if quality.unusable is not None:
         return quality

@@ -1,4 +1,4 @@
-"""A whole campaign in; motions, the poses before the filter and quality reports out."""
+"""Read a whole campaign: motions, poses before the filter, and reports on quality."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,9 +31,16 @@ from rovsim.results.quality import Quality
 
 @dataclass(frozen=True, eq=False)
 class MeasuredCampaign:
-    """A campaign as measured: motions by run, their poses before the filter, quality reports.
+    """A campaign as measured.
 
     Runs beyond what memory should hold are read again when they are asked for.
+
+    Attributes:
+        campaign: as its file describes it.
+        vehicle: that it was recorded with.
+        motions: of usable runs, by run.
+        quality: reports, by run, of all runs.
+        stages: poses of usable runs before the filter, by run.
     """
 
     campaign: Campaign
@@ -50,10 +57,10 @@ class MeasuredCampaign:
 
 
 def open_campaign(folder: str | None) -> Campaign:
-    """The campaign in a folder.
+    """Load the campaign in a folder.
 
     Raises:
-        BadInput: none was given, or it cannot be read.
+        BadInput: no folder was given, or the campaign cannot be read.
     """
     if folder is None:
         raise BadInput(
@@ -66,7 +73,7 @@ def open_campaign(folder: str | None) -> Campaign:
 
 
 def derive_motion(poses: Stage, quality: Quality, settings: SignalSettings) -> Motion:
-    """Velocities and accelerations of filtered poses; an unusable run keeps none."""
+    """Derive velocities and accelerations of filtered poses; no row of an unusable run counts."""
     motion = differentiated(poses, settings)
     if quality.unusable:
         return replace(motion, usable=np.zeros_like(motion.usable))
@@ -78,8 +85,13 @@ def measure(
 ) -> MeasuredCampaign:
     """Read, check and clean all usable runs of a campaign.
 
+    Args:
+        campaign: to be read.
+        settings: of the signal chain.
+        even_unusable: whether a campaign without a usable run is returned, too.
+
     Raises:
-        BadInput: it cannot be read, or no run can be used, unless that is a result.
+        BadInput: the campaign cannot be read, or no run can be used.
     """
     quality: dict[str, Quality] = {}
 
@@ -106,7 +118,7 @@ def refuse_unusable(data: MeasuredCampaign) -> None:
     """Refuse a campaign without a run that can be used.
 
     Raises:
-        BadInput: says why each of them cannot.
+        BadInput: there is none; the message says why each run cannot be used.
     """
     if data.motions:
         return

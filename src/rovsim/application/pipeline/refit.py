@@ -1,4 +1,4 @@
-"""The nominal model with its own parameters fitted to the train runs."""
+"""Refit the nominal model's own parameters to the train runs."""
 
 from pathlib import Path
 
@@ -14,9 +14,9 @@ from rovsim.measurement.runs import Runs
 def refit(
     runs: Runs, base: Model, settings: DiagnosisSettings, catalogue: Catalogue, out: Path
 ) -> Model:
-    """Refit a model's own parameters on the train runs, and write it as a model file.
+    """Refit a model's own parameters to the train runs, and write it as a model file.
 
-    It looks at those parts of the train runs that the diagnosis looks at.
+    The fit uses the same parts of the train runs as the diagnosis.
     """
     most = settings.search.most_seconds
     train = prepare_train(runs, settings.replay, catalogue, base.body.free, most).runs

@@ -1,4 +1,4 @@
-"""Models beside the measurement: replayed with the logged commands, and scored."""
+"""Replay models with the logged commands, and score them against the measurement."""
 
 from typing import Iterator, Mapping, Sequence
 
@@ -18,9 +18,13 @@ Replays = Mapping[str, Mapping[str, Replay]]  # by model and run
 def replay_when_asked(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> dict[str, Remade[Replay]]:
-    """Replays of every run by every model, in windows of 2 s and open loop, as figures show them.
+    """Prepare replays as figures show them, in windows of 2 s and open loop.
 
-    Made when they are asked for; all models share what is kept of them.
+    A replay is computed when it is asked for; those asked for last are kept, for all models
+    together.
+
+    Returns:
+        Replays by model and run.
     """
     how, recent = settings.only(WINDOW), Recent[Replay]()
 
@@ -33,7 +37,7 @@ def replay_when_asked(
 def score_models(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> Scored:
-    """Every run replayed with every model, and scored."""
+    """Replay every run with every model, and score it."""
     scored = Scored((model.name for model in models), settings.replay.longest)
     for run in counted(list(motions), "replaying"):
         for model in models:
@@ -44,7 +48,15 @@ def score_models(
 def score_run(
     scored: Scored, model: Model, motion: Motion, settings: SimulationSettings, *kept: str
 ) -> Replay:
-    """Replay a run and take it in, horizon by horizon; what comes back are those to be `kept`."""
+    """Replay a run horizon by horizon, and add each prediction to the scores.
+
+    Args:
+        scored: scores so far; changed in place.
+        model: that is replayed.
+        motion: the run as measured.
+        settings: how it is replayed.
+        kept: names of horizons to return; the others are dropped to save memory.
+    """
     found = Replay(model.name, motion.run, motion.time, {})
 
     def horizons() -> Iterator[tuple[str, Prediction]]:

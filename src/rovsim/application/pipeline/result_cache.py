@@ -1,4 +1,4 @@
-"""Diagnoses and flights that are kept: found again where nothing changed that they depend on."""
+"""Where diagnoses and flights are kept, to be found again if nothing they depend on changed."""
 
 import hashlib
 import json
@@ -17,14 +17,17 @@ CODE, PLAN = "rovsim.diagnosis.of_campaign", "rovsim.design.plan"  # with all th
 
 
 def kept_folder(out: str | None, campaign: Campaign) -> Path:
-    """Where the workbench and notebooks keep what they compute of a campaign."""
+    """Return the folder in which the workbench and notebooks keep results of a campaign."""
     return Path(out or f"results/{campaign.name}/ui")
 
 
 def kept_diagnosis(
     folder: Path, campaign: Campaign, settings: DiagnosisSettings, base: Model, catalogue: Catalogue
 ) -> Path:
-    """Of these recordings, settings, base and code: an outdated one is never found."""
+    """Return the file of a diagnosis of these recordings, settings, base, effects and code.
+
+    If one of them changes, the file is another, so that an outdated diagnosis is never found.
+    """
     key = _digest(campaign, settings, base, digest(CODE, described=catalogue.files))
     return folder / key / "diagnosis.json"
 
@@ -32,7 +35,7 @@ def kept_diagnosis(
 def kept_flight(
     folder: Path, campaign: Campaign, question: Question, model: Model, catalogue: Catalogue
 ) -> Path:
-    """Folder of a planned flight, of these recordings, this question, model and code."""
+    """Return the folder of a flight planned for these recordings, question, model and code."""
     key = _digest(campaign, question, model, digest(PLAN, described=catalogue.files))
     return folder / "flights" / key
 
@@ -42,6 +45,6 @@ def _digest(campaign: Campaign, settings: Section, model: Model, code: str) -> s
     content.update(json.dumps(digest_files(campaign)).encode())
     content.update(settings.model_dump_json().encode())
     content.update(json.dumps(describe_model(model), sort_keys=True).encode())
-    content.update(model.vehicle.model_dump_json().encode())  # a model may only name it
+    content.update(model.vehicle.model_dump_json().encode())  # a model may hold its name only
     content.update(code.encode())
     return content.hexdigest()[:12]

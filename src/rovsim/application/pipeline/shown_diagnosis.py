@@ -1,4 +1,4 @@
-"""A diagnosis as figures, as a page, and as an MLflow run."""
+"""Show a diagnosis as figures, as a page, and as an MLflow run."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ from rovsim.reporting.report_data import ReportData
 
 @dataclass(frozen=True, eq=False)
 class ShownDiagnosis:
-    """A diagnosis, and what is said of where it comes from; another process may show it.
+    """A diagnosis with all that is needed to show it; can be sent to another process.
 
     Attributes:
         out: folder that has the `diagnosis.json`.
@@ -36,24 +36,28 @@ class ShownDiagnosis:
     params: Mapping[str, Any]
 
     def show(self, drawn: Sequence[Drawn], tracking: TrackingSettings | None) -> str:
-        """Write the page, and log everything to where there is MLflow (None: nowhere).
+        """Write figures and page, and log everything to MLflow; no progress is shown.
 
-        Nothing is said of its progress. Returns why nothing could be logged, or nothing: the
-        diagnosis stands without.
+        Args:
+            drawn: figures that are drawn already.
+            tracking: where MLflow is; None: nothing is logged.
+
+        Returns:
+            Why it could not be logged, which does not invalidate the diagnosis; else empty.
         """
         with heard_by():
             files = self.write(drawn)
             return self.track(tracking, files) if tracking else ""
 
     def write(self, drawn: Sequence[Drawn]) -> list[Path]:
-        """Draw what is not yet `drawn`, and write the page; returns all files."""
-        from rovsim.reporting.html.folder import present  # who only hands this on draws nothing
+        """Draw figures that are not yet `drawn`, and write the page; return all files."""
+        from rovsim.reporting.html.folder import present  # slow, and not needed to send this object
 
         catalogue = load_catalogue(self.effect_files)
         return present(self.out, self.campaign, self.data, self.provenance, catalogue, drawn=drawn)
 
     def track(self, tracking: TrackingSettings, files: Sequence[Path]) -> str:
-        """Log the diagnosis with these files; returns why it could not be, or nothing."""
+        """Log the diagnosis with these files; return why that failed, empty if it did not."""
         found = self.data.diagnosis
         assert found is not None
         kept = [self.out / "diagnosis.json", *files]

@@ -1,4 +1,4 @@
-"""The study's scores, ladder and growth of errors, brought together."""
+"""Bring together the scores, the ladder and the growth of errors of a study."""
 
 from pathlib import Path
 from typing import Sequence
@@ -25,10 +25,10 @@ def summarize(
     Args:
         motions: all runs.
         replays: by model, in the order of the ladder.
-        scores: of single models.
-        searches: of single models.
-        diagnosis: its effects stand in the ladder one by one.
-        out: the folder.
+        scores: of each model.
+        searches: conditions under which each model fails.
+        diagnosis: whose effects are added to the ladder one by one.
+        out: folder that is written to.
     """
     scored = Scored.of(motions, replays)
     ladder = Ladder.with_diagnosis(scored.steps, diagnosis.ladder.steps)

@@ -1,4 +1,4 @@
-"""A learned residual on top of a model, and how long its predictions take."""
+"""Train a residual on top of a model, and time its predictions."""
 
 from pathlib import Path
 from typing import Iterable, Mapping, Sequence
@@ -26,7 +26,7 @@ def train(
     out: Path,
     story: Mapping[str, object],
 ) -> Model:
-    """Train a residual on the train runs of one control; returns the model as read back.
+    """Train a residual on the train runs of one control, and write it as a model file.
 
     Args:
         motions: runs, taken one after the other; those of the control and of split `train` are
@@ -35,7 +35,10 @@ def train(
         settings: the learner, and how runs were cleaned and are replayed.
         catalogue: all effects.
         out: the model file; the residual's arrays are written beside it.
-        story: what else the model's provenance tells.
+        story: further entries of the model's provenance.
+
+    Returns:
+        The model as read back from its file.
 
     Raises:
         BadInput: the model has a residual already, or no run is left to learn from.
@@ -53,7 +56,7 @@ def train(
         trained = fit(*gathered.pairs, learner, settings.seed, progress)
     known = {"base": base.name, "train_runs": gathered.runs, "train_rows": gathered.rows}
     known |= {"seed": settings.seed}
-    # a model is never beside the arrays of another training
+    # both files appear together: a model never refers to the arrays of another training
     with appearing_together(out.parent, last=out.name) as folder:
         residual = write_residual(folder, trained.residual(settings.control))
         write_model(base, folder / out.name, residual, {**known, **story})
@@ -63,7 +66,14 @@ def train(
 def time_predictors(
     models: Sequence[Model], base: Model, motion: Motion, settings: PredictorSettings
 ) -> Timing:
-    """Each residual's library call and its exported predictor, on one run."""
+    """Time the library call and the exported predictor of each residual, on one run.
+
+    Args:
+        models: those without a residual are skipped.
+        base: the model on which features are computed.
+        motion: the run.
+        settings: how long is measured.
+    """
     pairs, how = sample_run(base, motion, settings), settings.timing
     return Timing(
         inference={

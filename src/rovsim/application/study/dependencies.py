@@ -1,4 +1,4 @@
-"""What a rule depends on beside its files: its part of the settings, and the code behind it."""
+"""What a rule depends on beside its input files: a part of the settings, and code."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -16,37 +16,46 @@ from rovsim.learning.learner import learner_settings
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.campaign import Campaign
 
-# What a script imports to be run at all; the values of its settings are parameters of its rule.
+# Modules that every script imports: left out of digests, as settings are parameters of its rule.
 SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
 
 
 @dataclass(frozen=True)
 class Dependencies:
-    """Settings as JSON and digests of code: a rule runs again where one of its own changes."""
+    """Settings as JSON and digests of code; a rule runs again where one of its own changes.
+
+    Attributes:
+        study: whose settings these are.
+    """
 
     study: Study
     _residuals: dict[str, Mapping[str, object]] = field(default_factory=dict, init=False)
 
     def section(self, kind: type[Section]) -> str:
-        """A part of the settings: only what a rule reads, and re-runs for."""
+        """Return a part of the settings as JSON: what a rule reads, and runs again for."""
         return select(self.study.settings, kind).model_dump_json()
 
     def signal(self, *names: str) -> str:
-        """Parts of the signal chain."""
+        """Return the settings of parts of the signal chain as JSON."""
         return self.study.settings.signals.model_dump_json(include=set(names))
 
     def training(self, residual: str, control: str) -> str:
-        """What a trained residual depends on."""
+        """Return the settings that a trained residual depends on as JSON.
+
+        Args:
+            residual: kind of the residual.
+            control: of the runs that it learns from.
+        """
         chosen = {"residual": self._residual(residual), "control": control}
         settings = self.study.settings.model_copy(update=chosen)
         return select(settings, TrainingSettings).model_dump_json()
 
     def learner(self, kind: str) -> LearnerSettings:
-        """Settings of one residual, whichever the configuration chose as default."""
+        """Return the settings of a kind of residual, even if the configuration chose another."""
         return learner_settings(self._residual(kind), "conf/residual")
 
     def _residual(self, kind: str) -> Mapping[str, object]:
-        """Composed once: Hydra takes as long as all that a rule asks for beside it."""
+        """Return the section of a kind of residual; composed once, since Hydra is slow."""
         if kind not in self._residuals:
             self._residuals[kind] = self._compose_residual(kind)
         return self._residuals[kind]
@@ -59,23 +68,26 @@ class Dependencies:
         return compose([*kept, f"residual={kind}"]).residual
 
     def code(self, script: Path, *more: str, without: str = "") -> str:
-        """Digest of what a script imports, however deep: an edit re-runs what it touches.
+        """Digest what a script imports, directly or indirectly: an edit re-runs what it touches.
 
         Args:
             script: of a rule.
-            more: modules that it finds by their names.
+            more: modules that it depends on without importing them.
             without: a package whose edits change nothing that the script writes.
         """
         names = [name for name in (*imports_of(script), *more) if name not in SURROUNDINGS]
         return digest(*names, without=without, described=self._described)
 
     def own_code(self, package: str) -> str:
-        """Digest of a package alone. A recorded campaign stands when rovsim's physics is edited."""
+        """Digest a package without its imports.
+
+        Thus a recorded campaign is not made again when rovsim's physics is edited.
+        """
         return own_digest(f"rovsim.{package}", self._described)
 
     @cached_property
     def _described(self) -> list[Path]:
-        """Files of the vehicle and of the user's effects: an edit changes what models do."""
+        """Files of the vehicle and of the user's effects: editing one changes what models do."""
         campaign = self.study.campaign
         if isinstance(campaign, Campaign):
             vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
@@ -84,6 +96,6 @@ class Dependencies:
         return [vehicle, *self.study.catalogue.files]
 
     def provenance(self) -> dict[str, Any]:
-        """Settings, code and versions behind the study."""
+        """Describe settings, code and versions behind the study."""
         campaign = self.study.campaign if isinstance(self.study.campaign, Campaign) else None
         return provenance(self.study.settings, self.study.catalogue, campaign)

@@ -1,4 +1,4 @@
-"""Each run of a study held out once, and set beside published errors."""
+"""Hold out each run of a study once, and compare its errors with published ones."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,13 +17,13 @@ from rovsim.reporting.report_data import list_study_figures
 
 @dataclass(frozen=True)
 class LeaveOneRunOut:
-    """The folds of a study; without any where `folds.leave_one_run_out` is off."""
+    """The folds of a study, one for each run; none where `folds.leave_one_run_out` is off."""
 
     study: Study
 
     @property
     def runs(self) -> list[str]:
-        """Runs to be held out, one after the other."""
+        """Ids of the runs to be held out, one after the other."""
         return self.study.runs() if self.study.settings.folds.leave_one_run_out else []
 
     @cached_property
@@ -36,10 +36,10 @@ class LeaveOneRunOut:
         return Path(campaign.folder if known else f"{self.study.folder}/raw") / name
 
     def check(self) -> None:
-        """Look at all that can be wrong with what was given, before anything is planned.
+        """Check the settings of the folds before anything is planned.
 
         Raises:
-            BadInput: there is but one run, an unknown residual, or no file of published errors.
+            BadInput: there is only one run, an unknown residual, or no file of published errors.
         """
         for kind in self.study.settings.folds.residuals if self.runs else ():
             learner(kind, "folds.residuals")
@@ -61,12 +61,12 @@ class LeaveOneRunOut:
             )
 
     def train_runs(self, fold: str, control: str) -> list[str]:
-        """Runs of a control to learn from while `fold` is held out."""
+        """List the ids of runs of a control to learn from while run `fold` is held out."""
         runs = self.study.campaign.runs
         return [run.id for run in runs if run.id != fold and flown_with(control, run)]
 
     def models(self, fold: str) -> list[str]:
-        """Models of a fold that have a file: physics, then residuals on nominal and effects."""
+        """List models of a fold that have a file: physics, then residuals on both bases."""
         settings = self.study.settings.folds
         controls = [c for c in settings.controls if self.train_runs(fold, c)]
         pairs = [(kind, control) for kind in settings.residuals for control in controls]
@@ -75,7 +75,7 @@ class LeaveOneRunOut:
 
     @property
     def pitfalls(self) -> bool:
-        """Whether the mistakes of the thesis' public code are repeated."""
+        """Whether to measure what the mistakes of the thesis' public code cost."""
         return self.study.settings.folds.pitfalls
 
     @property
@@ -86,7 +86,7 @@ class LeaveOneRunOut:
 
     @property
     def targets(self) -> list[str]:
-        """What this adds to the results of the study."""
+        """Files that the folds add to the results of the study."""
         folder = self.study.folder
         folds = [f"{folder}/folds/{run}/comparison.json" for run in self.runs]
         asked = {"published_errors": self.published, "pitfalls": self.pitfalls}

@@ -1,4 +1,4 @@
-"""One study of a campaign at a time."""
+"""Let only one study of a campaign run at a time."""
 
 from pathlib import Path
 
@@ -13,10 +13,10 @@ HELD: dict[Path, FileLock] = {}  # until the process ends
 def hold(folder: Path) -> None:
     """Keep other studies out of a folder until this process ends, however it ends.
 
-    Snakemake's own lock is a file that outlives a process that was killed.
+    Snakemake's own lock is a file that remains when its process is killed.
 
     Raises:
-        BadInput: another process writes there, or nobody can.
+        BadInput: another process writes there, or the folder cannot be written to.
     """
     make_folder(folder)
     HELD[folder] = FileLock(folder / ".study.lock", blocking=False)

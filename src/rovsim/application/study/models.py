@@ -1,4 +1,4 @@
-"""Which models a study makes, searches and shows."""
+"""Which models a study makes, draws, and searches for conditions of their errors."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,14 +19,14 @@ class StudyModels:
 
     @cached_property
     def trained(self) -> list[str]:
-        """Residuals x controls that have a train run."""
+        """Models with a residual on the nominal one, for each control that has train runs."""
         wanted = self.study.settings.study
         controls = [c for c in wanted.controls if self.study.train_runs(c)]
         return [name_learned(kind, control) for kind in wanted.residuals for control in controls]
 
     @cached_property
     def on_effects(self) -> list[str]:
-        """Residuals trained on top of the effects that were found."""
+        """Models with a residual on top of the effects that were found."""
         wanted = self.study.settings.study.on_effects
         return [f"{EFFECTS}+{name}" for name in self.trained if name in wanted]
 
@@ -42,10 +42,10 @@ class StudyModels:
 
     @property
     def searched(self) -> list[str]:
-        """Models searched for conditions in which they fail; the last is reported first."""
+        """Models of which conditions are sought where they fail; the last is reported first."""
         return [*self.trained, EFFECTS, NOMINAL]
 
     @property
     def drawn(self) -> list[str]:
-        """Models shown in time series."""
+        """Models drawn in time series."""
         return [m for m in DRAWN if m in self.all] or self.all[:3]

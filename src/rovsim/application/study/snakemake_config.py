@@ -1,4 +1,4 @@
-"""What Snakemake was told: the configuration, and the effects that there are."""
+"""The configuration that Snakemake was given: settings, and the effects that there are."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,20 +15,25 @@ KEYS = ("campaign", "overrides", "effects_file")  # keys of `snakemake --config`
 
 @dataclass(frozen=True)
 class SnakemakeConfig:
-    """`told`: the `config` of Snakemake; `keys`: those that a workflow knows."""
+    """The configuration that Snakemake was given.
+
+    Attributes:
+        told: Snakemake's `config`.
+        keys: that the workflow knows.
+    """
 
     told: Mapping[str, Any]
     keys: Sequence[str] = KEYS
 
     @cached_property
     def overrides(self) -> list[str]:
-        """Of conf/, one word each."""
+        """Hydra overrides of conf/, such as `residual=knn`."""
         given = self.told.get("overrides") or []
         return split_words(given) if isinstance(given, str) else [str(word) for word in given]
 
     @cached_property
     def settings(self) -> Settings:
-        """conf/, with the overrides and effect files given to Snakemake."""
+        """Settings of conf/, with the overrides and effect files given to Snakemake."""
         composed, named = compose(self.overrides), self.told.get("effects_file")
         return composed.model_copy(update={"effects_file": named}) if named else composed
 
@@ -43,15 +48,15 @@ class SnakemakeConfig:
 
     @cached_property
     def campaign_path(self) -> Path | None:
-        """The user's campaign, None for the synthetic one."""
+        """Path of the user's campaign; None for the synthetic one."""
         path = self.told.get("campaign", self.settings.campaign)
         return None if path is None else Path(str(path))
 
     def check(self) -> None:
-        """Look at its keys.
+        """Check that all keys are known.
 
         Raises:
-            BadInput: there is none of this name.
+            BadInput: a key is not.
         """
         for key in self.told:
             if key not in self.keys:
@@ -60,7 +65,7 @@ class SnakemakeConfig:
 
 
 def split_words(text: str) -> list[str]:
-    """Words of a text with spaces between them; what quotes or brackets hold is not parted."""
+    """Split a text at spaces, except within quotes or brackets."""
     words, quote, depth = [""], "", 0
     for letter in text:
         if letter.isspace() and not quote and depth <= 0:

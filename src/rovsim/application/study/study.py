@@ -1,4 +1,4 @@
-"""What is studied: one campaign, its runs and files, with one configuration."""
+"""A study: one campaign, its runs and files, and one configuration."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,18 +20,22 @@ from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, descri
 
 @dataclass(frozen=True)
 class Study:
-    """`config` is Snakemake's: `campaign`, `overrides`, `effects_file`."""
+    """A study of one campaign.
+
+    Attributes:
+        config: Snakemake's: `campaign`, `overrides`, `effects_file`.
+    """
 
     config: Mapping[str, Any]
 
     @cached_property
     def snakemake(self) -> SnakemakeConfig:
-        """What Snakemake was told."""
+        """The configuration that Snakemake was given, parsed."""
         return SnakemakeConfig(self.config)
 
     @property
     def settings(self) -> Settings:
-        """conf/ with what Snakemake was told."""
+        """Settings of conf/, with the overrides given to Snakemake."""
         return self.snakemake.settings
 
     @property
@@ -41,32 +45,37 @@ class Study:
 
     @property
     def synthetic(self) -> bool:
-        """Whether the tank makes the campaign."""
+        """Whether the campaign is a synthetic one, recorded in the simulated tank."""
         return self.snakemake.campaign_path is None
 
     @property
     def given_by(self) -> str:
-        """Where the runs are described, for messages."""
+        """Path of what describes the runs, for messages."""
         return str(self.snakemake.campaign_path or "conf/tank")
 
     @cached_property
     def campaign(self) -> Campaign | CampaignFile:
-        """The user's campaign, or what the synthetic one will be."""
+        """The user's campaign, or the description of a synthetic one that is yet to be made."""
         path = self.snakemake.campaign_path
         return describe(self.settings.tank) if path is None else load_campaign(path)
 
     @property
     def name(self) -> str:
-        """Folder under results/."""
+        """Name of the campaign, and of the study's folder under results/."""
         return self.campaign.name
 
     @property
     def folder(self) -> str:
-        """Where the study writes."""
+        """Folder that the study writes to."""
         return f"results/{self.name}"
 
     def raw(self, run: str = "") -> list[str]:
-        """Raw files: of one run, with the campaign file, or all that the tank writes."""
+        """List raw files, the campaign file first.
+
+        Args:
+            run: whose files are listed. Empty: all files that the tank writes; for a synthetic
+                campaign only.
+        """
         if isinstance(self.campaign, Campaign):
             one = self.campaign.run(run)
             return [str(self.campaign.file), *map(str, self.campaign.raw_files(one))]
@@ -78,24 +87,24 @@ class Study:
 
     @property
     def campaign_file(self) -> str:
-        """Where a rule finds the campaign."""
+        """Path of the campaign file."""
         return self.raw(self.runs()[0])[0]
 
     def runs(self, split: str = "") -> list[str]:
-        """Ids of the runs, all or of one split."""
+        """List the ids of all runs, or of those of one split."""
         return [run.id for run in self.campaign.runs if split in ("", run.split)]
 
     def train_runs(self, control: str) -> list[str]:
-        """Ids of the train runs of one control."""
+        """List the ids of the train runs of one control."""
         return [r.id for r in self.campaign.runs if r.split == "train" and flown_with(control, r)]
 
     def figures(self) -> list[str]:
-        """Figures of single runs, as `figure-run`."""
+        """List the figures of single test runs, as `figure-run`."""
         figures = list_run_figures()
         return [f"{figure.name}-{run}" for run in self.runs("test") for figure in figures]
 
     def check(self) -> None:
-        """Look at all that can be wrong with what was given, before anything is planned.
+        """Check configuration and campaign before anything is planned.
 
         Raises:
             BadInput: a campaign that cannot be used, no train or no test run, an unknown residual

@@ -1,4 +1,4 @@
-"""A diagnosis as MLflow runs: one of its own, and in it one for every step of its ladder."""
+"""Log a diagnosis as an MLflow run, with a nested run for every step of its ladder."""
 
 from pathlib import Path
 from typing import Any, Iterable, Mapping
@@ -21,17 +21,20 @@ def track_diagnosis(
     files: Iterable[Path],
     parent: str | None = None,
 ) -> dict[str, str]:
-    """Log a diagnosis, and within it every step of its ladder; returns run ids by name.
+    """Log a diagnosis, and nested in it every step of its ladder.
 
     Args:
-        settings: where.
-        experiment: the campaign.
+        settings: where MLflow keeps runs.
+        experiment: name of the campaign.
         base: name of the model that was diagnosed.
         found: the diagnosis.
         params: settings of the diagnosis, nested plain values.
         files: kept as artifacts; the diagnosis itself and the figure of the ladder also with every
             step.
-        parent: id of the run this diagnosis belongs to.
+        parent: id of the run in which this one is nested.
+
+    Returns:
+        Ids of the runs, by name: `diagnosis`, and each step's model.
     """
     files = list(files)
     selected = "+".join(one.effect for one in found.selected) or "none"
@@ -61,7 +64,7 @@ def track_diagnosis(
 
 
 def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
-    """Errors of a diagnosis, and what each selected effect is worth, with its fitted values."""
+    """Return the errors of a diagnosis; of each selected effect its worth and fitted values."""
     metrics = {f"error/{name}": value for name, value in found.error}
     for one in found.selected:
         name = one.effect
@@ -74,7 +77,7 @@ def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
 
 
 def step_metrics(step: Step) -> dict[str, float]:
-    """Numbers of one step of a ladder, named as those of a comparison."""
+    """Return the numbers of one step of a ladder, named as those of a comparison."""
     found = {"windows_2s": step.windows_2s}
     for quantity in ("acceleration_rmse", "velocity_mae"):
         found |= {f"test/2/{quantity}/{axis}": v for axis, v in getattr(step, quantity)}

@@ -1,8 +1,8 @@
 """How MLflow shows a campaign: as models, and as a ranking that a link opens.
 
-MLflow keeps a view that somebody shares as a tag of the experiment, under a key that stands in the
-address (MLflow 3, "Share" on the page of runs). Here the key is `ranking`: all runs that have the
-error by which models are ranked, the best one first, with what tells them apart.
+MLflow keeps a view that a user shares as a tag of the experiment, under a key that is part of the
+link (MLflow 3, "Share" on the page of runs). Here the key is `ranking`: all runs that have the
+error by which models are ranked, the best first, with columns of model, residual and control.
 """
 
 import json
@@ -12,7 +12,7 @@ RANKED_BY = "windows_2s"
 OF_BASE = f"{RANKED_BY}/of_base"
 KEY = "ranking"
 UI = "http://127.0.0.1:5000/"  # of `mlflow ui`, unless told otherwise
-# MLflow's page of an experiment: the one for models, not for prompts.
+# Tag by which MLflow shows an experiment on its page for models, not on that for prompts.
 SHOWN = {"mlflow.experimentKind": "custom_model_development"}
 COLUMNS = (
     f"metrics.`{RANKED_BY}`",
@@ -30,12 +30,12 @@ VIEW: dict[str, Any] = {
 
 
 def address(number: str, server: str = "") -> str:
-    """Where the ranking of an experiment is, of that number."""
+    """Return the link to the ranking of an experiment, by the experiment's number."""
     return f"{server}#/experiments/{number}/runs?viewStateShareKey={KEY}"
 
 
 def tags_of(number: str) -> dict[str, str]:
-    """Tags of an experiment: its view, and a description that leads there."""
+    """Return the tags of an experiment: its view, and a description with a link to it."""
     note = (
         f"[Ranking of the models]({address(number)}) by `{RANKED_BY}`, the 2 s error on test runs"
     )

@@ -1,4 +1,4 @@
-"""One MLflow run: its tags, parameters, metrics and files."""
+"""Log one MLflow run: its tags, parameters, metrics and files."""
 
 import os
 from contextlib import contextmanager
@@ -43,7 +43,7 @@ class TrackedRun:
         params: hyperparameters.
         scores: errors of the model, by run of the campaign.
         metrics: further numbers.
-        parent: id of the MLflow run that this one belongs to.
+        parent: id of the MLflow run in which this one is nested.
     """
 
     experiment: str
@@ -57,7 +57,11 @@ class TrackedRun:
 
 
 def track(settings: TrackingSettings, run: TrackedRun) -> str:
-    """Log one run and return its id; `settings` say where.
+    """Log one run, and return its id.
+
+    Args:
+        settings: where MLflow keeps runs.
+        run: what is logged.
 
     Raises:
         BadInput: MLflow cannot keep the run there.
@@ -78,7 +82,16 @@ def track(settings: TrackingSettings, run: TrackedRun) -> str:
 
 
 def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[str, float]:
-    """What models are ranked by, and by how much this one is better than its base."""
+    """Return the error by which models are ranked, and its ratio to that of the base.
+
+    Args:
+        errors: error in windows of 2 s, by model.
+        model: that is ranked.
+        base: that it is compared with.
+
+    Returns:
+        Metrics by name; empty where one of the errors is unknown.
+    """
     own, before = errors[model], errors[base]
     if own is None or not before:
         return {}
@@ -86,7 +99,7 @@ def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[s
 
 
 def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
-    """Metrics by split, horizon, quantity and axis: the mean over runs of comparison.json."""
+    """Average errors over runs; metrics are named `split/horizon/quantity/axis`."""
     found: dict[str, list[float]] = {}
     for run in scores.values():
         for horizon in (OPEN_LOOP, *run.windows):
@@ -98,7 +111,7 @@ def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
 
 
 def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
-    """Numbers by name; those of axes as `quantity/axis`."""
+    """List numbers by name; those of axes as `quantity/axis`."""
     for quantity, value in metrics:
         if isinstance(value, ByAxis):
             yield from ((f"{quantity}/{axis}", v) for axis, v in value)
@@ -107,7 +120,7 @@ def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
 
 
 def tell_ranking(settings: TrackingSettings, experiment: str) -> str:
-    """Where the models of a campaign are ranked, in words: what to start, and what to open."""
+    """Say where the models of a campaign are ranked: what to start, and which link to open."""
     with _told(settings.uri):
         number = _found(_client(settings), settings, experiment)
     if _local(settings.uri) is None:
@@ -132,7 +145,11 @@ def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable
 
 @contextmanager
 def _told(uri: str) -> Iterator[None]:
-    """MLflow's errors as one message."""
+    """Turn MLflow's errors into one message.
+
+    Raises:
+        BadInput: MLflow cannot keep the run, or is not installed.
+    """
     require("tracking", by="tracking.uri")
     for name, value in {"MLFLOW_DISABLE_TELEMETRY": "true", **PATIENCE}.items():
         os.environ.setdefault(name, value)
@@ -163,9 +180,9 @@ def _client(settings: TrackingSettings):
 
 
 def _create(path: Path) -> None:
-    """A new local database, whole or not at all.
+    """Create a local database, whole or not at all.
 
-    MLflow makes its tables one by one; killed half-way, no later start gets beyond them.
+    MLflow makes its tables one by one. If it is killed half-way, no later start can use them.
     """
     from mlflow.store.tracking import DEFAULT_LOCAL_FILE_AND_ARTIFACT_PATH
     from mlflow.store.tracking.sqlalchemy_store import SqlAlchemyStore
@@ -176,23 +193,23 @@ def _create(path: Path) -> None:
 
 
 def _local(uri: str) -> Path | None:
-    """File of a local database, None for a server."""
+    """Return the file of a local database; None for a server."""
     prefix = "sqlite:///"
     return Path(uri.removeprefix(prefix)).absolute() if uri.startswith(prefix) else None
 
 
 def _absolute(uri: str) -> str:
-    """A local database by its whole path: MLflow keeps open what it knows by this name."""
+    """Give a local database its absolute path, as MLflow keeps connections open by this name."""
     path = _local(uri)
     return f"sqlite:///{path}" if path else uri
 
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
-    """Number of the experiment, made if need be, which shows what ranks its runs."""
+    """Return the number of an experiment, created if need be, with the tags of its ranking."""
     found = _found(client, settings, name)
     known = client.get_experiment(found).tags
     for key, value in tags_of(found).items():
-        if key not in known:  # what people wrote there is theirs
+        if key not in known:  # what a user has changed stays
             client.set_experiment_tag(found, key, value)
     return found
 
@@ -207,7 +224,7 @@ def _found(client, settings: TrackingSettings, name: str) -> str:
 
     try:
         return client.create_experiment(name, artifact_location=place, tags=SHOWN)
-    except MlflowException:  # another machine was first: a lock of files ends at its own
+    except MlflowException:  # another machine was first: a file lock holds on one only
         known = client.get_experiment_by_name(name)
         if known is None:
             raise
@@ -215,7 +232,7 @@ def _found(client, settings: TrackingSettings, name: str) -> str:
 
 
 def _lock(uri: str) -> Path:
-    """Beside a local database; for a server, one in each folder that commands run in is enough."""
+    """Return the lock file: beside a local database; for a server, in the working folder."""
     path = _local(uri)
     place = path.with_suffix(".lock") if path else Path(".rovsim-tracking.lock")
     place.parent.mkdir(parents=True, exist_ok=True)

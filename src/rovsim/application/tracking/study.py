@@ -1,4 +1,4 @@
-"""A study as MLflow runs: one of its own, and in it one for every model, and the diagnosis."""
+"""Log a study as an MLflow run, with nested runs for every model and the diagnosis."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,15 @@ OF_MODELS = ("ladder", "error_by_axis", "error_growth")  # figures that show eac
 
 @dataclass(frozen=True)
 class StudyFiles:
-    """What a study wrote; `models` the files of those that have one, `kept` as artifacts."""
+    """Files that a study wrote.
+
+    Attributes:
+        comparison: errors of all models.
+        ladder: of models.
+        diagnosis: of the nominal model.
+        models: model files, of the models that have one.
+        kept: files that are kept as artifacts of the study.
+    """
 
     comparison: Path
     ladder: Path
@@ -30,13 +38,16 @@ class StudyFiles:
 def track_study(
     settings: TrackingSettings, campaign: str, files: StudyFiles, diagnosing: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Log a study; returns the ids of the runs by name, those of the diagnosis by step.
+    """Log a study.
 
     Args:
-        settings: where.
-        campaign: its name, that of the experiment.
-        files: what is logged.
+        settings: where MLflow keeps runs.
+        campaign: its name, which is also that of the experiment.
+        files: that are logged.
         diagnosing: settings of the diagnosis, nested plain values.
+
+    Returns:
+        Ids of the runs by name; under `diagnosis` those of its run and its steps, by name.
     """
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
     steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
@@ -63,7 +74,13 @@ def track_study(
 
 
 def _described(name: str, path: Path | None, figures: Sequence[Path]) -> dict[str, Any]:
-    """Tags, hyperparameters and files of one model."""
+    """Return tags, hyperparameters and files of one model.
+
+    Args:
+        name: of the model.
+        path: of its file, if it has one.
+        figures: that are kept with every model.
+    """
     content = read_yaml(path) if path else {}
     residual, story = content.get("residual") or {}, content.get("provenance") or {}
     base = story["base"] if residual else name
@@ -77,7 +94,7 @@ def _described(name: str, path: Path | None, figures: Sequence[Path]) -> dict[st
 
 
 def _hyperparameters(residual: Mapping[str, Any], seed: int) -> dict[str, Any]:
-    """Those of a trained residual, under the keys by which `rovsim train` logs them."""
+    """Return hyperparameters of a trained residual, under the keys that `rovsim train` logs."""
     features = {"blocks": [*residual["features"]], "scaling": residual["scaling"]}
     asked = {"kind": residual["kind"], **residual["settings"], "features": features}
     return asked | {"seed": seed}

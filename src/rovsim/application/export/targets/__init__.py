@@ -4,8 +4,8 @@ A target declares `TITLE` (what people call it), `SUFFIX` of its files, `SOURCE`
 and its equations are documented), `TAKES` (what drives the vehicle there, one sentence) and three
 functions:
 
-    hold(effect) -> (effect, why)    what it holds of an effect; why it does not hold the rest
-    further(model) -> [Left, ...]    what is left out beside that, of a model whose effects it holds
+    hold(effect) -> (effect, why)    what it can hold of an effect; why not the rest (empty: all)
+    further(model) -> [Left, ...]    what else it leaves out of a model whose effects it can hold
     text(equation, notes) -> str     the file; `notes` are lines that stand in it as comments
 """
 
@@ -24,7 +24,7 @@ from rovsim.dynamics.model import Model
 
 @dataclass(frozen=True)
 class Target:
-    """One simulator."""
+    """One simulator; what its attributes mean is said in the docstring of this package."""
 
     name: str
     title: str
@@ -38,7 +38,7 @@ class Target:
 
 @cache
 def targets() -> dict[str, Target]:
-    """Every target, by its name, which is that of its file."""
+    """Return every target by its name, which is the name of its module."""
     names = [module.name for module in iter_modules([str(Path(__file__).parent)])]
     return {name: _target(name) for name in names}
 
@@ -49,10 +49,10 @@ def _target(name: str) -> Target:
 
 
 def target(name: str) -> Target:
-    """The target of a name.
+    """Return the target of a name.
 
     Raises:
-        BadInput: there is none; names the nearest.
+        BadInput: there is none; the message says which names come close.
     """
     known = targets()
     if name in known:

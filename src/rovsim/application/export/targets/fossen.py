@@ -1,4 +1,4 @@
-"""YAML with the matrices and coefficients of Fossen's equation, for a simulator of one's own.
+"""Write YAML with the matrices and coefficients of Fossen's equation, for a user's own simulator.
 
 The names are those that Fossen's Python Vehicle Simulator gives its matrices (`MRB`, `MA`, `W`,
 `B`, `r_bg`, `r_bb`). It reads no file: a vehicle there is a class, and these are its constants.
@@ -35,17 +35,17 @@ for what they push to starboard, at the end.
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
-    """The same as the MATLAB function: both are written from the same numbers."""
+    """Return what the file can hold of an effect: the same as the MATLAB function (`mss`)."""
     return mss.hold(effect)
 
 
 def further(model: Model) -> Sequence[Left]:
-    """Nothing beside that."""
+    """Return nothing: what `hold` leaves out is all."""
     return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
-    """The file."""
+    """Return the text of the YAML file."""
     lines = [*notes, *EQUATION.strip("\n").splitlines()]
     return "".join(f"# {one_line(line)}".rstrip() + "\n" for line in lines) + yaml_text(
         plain(_of(equation)), rows=True

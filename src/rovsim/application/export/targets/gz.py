@@ -1,4 +1,4 @@
-"""Gazebo: a world in SDF with the plugins Hydrodynamics, Buoyancy and Thruster of gz-sim.
+"""Write for Gazebo: a world in SDF with gz-sim's plugins Hydrodynamics, Buoyancy and Thruster.
 
 The world is that of a motion capture with z up: x, y, z = north, -east, -down; the body's axes are
 x forward, y to port, z up. A force along or a moment about y or z changes its sign, and so does a
@@ -53,7 +53,7 @@ RADIUS = 0.03  # m of gyration of that link: a propeller's size
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
-    """What Gazebo holds of an effect."""
+    """Return what Gazebo can hold of an effect, and why not the rest."""
     if isinstance(effect, Thrusters):
         return fixed(effect)
     if isinstance(effect, CrossFlow):
@@ -62,7 +62,7 @@ def hold(effect: Effect) -> tuple[Effect, str]:
 
 
 def further(model: Model) -> Sequence[Left]:
-    """A current moves what the plugin computes, and not the added mass of the link."""
+    """Return what a current does to added mass: the plugin applies a current to damping only."""
     if not model.body.current.any():
         return []
     water = next(e for e in model.effects if isinstance(e, Current) and e.given())
@@ -71,7 +71,15 @@ def further(model: Model) -> Sequence[Left]:
 
 
 def still_added_mass(model: Model, state: Array) -> Array:
-    """Force (n, 6) on added mass in moving water less that in still water, states (n, 13)."""
+    """Compute the wrench on added mass in moving water minus that in still water.
+
+    Args:
+        model: with a current.
+        state: (n, 13) position NED m, unit quaternion, body velocities FRD.
+
+    Returns:
+        (n, 6) N and N m, FRD.
+    """
     R, nu = matrix(state[:, 3:7]), state[:, 7:]
     current = np.einsum("nji,j->ni", R, model.body.current)
     nu_r = nu - np.hstack([current, np.zeros_like(current)])
@@ -89,30 +97,33 @@ def _coriolis(M: Array, nu: Array) -> Array:
 
 
 def _split(flow: CrossFlow) -> tuple[Effect, str]:
-    """Products that the plugin has a name for."""
+    """Keep the products of velocities that the plugin has a name for; say which are lost."""
     held = {name: c for name, c in flow.products.items() if _element(name) is not None}
     lost = [name for name in flow.products if name not in held]
     return CrossFlow(held), f"no name for {', '.join(lost)}" if lost else ""
 
 
 def _element(name: str) -> tuple[str, float] | None:
-    """The plugin's element for a product of velocities, and the sign of its turn; None: none."""
+    """Return the plugin's element for a product of velocities, and the sign of its coefficient.
+
+    The sign is that from FRD to Gazebo's axes. None where the plugin has no such element.
+    """
     axis, *factors = parse_product(name)
     factors = [f for f in factors if f >= 0]
     if len(factors) != 2:
         return None
-    first, second = sorted(factors)  # a size comes last
+    first, second = sorted(factors)  # absolute values (6 and more) come last
     if first >= 6 and first != second:
         return None
     sizes = first < 6 <= second
     i, j = first % 6, second % 6
-    # the size of a velocity does not turn; v |v| and the square of |v| turn as v does, and not
+    # |v| keeps its sign between the axes; v |v| changes it as v does, and |v| |v| does not
     turned = TURN[axis] * TURN[i] * (1.0 if sizes else TURN[j])
     return f"{FORCES[axis]}{SPEEDS[i]}{'abs' if sizes else ''}{SPEEDS[j]}", float(turned)
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
-    """A world with the vehicle in it."""
+    """Return the text of a world with the vehicle in it."""
     sdf = ET.Element("sdf", version="1.11")
     comment(sdf, [*notes, *force_tables(equation)])
     world = ET.SubElement(sdf, "world", name="water")
@@ -164,7 +175,14 @@ def _vehicle(equation: Equation) -> ET.Element:
 
 
 def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
-    """Mass, its place and its inertia; products stand in it as in the matrix (SDFormat)."""
+    """Make the element `inertial`: mass, centre of gravity and inertia, in Gazebo's axes.
+
+    Products of inertia have the sign that they have in the matrix (SDFormat).
+
+    Args:
+        rigid: in FRD.
+        added: added mass (6, 6) in FRD, if any.
+    """
     turn = TURN[:3]
     moments = turn[:, None] * rigid.inertia * turn
     part = ET.Element("inertial")
@@ -181,7 +199,10 @@ def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
 
 
 def _displaced(equation: Equation, kind: str) -> ET.Element | None:
-    """A cube at the centre of buoyancy, as large as what is displaced; all the plugin reads."""
+    """Make a cube of the displaced volume at the centre of buoyancy: all that the plugin reads.
+
+    None where the model has no buoyancy.
+    """
     body, density = equation.body, equation.model.vehicle.density
     volume = body.buoyancy / (density * body.gravity)
     if volume <= 0.0:
@@ -194,15 +215,15 @@ def _displaced(equation: Equation, kind: str) -> ET.Element | None:
 
 
 def _water(equation: Equation) -> dict[str, str]:
-    """Elements of the plugin Hydrodynamics; what brakes is negative there (SNAME)."""
-    found: defaultdict[str, float] = defaultdict(float)  # a product may be a damping term
+    """Return the elements of the plugin Hydrodynamics; damping is negative there (SNAME)."""
+    found: defaultdict[str, float] = defaultdict(float)  # damping and a product may share one
     for size, D in ((False, equation.linear), (True, equation.quadratic)):
         for i, j in zip(*np.nonzero(D), strict=True):
             name = f"{FORCES[i]}{SPEEDS[j]}" + (f"abs{SPEEDS[j]}" if size else "")
             found[name] -= TURN[i] * TURN[j] * D[i, j]
     for product, c in equation.products.items():
         element = _element(product)
-        assert element is not None  # others are left out
+        assert element is not None  # `_split` left out the others
         found[element[0]] += element[1] * c
     current = equation.body.current
     moving = {"default_current": numbers(_turned(current))} if current.any() else {}
@@ -221,5 +242,5 @@ def _tree(parent: ET.Element, content: Mapping[str, str]) -> None:
 
 
 def _turned(place: Sequence[float] | Array) -> Array:
-    """A place or direction (3,) in the axes of Gazebo."""
+    """Turn a position or direction (3,) from FRD or NED into Gazebo's axes."""
     return np.asarray(place, dtype=float) * TURN[:3]

@@ -1,4 +1,4 @@
-"""MATLAB or GNU Octave: a function with the signature of the vehicles in Fossen's MSS toolbox.
+"""Write a MATLAB or GNU Octave function with the signature of vehicles in Fossen's MSS toolbox.
 
     [xdot, U, M] = NAME(x, ui)
 
@@ -84,19 +84,19 @@ end
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
-    """What the function holds of an effect."""
+    """Return what the function can hold of an effect, and why not the rest."""
     if isinstance(effect, Thrusters):
         return unpowered(effect)
     return whole(effect) if effect.id in WHOLE else nothing(effect)
 
 
 def further(model: Model) -> Sequence[Left]:
-    """Nothing beside that."""
+    """Return nothing: what `hold` leaves out is all."""
     return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
-    """The function, and those it calls."""
+    """Return the text of the function, and of those that it calls."""
     name = _identifier(equation.model.name)
     lines = [
         f"function [xdot, U, M] = {name}(x, ui)",
@@ -118,12 +118,12 @@ def text(equation: Equation, notes: Sequence[str]) -> str:
 
 
 def _comment(text: str) -> str:
-    """A comment: one line, for the next would be a command."""
+    """Make a comment of one line, since a second line would be a command."""
     return f"% {one_line(text)}".rstrip()
 
 
 def _identifier(name: str) -> str:
-    """A name that MATLAB takes."""
+    """Make a name that MATLAB accepts."""
     plain = re.sub(r"\W", "_", name, flags=re.ASCII)
     return (plain if plain[:1].isalpha() else f"vehicle_{plain}")[:LONGEST]
 
@@ -224,7 +224,7 @@ def _thrust(equation: Equation) -> list[str]:
 
 
 def _static(curves: Sequence[ForceCurve]) -> str:
-    """Forces of the commands c; a polynomial that all share takes them as they are."""
+    """Write the forces of commands c; a polynomial that all thrusters share is written once."""
     if curves[0].odd_polynomial and all(curve == curves[0] for curve in curves):
         return _polynomial(curves[0].odd_polynomial, "c", ".^")
     return f"[{'; '.join(_curve(curve, k) for k, curve in enumerate(curves))}]"
@@ -236,7 +236,7 @@ def _polynomial(coefficients: Sequence[float], c: str, power: str) -> str:
 
 
 def _curve(curve: ForceCurve, k: int) -> str:
-    """Force of thruster k, of its command."""
+    """Write the force of thruster k as a function of its command."""
     c = f"c({k + 1})"
     if curve.table is not None:
         at, force = (_row(v) for v in (curve.table.command, curve.table.force_))
@@ -263,6 +263,6 @@ def _row(values: Sequence[float]) -> str:
 
 
 def _number(value: float) -> str:
-    """In brackets where it is negative, so that it may stand after any sign."""
+    """Write a number, in brackets where it is negative, so that it may follow any sign."""
     plain = f"{float(value) + 0.0:.15g}"
     return f"({plain})" if plain.startswith("-") else plain

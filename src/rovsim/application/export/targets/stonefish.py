@@ -1,9 +1,9 @@
-"""Stonefish: a scenario in XML with one robot, in NED and FRD as here.
+"""Write for Stonefish: a scenario in XML with one robot, in NED and FRD as in rovsim.
 
 Stonefish computes drag and added mass from the shape of a body and takes no coefficients for them.
-What it takes is written: mass, inertia, weight, buoyancy and thrust; a box stands for the shape,
-to be replaced by a mesh. Its gravity is 9.81 m/s2: displaced volume and its centre are such that
-weight less buoyancy, and their moment, are those of the model nevertheless.
+Mass, inertia, weight, buoyancy and thrust are written; a box stands for the shape, which users
+should replace by a mesh. Gravity is always 9.81 m/s2 there: the displaced volume and its centre are
+chosen such that weight minus buoyancy, and their moment, are still those of the model.
 """
 
 from typing import Sequence
@@ -41,7 +41,7 @@ DEEP = 2.0  # m, where the vehicle starts: under water
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
-    """What Stonefish holds of an effect."""
+    """Return what Stonefish can hold of an effect, and why not the rest."""
     if isinstance(effect, Thrusters):
         return fixed(effect)
     if effect.id in WHOLE:
@@ -51,12 +51,12 @@ def hold(effect: Effect) -> tuple[Effect, str]:
 
 
 def further(model: Model) -> Sequence[Left]:
-    """Nothing beside that."""
+    """Return nothing: what `hold` leaves out is all."""
     return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
-    """A scenario with the vehicle in it."""
+    """Return the text of a scenario with the vehicle in it."""
     scenario = ET.Element("scenario")
     comment(scenario, [*notes, *force_tables(equation)])
     environment = _tag(scenario, "environment")
@@ -74,7 +74,7 @@ def text(equation: Equation, notes: Sequence[str]) -> str:
 
 
 def _surroundings(scenario: ET.Element) -> None:
-    """A material and a look: every scenario needs one; neither changes the motion."""
+    """Add a material and a look, which every scenario needs; neither changes the motion."""
     materials = _tag(scenario, "materials")
     _tag(materials, "material", name="Hull", density="1000.0", restitution="0.5")
     same = {"material1": "Hull", "material2": "Hull", "static": "0.5", "dynamic": "0.3"}
@@ -106,7 +106,10 @@ def _robot(scenario: ET.Element, equation: Equation) -> None:
 
 
 def _displaced(equation: Equation) -> tuple[float, Array]:
-    """Volume m3 and centre (3,) m that leave net weight and its moment as they are."""
+    """Choose the displaced volume, m3, and its centre (3,), m, FRD, for Stonefish's gravity.
+
+    With these, weight minus buoyancy and their moment are those of the model.
+    """
     body, weight = equation.body, equation.rigid.mass * GRAVITY
     buoyancy = weight - (body.weight - body.buoyancy)
     righting = body.weight_moment - body.buoyancy * body.center_of_buoyancy
@@ -115,7 +118,11 @@ def _displaced(equation: Equation) -> tuple[float, Array]:
 
 
 def _principal(inertia: Array) -> tuple[Array, Array]:
-    """Moments of inertia (3,) kg m2 about principal axes, and how these are turned (3,) rad."""
+    """Diagonalise an inertia (3, 3), kg m2, about the centre of gravity.
+
+    Returns:
+        Principal moments (3,), kg m2, and roll, pitch and yaw (3,) of the principal axes, rad.
+    """
     if not np.any(inertia - np.diag(np.diag(inertia))):
         return np.diag(inertia), np.zeros(3)
     moments, axes = np.linalg.eigh(inertia)
@@ -124,7 +131,7 @@ def _principal(inertia: Array) -> tuple[Array, Array]:
 
 
 def _along(direction: Sequence[float]) -> tuple[float, float, float]:
-    """Roll, pitch and yaw of a frame whose x axis points along a direction."""
+    """Return roll, pitch and yaw, rad, of a frame whose x axis points along a direction (3,)."""
     x, y, z = direction
     return 0.0, float(-np.arctan2(z, np.hypot(x, y))), float(np.arctan2(y, x))
 
