@@ -1,8 +1,9 @@
-"""Is an effect still sure once every stretch of time counts for what it tells by itself?
+"""Is an effect still sure if blocks of time, not readings, are what counts as independent?
 
-What pushes along an axis that nobody measures moves the vehicle there for as long as drag lets it,
-and what a filter on board estimates errs for as long as it drifts: all readings of that time err
-alike. The observer does not know, but blocks of time then differ by more than it foresees.
+A push along an axis that nobody measures moves the vehicle until drag has stopped it, and an
+estimate of a filter on board is wrong for as long as it drifts. All readings of that time then have
+similar errors, which the noise of the observer does not describe. But blocks of time then differ
+by more than this noise predicts.
 """
 
 from dataclasses import replace
@@ -15,14 +16,14 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.observed_run import BLOCK, number_blocks
 from rovsim.estimation.observer.sandwich import estimate_covariance
 
-LASTING = (BLOCK, 3.0 * BLOCK)  # s: what drags on, and what drifts
-BLOCKS_EACH = 3  # of every number of an effect: fewer do not tell how much blocks differ
+LASTING = (BLOCK, 3.0 * BLOCK)  # s: how long such pushes and such drifts last
+BLOCKS_EACH = 3  # for each parameter: fewer blocks do not tell how much blocks differ
 
 
 def drop_unsure(selection: SearchResult) -> SearchResult:
-    """Without effects that are not worth their penalty by how much blocks of time differ.
+    """Remove effects that are not worth their penalty if blocks of time are independent.
 
-    Asked only where the vehicle moves along axes that nobody measures.
+    This is only done where the vehicle can move along axes that nobody measured.
     """
     workspace, fit = selection.workspace, selection.best
     if not any((run.free_axes & ~run.axes).any() for run in workspace.bank.runs):
@@ -33,7 +34,7 @@ def drop_unsure(selection: SearchResult) -> SearchResult:
 
 
 def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
-    """Terms whose distance from their absence is less than their penalty, as blocks see it."""
+    """Numbers of the terms that are not worth their penalty with the covariance between blocks."""
     h, unsure = fit.hypothesis, set()
     for seconds in LASTING:
         blocks = number_blocks(workspace.bank.runs, seconds)

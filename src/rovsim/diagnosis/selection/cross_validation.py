@@ -1,4 +1,4 @@
-"""Does an effect also help where it was not fitted? Blocks of the train runs take turns."""
+"""Does an effect also help where it was not fitted? Cross-validation by blocks of time."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ FOLDS = 6  # each leaves out every sixth block of time
 
 
 def drop_idle(selection: SearchResult) -> SearchResult:
-    """Without effects that do not help on held-out blocks, or that no user would see."""
+    """Remove effects that do not help on held-out blocks, or that no user would notice."""
     workspace, fit = selection.workspace, selection.best
     while fit.hypothesis.terms:
         fewer = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
@@ -34,10 +34,10 @@ def drop_idle(selection: SearchResult) -> SearchResult:
 
 
 def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
-    """Decrease of the squared innovations on held-out blocks by what `fit` has more.
+    """By how much `fit` lowers the squared innovations on held-out blocks, compared to `smaller`.
 
-    Both are fitted to all blocks; each fold's parameters are theirs, less what that fold made of
-    them, to first order.
+    Both were fitted to all blocks. Their parameters without the blocks of a fold follow from that
+    to first order.
     """
     fold = number_blocks(bank.runs) % FOLDS
     costs = [_sum_held_out(one, bank, fit.noise, fold) for one in (smaller, fit)]
@@ -45,7 +45,7 @@ def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
 
 
 def _sum_held_out(one: Fit, bank: FilterBank, noise: Noise, fold: Array) -> float:
-    """Sum of the squared innovations of all blocks, each with the others' parameters."""
+    """Sum of the squared innovations of all folds, each with parameters fitted to the others."""
     rows = bank.whiten(one.linearised.rows, noise)
     parts = [gram(as_rows(rows[..., fold == k])) for k in np.unique(fold)]
     total = sum(parts)

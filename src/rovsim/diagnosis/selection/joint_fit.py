@@ -1,9 +1,9 @@
-"""Much is missing at once: fit all that could be wrong together, then take away what is not needed.
+"""Where much is missing at once: fit everything that may be wrong, then remove what is not needed.
 
-One by one, each addition is judged beside everything still missing. Thrust, drag and inertia hold
-each other up: where all three are wrong, the likeliest single change (a vehicle four times as
-heavy) is a step away from the truth. So what the vehicle file states is taken for uncertain
-altogether, with each way in which the commands could act, and the likeliest is pruned.
+A search that adds effects one by one judges each addition while all else is still missing. Thrust,
+drag and inertia depend on each other. Where all three are wrong, the likeliest single change may
+lead away from the truth (a vehicle four times as heavy). So all values of the vehicle file are
+freed together, once for each way in which commands may act, and the likeliest fit is pruned.
 """
 
 from typing import Sequence
@@ -32,12 +32,12 @@ ALWAYS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ConstantWrench, InputDe
 
 
 def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:
-    """The likeliest of all joint fits, pruned; the other ways to act are its rivals.
+    """Make all joint fits, and prune the likeliest; other ways in which commands act are rivals.
 
     Args:
-        workspace: of the model that is diagnosed.
+        workspace: of the search, as it began.
         base: the model that is diagnosed.
-        moved: axes about which something can be said.
+        moved: axes that were measured and moved.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
     tried = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
@@ -65,7 +65,7 @@ def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesi
 
 
 def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
-    """Fitted, with filters and noise that follow."""
+    """Fit a hypothesis, and twice again with filters and noise that suit the fit before."""
     fit = workspace.fit(start, REACH)
     for _ in range(ROUNDS):
         workspace = workspace.update_after(fit)
@@ -74,10 +74,11 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
 
 
 def prune_together(workspace: SearchWorkspace, fit: Fit) -> Fit:
-    """Without all parameters that are not worth their penalty, until all are.
+    """Remove all parameters at once that are not worth their penalty, until none is left.
 
-    Where thrust, inertia and drag are known to one factor only, none of them is sure and all are
-    needed: then the file's gain is taken, and the others tell what they differ by.
+    Where thrust, inertia and drag are only known up to a common factor, none of them is sure but
+    all are needed. Then only the gain of the thrusters is set back to the file's, which determines
+    the factor.
     """
     while True:
         weak = _find_weak(fit, workspace.penalty)
@@ -91,7 +92,7 @@ def prune_together(workspace: SearchWorkspace, fit: Fit) -> Fit:
 
 
 def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None:
-    """The fit without some free parameters (k,); None where they are needed."""
+    """The fit without the free parameters of a mask (k,); None where they are needed."""
     if not weak.any():
         return None
     smaller = workspace.fit(drop_parameters(fit.hypothesis, weak), REACH)
@@ -99,7 +100,7 @@ def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None
 
 
 def _find_weak(fit: Fit, penalty: float) -> Array:
-    """Which free parameters (k,) are not worth their penalty; those of a loop only together."""
+    """Mask (k,) of free parameters that are not worth their penalty; of a loop all or none."""
     h = fit.hypothesis
     weak = fit.z_scores**2 < penalty
     for term, own in zip(h.terms, h.columns, strict=True):

@@ -1,6 +1,6 @@
-"""Errors of two models in the same windows: is one of them surely smaller?
+"""Compare the errors of two models in the same windows: is one of them surely smaller?
 
-Windows differ more from each other than models do, so that differences are judged window by window.
+Windows differ more from each other than models do, so differences are judged window by window.
 """
 
 import numpy as np
@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 from scipy.stats import norm
 from scipy.stats import t as student
 
-WORSE_SHARE = 0.02  # of the error: less is within what the windows happen to hold
+WORSE_SHARE = 0.02  # of the error: a smaller difference may depend on the choice of windows
 CERTAIN_STANDARD_ERRORS = 2.0  # over many windows
-MIN_WINDOWS = 2  # one tells nothing of chance
-LOST_SHARE = 1.0  # of the error: more is no matter of which windows there happen to be
+MIN_WINDOWS = 2  # from one alone nothing can be said of chance
+LOST_SHARE = 1.0  # of the error: a larger difference cannot depend on the choice of windows
 
 
 def find_better(one: Array, other: Array) -> bool | None:
@@ -22,7 +22,10 @@ def find_better(one: Array, other: Array) -> bool | None:
 
 
 def find_less_lost(one: Array, other: Array) -> bool | None:
-    """The same, where being lost in a few windows counts, however little that is sure."""
+    """As `find_better`, but a model that fails in a few windows only is the worse one, too.
+
+    Such windows make the mean error large, while nothing is sure by their spread.
+    """
     stays, other_stays = (bool(np.isfinite(error).all()) for error in (one, other))
     if not (stays and other_stays):
         return stays if stays != other_stays else None
@@ -32,9 +35,9 @@ def find_less_lost(one: Array, other: Array) -> bool | None:
 
 
 def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
-    """By which share `other` is surely smaller than `error` (w,); 0 where that is not sure.
+    """By which share `other` (w,) is surely smaller than `error` (w,); 0 where that is not sure.
 
-    Of so many that were `tried` the best is smaller by chance as well.
+    `tried`: if `other` is the best of several, how many: the best is smaller by chance as well.
     """
     if not np.isfinite(other).all():
         return 0.0
@@ -47,31 +50,31 @@ def find_sure_improvement(error: Array, other: Array, tried: int = 1) -> float:
 
 
 def surely_costs(error: Array, usual: Array, least: float) -> bool:
-    """Whether an error (w,) is surely larger than the usual one, and by more than that share.
+    """Whether an error (w,) is surely larger than the usual one (w,), by more than `least`.
 
-    Several times as large it may be because of a few windows in which a model is lost: these make
-    the mean large and nothing sure.
+    An error that is more than twice as large always counts. It may come from a few windows in which
+    a model fails; these make the mean large, while nothing is sure by their spread.
     """
     more = ratio(error, usual) - 1.0
     return more > LOST_SHARE or (more > least and _is_surely_less(usual, error))
 
 
 def ratio(error: Array, other: Array) -> float:
-    """Of two errors (w,) over all windows; infinite where a model diverged."""
+    """Ratio of the root mean of two squared errors (w,); infinite where a model diverged."""
     with np.errstate(invalid="ignore", over="ignore"):
         return float(np.sqrt(np.nan_to_num(np.mean(error) / np.mean(other), nan=np.inf)))
 
 
 def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN_STANDARD_ERRORS) -> bool:
-    """Whether an error (w,) is less than another, beyond what windows differ by chance."""
+    """Whether an error (w,) is less than another by `certain` standard errors of the difference."""
     less = other - one
     return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
 
 
 def _find_limit(windows: int, tried: int) -> float:
-    """Standard errors that the best of so many differences reaches as seldom as one is certain.
+    """Standard errors that the best of `tried` differences exceeds as rarely as one exceeds two.
 
-    Of Student's t, for the spread is that of few windows; `np.std` divides by their number.
+    By Student's t, since the spread is that of few windows; `np.std` divides by their number.
     """
     chance = norm.sf(CERTAIN_STANDARD_ERRORS) / tried
     return float(student.isf(chance, windows - 1) * np.sqrt(windows / (windows - 1.0)))

@@ -1,4 +1,4 @@
-"""Which proposals are worth a fit."""
+"""Choose the proposals that are worth a fit."""
 
 from typing import Sequence
 
@@ -7,7 +7,7 @@ from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Term
 
-# Of what a term explains: another name may do better than first order predicts, not twice.
+# Of what a term explains: another effect may do better than first order predicts, but not twice.
 PROMISING_SHARE = 0.5
 # Of the best predicted decrease: effects predicted about the same are all refitted, for the order
 # of first-order predictions is not that of fits (a torpedo's weight, sixth to first order, was
@@ -18,12 +18,12 @@ WORTH_TRYING_SHARE = 0.2
 
 
 def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
-    """The proposals that should lower the sum of squares by more than their penalty."""
+    """Proposals that are predicted to lower the sum of squares by more than their penalty."""
     return [p for p in workspace.propose(current) if p.net_decrease > 0.0]
 
 
 def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
-    """The first proposals, as far as they could turn out best once refitted."""
+    """The first `trials` proposals, without those that cannot turn out best once refitted."""
     return [
         p for p in ranked[:trials] if p.net_decrease > WORTH_TRYING_SHARE * ranked[0].net_decrease
     ]
@@ -32,11 +32,18 @@ def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
 def find_swaps(
     workspace: SearchWorkspace, term: Term, rest: Removed, trials: int
 ) -> list[Proposal]:
-    """The first other effects that may explain what a removed term did, best first.
+    """Find other effects that may explain what a removed term did, the best first.
 
-    All that should explain nearly as much as it did are among them: loops about three angles were
-    third in the place of weak sticks and drag, and likelier once refitted. Where a term itself is
-    hardly worth its penalty, a rival need not be: the two share what they explain.
+    All effects that are predicted to explain nearly as much are among them: in one case loops on
+    board came third in the place of weak sticks and drag, and were likelier once refitted. Where
+    the term itself is hardly worth its penalty, a rival need not be worth its own: the two share
+    what they explain.
+
+    Args:
+        workspace: of the search.
+        term: that was removed.
+        rest: the hypothesis without it.
+        trials: how many effects are wanted, at least.
     """
     others = [p for p in rest.others if p.term.id != term.id]
     trials = max(trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in others))
@@ -46,5 +53,5 @@ def find_swaps(
 
 
 def measure_explained(workspace: SearchWorkspace, proposal: Proposal) -> float:
-    """Decrease of the sum of squares, without its penalty."""
+    """The predicted decrease of the sum of squares, penalty not subtracted."""
     return proposal.net_decrease + workspace.penalty * proposal.term.choices

@@ -1,4 +1,4 @@
-"""What looks worth adding, judged to first order, and what chance alone would seem to explain."""
+"""Rank candidates to first order, and draw what chance alone would seem to explain."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -11,14 +11,16 @@ from rovsim.estimation.observer.hypothesis import Term
 from rovsim.estimation.observer.least_squares import Reduction, select_columns, solve_bounded
 from rovsim.estimation.sensitivities import CandidateColumns
 
-TRUSTED = 3.0  # scales: how far from its start a first-order guess is believed
+TRUSTED = 3.0  # scales from its start: how far a first-order prediction is believed
 
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """A term worth trying, and where to start.
+    """A term that may be worth adding.
 
-    `net_decrease`: predicted, of the sum of squares, less the penalty of its parameters.
+    Attributes:
+        term: at the values that a fit should start from.
+        net_decrease: predicted decrease of the sum of squares, less the penalty of its parameters.
     """
 
     term: Term
@@ -26,12 +28,12 @@ class Proposal:
 
 
 def rank_proposals(G: Array, blocks: Sequence[CandidateColumns], penalty: float) -> list[Proposal]:
-    """The best start of each effect, the most promising effect first.
+    """Propose each effect at its best start, the most promising effect first.
 
     Args:
         G: Gram matrix (1 + c, 1 + c) of the innovations and all columns.
-        blocks: which columns are whose.
-        penalty: of a parameter.
+        blocks: which columns belong to which candidate.
+        penalty: of each parameter.
     """
     best: dict[str, Proposal] = {}
     for block in blocks:
@@ -45,7 +47,7 @@ def rank_proposals(G: Array, blocks: Sequence[CandidateColumns], penalty: float)
 
 
 def _step(candidate: Candidate, reduction: Reduction) -> Term:
-    """A candidate with what was chosen of it free, where that leads; thresholds where they are."""
+    """The term after a first-order step of the chosen parameters; thresholds do not move."""
     moved = dict(zip((candidate.sloped[j] for j in reduction.chosen), reduction.x, strict=True))
     kept = [p.name for p in candidate.thresholds]
     term = candidate.term([name for name in candidate.free if name in moved or name in kept])
@@ -68,12 +70,12 @@ def _predict_reduction(G: Array, block: CandidateColumns, penalty: float) -> Red
 def draw_chance_decreases(
     G: Array, blocks: Sequence[CandidateColumns], penalty: float, draws: int, seed: int
 ) -> Array:
-    """The largest net decrease (draws,) that noise alone would give to any candidate.
+    """Draw the largest net decrease (draws,) that any candidate reaches by noise alone.
 
     Args:
         G: Gram matrix (c, c) of all columns.
-        blocks: which columns are whose.
-        penalty: of a parameter.
+        blocks: which columns belong to which candidate.
+        penalty: of each parameter.
         draws: how many.
         seed: of the draws.
     """
@@ -88,7 +90,7 @@ def draw_chance_decreases(
 
 
 def _chance_decreases(G: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
-    """Net decrease (draws,) by one candidate, of drawn products (draws, c) with its columns."""
+    """Net decrease (draws,) by one candidate; z (draws, c) are products of noise and columns."""
     own, s = list(block.derivatives), block.secant
     if s is None:  # the best of its columns alone
         return (

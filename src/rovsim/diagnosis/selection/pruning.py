@@ -1,4 +1,4 @@
-"""Without free parameters that are not worth their penalty."""
+"""Remove free parameters that are not worth their penalty."""
 
 from dataclasses import replace
 
@@ -11,9 +11,9 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 
 
 def prune(workspace: SearchWorkspace, current: Fit) -> Fit:
-    """Without free parameters that are not worth their penalty, one at a time.
+    """Remove free parameters that are not worth their penalty, one at a time.
 
-    A hypothesis that could not be fitted stays: nothing is known of what its parameters are worth.
+    A hypothesis whose model diverges stays as it is: what its parameters are worth is not known.
     """
     while len(current.hypothesis.x) and current.is_finite:
         smaller = _drop_weakest(workspace, current)
@@ -31,7 +31,7 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
     h = current.hypothesis
     certain = current.z_scores**2
     for term, own in zip(h.terms, h.columns, strict=True):
-        if own and not term.vanishes:  # it would go as a whole
+        if own and not term.vanishes:  # such a term can only be removed as a whole
             certain[own] = np.max(certain[own])
     certain[h.shapes] = np.inf
     weakest = int(np.argmin(np.nan_to_num(certain, nan=np.inf)))
@@ -41,10 +41,10 @@ def _drop_weakest(workspace: SearchWorkspace, current: Fit) -> Hypothesis | None
 
 
 def drop_parameters(h: Hypothesis, weak: Array) -> Hypothesis:
-    """The hypothesis without some of its free parameters (k,), and without terms that have none.
+    """The hypothesis without the free parameters of a mask (k,), and without terms left with none.
 
-    An effect that is not absent at its defaults stays or goes as a whole: it goes with the last.
-    Shapes go with the last of the others.
+    A term that still acts at its defaults is removed as a whole, with the first of its parameters.
+    Parameters that are shapes are removed with the last of the others.
     """
     terms = []
     for term, own in zip(h.terms, h.columns, strict=True):

@@ -1,7 +1,7 @@
 """A steady current, or one that wanders?
 
-What is missing and not foreseen to first order can pass for a current that wanders a little. That
-takes a steady one with it, which nothing then asks for, so the two are fitted side by side.
+Missing effects that act beyond first order can look like a current that wanders a little. A current
+that wanders also explains a steady one, which would then never be proposed. So both are fitted.
 """
 
 from dataclasses import replace
@@ -14,10 +14,10 @@ from rovsim.estimation.observer.hypothesis import Term
 
 
 def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorkspace, Fit]:
-    """A steady current in the place of one that wanders, where that is likelier.
+    """Replace a wandering current by a steady one, where that is likelier.
 
-    The noise is then that of what the steady one leaves: one that wanders takes more than its due,
-    and under the little that it leaves nothing else would be seen.
+    The noise is then fitted to what the steady current leaves. A wandering current explains too
+    much, and beside it no other effect would be found.
     """
     h = current.hypothesis
     if not workspace.noise.drift or Current.id in (term.id for term in h.terms):

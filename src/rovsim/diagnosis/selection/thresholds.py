@@ -1,7 +1,7 @@
-"""Where a threshold lies: tried, for derivatives do not lead there.
+"""Find the value of a threshold by trying values, since derivatives do not lead there.
 
-What is just below a threshold acts at other moments than what is just above it, so that a small
-step tells nothing of a larger one: a fit moves by single lines of the log, and stops.
+A slightly larger threshold excludes just a few lines of the command log. So the effect of a small
+step says nothing about a larger one, and a fit stops after a few lines.
 """
 
 import numpy as np
@@ -10,13 +10,13 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
-ABOUT = np.arange(-2.0, 2.5, 0.5)  # resolutions from the best of those that are tried
+ABOUT = np.arange(-2.0, 2.5, 0.5)  # in resolutions: values about the best of the grid
 
 
 def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> Hypothesis:
-    """A hypothesis with the thresholds of one of its terms where they explain most.
+    """Set the thresholds of one term of a hypothesis to the values that explain most.
 
-    Each value of its grid is tried, then what is about the best. All else stays as it is.
+    The values of a grid are tried, then values about the best one. All other parameters stay.
     """
     each = zip(h.terms, h.columns, strict=True)
     own = [
@@ -34,7 +34,7 @@ def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> H
 
 
 def _choose(workspace: SearchWorkspace, h: Hypothesis, column: int, values: Array) -> Hypothesis:
-    """The hypothesis with the value of a parameter that leaves least, perhaps its own."""
+    """The hypothesis with the best of some scaled values of one parameter, its own among them."""
     tried = [h]
     for value in values:
         x = h.x

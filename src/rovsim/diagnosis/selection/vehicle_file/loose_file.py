@@ -1,11 +1,11 @@
-"""A special effect beside a loose vehicle file, which may be off everywhere.
+"""Judge a special effect beside a loose vehicle file, of which any value may be wrong.
 
-Where several effects that the file states were selected, it is off elsewhere too, mostly by too
-little to be found: a dozen such numbers, none of them worth its penalty, may explain together what
-a special effect seems to. So there it is judged with all of the file free, as far as such files are
-off (`estimation/file_effects.py`), and to first order. Where the file explains it, its numbers are
-sought together: linear and quadratic drag of opposite sign look like friction, and neither alone
-explains anything.
+Where several file effects were accepted, other values of the file are wrong, too, mostly by too
+little to be found. A dozen such values, none of them worth its penalty, may together explain what a
+special effect seems to explain. So there a special effect is judged to first order with all values
+of the file free, as far as such files are off (`estimation/file_effects.py`). If the file explains
+it, the values are looked for together: linear and quadratic drag of opposite sign look like
+friction, and neither explains anything by itself.
 """
 
 from dataclasses import dataclass
@@ -29,15 +29,19 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.least_squares import eliminate_columns, solve
 
-# Some thirty effects, each there once in thirty times, against a coefficient of a file that is
-# known to be off.
+# Prior odds: each of some thirty special effects is missing in one of thirty cases, whereas a value
+# of a loose file is wrong in any case.
 FILE_LR = lr_statistic_of(odds=1000.0)
 
 
 class FileNumber(NamedTuple):
-    """A parameter of a candidate that the file states.
+    """A value of the vehicle file, as a parameter of a candidate.
 
-    `row` of the workspace's Gram matrix; `spread`, in scales, how far the file may be off.
+    Attributes:
+        candidate: the file effect.
+        parameter: its name.
+        row: of the parameter in the workspace's Gram matrix.
+        spread: how far the file may be off, in scales.
     """
 
     candidate: Candidate
@@ -55,13 +59,13 @@ class Contender(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class LooseFile:
-    """A vehicle file that may be off everywhere, beside the fits of a workspace."""
+    """A vehicle file of which any value may be wrong, beside the fits of a workspace."""
 
     workspace: SearchWorkspace
 
     @cached_property
     def numbers(self) -> list[FileNumber]:
-        """All that it can be wrong about."""
+        """All values that may be wrong."""
         base, numbers = self.workspace.sensitivities.base_model, []
         for block in self.workspace.sensitivities.blocks:
             effect = block.candidate.effect
@@ -69,7 +73,7 @@ class LooseFile:
                 continue
             each = zip(block.derivatives, block.candidate.term().parameters, strict=True)
             for column, parameter in each:
-                # one thruster's gain is off by a fault
+                # the gain of a single thruster is a fault of that thruster, not of the file
                 if effect.id != ThrusterGain.id or parameter.name in ONE_GAIN:
                     spread = spread_of_file(base, effect, parameter)
                     numbers.append(FileNumber(block.candidate, parameter.name, 1 + column, spread))
@@ -84,17 +88,17 @@ class LooseFile:
         return np.array([number.spread for number in self.numbers])
 
     def measure_cost(self, fit: Fit) -> float:
-        """What a fit leaves of the sum of squares with all of the file free, to first order."""
+        """The sum of squares that a fit leaves with all values of the file free, to first order."""
         return self._cost_at(self.workspace.columns.gram(fit.linearised))
 
     def _cost_at(self, G: Array) -> float:
         return cost_within(G, self._rows, self._spread)
 
     def measure_doubt(self, fit: Fit) -> float:
-        """How much likelier a file is that is off everywhere than one that is right beside a fit.
+        """How much likelier a loose file is than a right one, beside the effects of a fit.
 
-        Twice the log of Bayes' factor, to first order, of all numbers of the file as free as
-        such files are off. Each number that nothing asks for counts against it.
+        Twice the log of the Bayes factor, to first order, with all values of the file as uncertain
+        as such files are. Each value that does not need to change counts against it.
         """
         G, spread = self.workspace.columns.gram(fit.linearised), self._spread
         H = G[np.ix_(self._rows, self._rows)]
@@ -102,12 +106,12 @@ class LooseFile:
         return float(G[0, 0]) - self._cost_at(G) - needless
 
     def measure_loss(self, fit: Fit, term: Term) -> float:
-        """How much more is left beside a loose file without one term of a fit."""
+        """By how much the sum of squares grows without one term of a fit, beside a loose file."""
         rest = self.workspace.gram_without(fit, term)
         return self._cost_at(rest) - self.measure_cost(fit)
 
     def find_limit(self, term: Term) -> float:
-        """What a term must take away beside a loose file; nothing if it is a file effect."""
+        """The least loss that justifies a term beside a loose file; 0 for a file effect."""
         if term.id in FILE_EFFECT_IDS:
             return 0.0
         return self.workspace.penalty * term.choices + FILE_LR
@@ -120,10 +124,13 @@ class LooseFile:
         return self.measure_loss(fit, term) <= self.find_limit(term)
 
     def weigh(self, own: Contender, other: Contender, deviance_difference: float) -> float:
-        """How much less likely the other's fit is, beside the file where its own makes it loose.
+        """By how much less likely the other fit is, beside a loose file if `own` makes it loose.
 
-        Both file effects, or hopeless: `deviance_difference`, what is known of the two fits as they
-        are.
+        Args:
+            own: the accepted effect.
+            other: the effect in its place.
+            deviance_difference: of the two fits as they are. It is returned where both are file
+                effects, where the file is not loose, or where the other fit is hopeless.
         """
         both = own.term.id in FILE_EFFECT_IDS and other.term.id in FILE_EFFECT_IDS
         loose = has_loose_file(own.fit.hypothesis)
@@ -133,10 +140,13 @@ class LooseFile:
         return more + self.find_limit(other.term) - self.find_limit(own.term)
 
     def propose(self, current: Fit) -> Hypothesis | None:
-        """With all of its numbers that are worth their penalty beside each other; None: nothing.
+        """Add all values of the file that, to first order, are worth their penalty together.
 
-        To first order. Without the gain of the thrusters: any other number left out would seem to
-        fix the common scale, and the gain would follow it away from what the file says.
+        The gain of the thrusters is not among them. Values that are left out would seem to
+        determine the common scale, and the gain would follow it away from the file's.
+
+        Returns:
+            The hypothesis with these values; None where there are none.
         """
         numbers = [n for n in self.numbers if n.candidate.effect.id != ThrusterGain.id]
         own, G = [number.row for number in numbers], self.workspace.columns.gram(current.linearised)
@@ -149,11 +159,11 @@ class LooseFile:
 
 
 def cost_within(G: Array, rows: Sequence[int], spread: Array) -> float:
-    """What is left of the sum of squares with some columns free within their spread.
+    """The sum of squares that is left with some columns free within their spread.
 
     Args:
         G: Gram matrix (1 + c, 1 + c) of the innovations and the candidates' columns.
-        rows: of it, k that are free.
+        rows: of it (k,), that are free.
         spread: of each (k,), in scales.
     """
     H, b = G[np.ix_(rows, rows)], G[rows, 0]
