@@ -13,13 +13,14 @@ from rovsim.simulation.prediction import Prediction
 from rovsim.simulation.windows import find_windows, predicted
 
 BINS = 25  # at most
-NARROWEST = 0.2  # s: wider than the spacing of bins that were recorded as means
+NARROWEST = 0.2  # s: wider than the spacing of recordings that are means over bins
 
 
 class GrowthScore:
-    """Squared velocity errors (b, 6) by the time since the anchor, summed over test runs.
+    """Collects squared velocity errors by the time since the start of a window, over test runs.
 
-    `horizon` s: how long the windows are.
+    Args:
+        horizon: length of the windows, s.
     """
 
     def __init__(self, horizon: float) -> None:
@@ -29,7 +30,7 @@ class GrowthScore:
         self._count, self._squares = np.zeros((self._bins, 6)), np.zeros((self._bins, 6))
 
     def add(self, motion: Motion, prediction: Prediction) -> None:
-        """Take in a run and its windows; a train run is passed by."""
+        """Add a run with the prediction in its windows; ignore a train run."""
         if motion.run.split != "test":
             return
         age = _age(motion, self.horizon)
@@ -44,7 +45,7 @@ class GrowthScore:
 
     @property
     def curve(self) -> Curve:
-        """Velocity RMSE against time, of measured axes; nothing without test runs."""
+        """Velocity RMSE of measured axes against time; empty without test runs."""
         seen = np.flatnonzero(self._count.any(axis=1))
         rows = root_mean(self._squares[seen], self._count[seen])
         columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
@@ -52,7 +53,7 @@ class GrowthScore:
 
 
 def _age(motion: Motion, horizon: float) -> Array:
-    """Time since the anchor of the window each sample belongs to, s."""
+    """Time (n,) of each sample since its window began, s; NaN outside of windows."""
     age = np.full(len(motion.time), np.nan)
     for window in find_windows(motion, horizon):
         at = predicted(motion, window)

@@ -1,4 +1,4 @@
-"""The ladder: the error falling, step by step, on runs that no step was fitted to."""
+"""The ladder: errors of one model after the other, on runs that none was fitted to."""
 
 from dataclasses import dataclass, field
 from typing import Iterable
@@ -14,9 +14,12 @@ from rovsim.simulation.prediction import Replay
 
 @dataclass(eq=False)
 class StepScore:
-    """A model's error in 2 s windows, all runs of a split pooled as they are taken in.
+    """Collects a model's error in windows of 2 s, pooled over all runs of a split.
 
-    `away`: ids of the runs in which the model runs away, so that the pooled error is None.
+    Attributes:
+        model: its name.
+        split: runs of other splits are ignored.
+        away: ids of runs in which the model diverges. The pooled error is then None.
     """
 
     model: str
@@ -26,7 +29,7 @@ class StepScore:
     _measured: Moments = field(default_factory=Moments.nothing)
 
     def add(self, motion: Motion, errors: Errors) -> None:
-        """Take in a run and the errors in its windows of 2 s; one of another split is passed by."""
+        """Add a run and the errors in its windows of 2 s; ignore a run of another split."""
         if motion.run.split != self.split:
             return
         sums = Sums.of(errors)
@@ -37,7 +40,7 @@ class StepScore:
 
     @property
     def step(self) -> Step:
-        """What was found; None where there was no run."""
+        """The step of the ladder; its numbers are None where there was no run."""
         if not self._errors.samples.any():
             return Step(model=self.model, split=self.split)
         metrics = self._errors.metrics()
@@ -51,7 +54,7 @@ class StepScore:
 
 
 def score_step(name: str, pairs: Iterable[tuple[Motion, Replay]], split: str = "test") -> Step:
-    """A model's step, from runs and their replays."""
+    """The step of a model, from runs and their replays."""
     score = StepScore(name, split)
     for motion, replay in pairs:
         score.add(motion, subtract(motion, replay.horizons[HORIZON]))

@@ -1,4 +1,4 @@
-"""All that is said of some models' errors, taken in run by run: nothing of a run is held."""
+"""All errors of several models, collected run by run: only sums of a run are kept."""
 
 from typing import Iterable, Mapping
 
@@ -14,9 +14,11 @@ from rovsim.simulation.prediction import Prediction, Replay
 
 
 class Scored:
-    """Errors of models by run, how they grow, and the models' steps of the ladder.
+    """Collects errors of models by run, their growth, and the models' steps of the ladder.
 
-    `longest` s of the horizons of their replays: in these windows the growth is seen.
+    Args:
+        models: their names.
+        longest: horizon of the replays, s, in whose windows the growth of errors is measured.
     """
 
     def __init__(self, models: Iterable[str], longest: float) -> None:
@@ -24,7 +26,7 @@ class Scored:
 
     @staticmethod
     def of(motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> "Scored":
-        """Of replays by model and run."""
+        """Collect replays, given by model and run."""
         found = Scored(replays, _find_longest(replays))
         for motion in motions:
             for runs in replays.values():
@@ -32,11 +34,14 @@ class Scored:
         return found
 
     def add(self, motion: Motion, replay: Replay) -> None:
-        """Take in the replay of a run by one of the models."""
+        """Add the replay of a run by one of the models."""
         self.take(motion, replay.model, replay.horizons.items())
 
     def take(self, motion: Motion, model: str, horizons: Iterable[tuple[str, Prediction]]) -> None:
-        """Take in what a model predicts of a run; of a long one each horizon is large."""
+        """Add the predictions of a model for a run, with the names of their horizons.
+
+        They may come from a generator, so that only one of them is in memory at a time.
+        """
         self._models[model].add(motion, horizons)
 
     @property
@@ -64,7 +69,7 @@ def score(motion: Motion, replay: Replay) -> RunErrors:
 
 
 def _find_longest(replays: Mapping[str, Mapping[str, Replay]]) -> float:
-    """Of all alike: they are of one configuration."""
+    """The longest horizon of all replays, which are of one configuration; 0 without replays."""
     return next((one.longest for runs in replays.values() for one in runs.values()), 0.0)
 
 
@@ -77,7 +82,7 @@ class _Score:
         found = {}
         for name, prediction in horizons:
             found[name] = self._summarize(motion, name, prediction)
-            del prediction  # while the next one is made
+            del prediction  # frees its memory before the next one is made
         run = motion.run
         self.runs[run.id] = RunErrors(
             split=run.split, control=run.control, open_loop=found.pop(OPEN_LOOP), windows=found

@@ -1,4 +1,4 @@
-"""How far a model is from the measurement: one definition of each number, used everywhere."""
+"""Errors of a model and metrics of them: one definition of each number, used everywhere."""
 
 from dataclasses import dataclass, fields
 from typing import Iterable
@@ -17,11 +17,16 @@ from rovsim.simulation.prediction import Prediction
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Model minus measurement at the samples both have, of one run.
+    """Model minus measurement of one run, at the samples that both have; NaN where not measured.
 
-    `nu` (n, 6), `nu_dot` (m, 6), `position` (n,) m, `attitude` (n,) rad; NaN where it was not
-    measured: `axes` (6,) which velocities were, `placed` and `turned` whether position and attitude
-    were, as a whole.
+    Attributes:
+        nu: of the body velocity (n, 6), m/s and rad/s.
+        nu_dot: of the body acceleration (m, 6), m/s2 and rad/s2.
+        position: distance (n,) of the positions, m.
+        attitude: angle (n,) between the attitudes, rad.
+        axes: (6,) whose velocity was measured.
+        placed: whether the whole position was measured.
+        turned: whether the whole attitude was measured.
     """
 
     nu: Array
@@ -34,7 +39,7 @@ class Errors:
 
 
 def subtract(motion: Motion, prediction: Prediction) -> Errors:
-    """Errors of one prediction at usable samples; infinite or NaN where it diverged."""
+    """Errors of a prediction at all usable samples; infinite or NaN from where it diverged."""
     both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
     moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
     with np.errstate(invalid="ignore"):
@@ -61,12 +66,18 @@ def _find_posed(measured: Measured | None) -> tuple[bool, bool]:
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """Sums over samples, from which all metrics follow; those of several runs add up.
+    """Sums of errors over samples, from which all metrics follow. Sums of several runs add up.
 
-    Of each measure the squares' sum and how many samples it was measured at: `samples` (6,) with a
-    velocity, `accelerated` (6,) with an acceleration, `placed` and `turned` with a pose.
-    `nu_squared`, `nu_absolute`, `nu_dot_squared` (6,), `position_squared` m2, `attitude_squared`
-    rad2.
+    Attributes:
+        samples: number (6,) of samples with a velocity.
+        accelerated: number (6,) of samples with an acceleration.
+        placed: number of samples with a position.
+        turned: number of samples with an attitude.
+        nu_squared: sum (6,) of squared velocity errors.
+        nu_absolute: sum (6,) of absolute velocity errors.
+        nu_dot_squared: sum (6,) of squared acceleration errors.
+        position_squared: sum of squared distances, m2.
+        attitude_squared: sum of squared angles, rad2.
     """
 
     samples: Array
@@ -81,7 +92,7 @@ class Sums:
 
     @staticmethod
     def nothing() -> "Sums":
-        """Of no samples."""
+        """Sums over no samples."""
         none, zero = np.zeros(6, int), np.zeros(6)
         return Sums(none, none, 0, 0, zero, zero, zero, 0.0, 0.0)
 
@@ -89,7 +100,7 @@ class Sums:
     def of(errors: Errors) -> "Sums":
         """Sums of the errors of one run."""
         known = errors.axes
-        with np.errstate(over="ignore"):  # of a model that diverged: infinite
+        with np.errstate(over="ignore"):  # the errors of a model that diverged are infinite
             return Sums(
                 len(errors.nu) * known.astype(int),
                 len(errors.nu_dot) * known.astype(int),
@@ -108,11 +119,11 @@ class Sums:
 
     @property
     def velocity_rmse(self) -> Array:
-        """RMS (6,) of the velocity error; NaN where there is nothing."""
+        """RMS (6,) of the velocity error, m/s and rad/s; NaN on axes without samples."""
         return root_mean(self.nu_squared, self.samples)
 
     def metrics(self) -> Metrics:
-        """The metrics (docs/formats.md); None where the model left the finite numbers."""
+        """The metrics of docs/formats.md; None where the model diverged."""
         return Metrics(
             acceleration_rmse=ByAxis.of(root_mean(self.nu_dot_squared, self.accelerated)),
             velocity_mae=ByAxis.of(_mean(self.nu_absolute, self.samples)),
@@ -128,14 +139,14 @@ def _mean(total: Array | float, count: Array | int) -> Array:
 
 
 def root_mean(total: Array | float, count: Array | int) -> Array:
-    """Root of the mean of `count` squares that add up to `total` (...); NaN where there is none."""
+    """Root mean square from a sum of squares `total` (...) over `count`; NaN where count is 0."""
     return np.asarray(np.sqrt(_mean(total, count)))
 
 
 def rms(x: Array, count: Array | None = None) -> Array:
-    """Root mean square over the first axis; NaN where there is nothing.
+    """Root mean square of an array (n, ...) over its first axis; NaN for n = 0.
 
-    `count` (...): so many were measured, where the others are zero.
+    `count` (...): how many of the n were measured, where all others are zero.
     """
     with np.errstate(over="ignore"):  # of a model that diverged: infinite
         return root_mean(np.square(x).sum(axis=0), len(x) if count is None else count)
@@ -148,9 +159,14 @@ def summarize(errors: Errors) -> Metrics:
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """How many samples (6,), their mean (6,) and squares (6,) about it; those of two sets add up.
+    """Moments of samples on six axes; those of two sets add up.
 
     Chan, Golub & LeVeque 1983, Am. Stat. 37(3), eq. 2.1.
+
+    Attributes:
+        count: number of samples (6,).
+        mean: of the samples (6,).
+        squares: sum of squared deviations from the mean (6,).
     """
 
     count: Array
@@ -159,12 +175,12 @@ class Moments:
 
     @staticmethod
     def nothing() -> "Moments":
-        """Of no samples."""
+        """Moments of no samples."""
         return Moments(np.zeros(6, int), np.zeros(6), np.zeros(6))
 
     @staticmethod
     def of(motion: Motion) -> "Moments":
-        """Of the measured velocity of a run, on the axes that were measured."""
+        """Moments of the measured velocity of a run, on the axes that were measured."""
         x = motion.nu[motion.usable]
         mean = x.mean(axis=0) if len(x) else np.zeros(6)
         count = len(x) * find_measured(motion.measured).astype(int)
@@ -178,7 +194,7 @@ class Moments:
 
     @property
     def std(self) -> Array:
-        """Standard deviation (6,); NaN where there is nothing."""
+        """Standard deviation (6,); NaN on axes without samples."""
         return root_mean(self.squares, self.count)
 
 
@@ -188,9 +204,16 @@ def measured_spread(motions: Iterable[Motion]) -> Array:
 
 
 def normalize(spread: Array, velocity_rmse: Array) -> float | None:
-    """Velocity RMSE (6,) over the standard deviation of the measured velocity, mean over axes.
+    """Velocity RMSE over the standard deviation of the measured velocity, averaged over axes.
 
-    Only axes that were excited count: an axis nobody moved cannot be judged.
+    Only axes that were excited count, as one that hardly moved cannot be judged.
+
+    Args:
+        spread: standard deviation (6,) of the measured velocity, m/s and rad/s.
+        velocity_rmse: (6,), m/s and rad/s.
+
+    Returns:
+        The mean; None where no axis was excited, or the model diverged.
     """
     moved = spread > EXCITED
     return or_none(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None

@@ -1,4 +1,4 @@
-"""Pushes that come at once: too many for any Gaussian disturbance, or a single one."""
+"""Sudden pushes: more large ones than a Gaussian disturbance has, or a single one."""
 
 from typing import Iterator
 
@@ -15,22 +15,22 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 SUDDEN = 0.2  # s, about what the readings resolve
 RARE = 3.5  # standard deviations: once in 2000 Gaussian pushes
-UNEVEN = 1.15  # times its standard deviation: turbulence is not as strong at all times, in all runs
+UNEVEN = 1.15  # times its standard deviation: turbulence varies with time and from run to run
 KICKS = (0.2, 1.0)  # s, from a knock to a snag
 ECHO = 2.0  # s within which the filter forgets a kick
-# One moment counts by its own size, not by its mean over the run, but must stand out that far.
+# A single push is judged by its own size, not by its mean over the run, but has to be this large.
 MOMENT = 4.0  # standard deviations of the disturbance
 
 
 def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
-    """Innovations with a heavier tail than any Gaussian disturbance, where commands were known."""
+    """Test for more large innovations than a Gaussian disturbance has, where commands are known."""
     few = max(1, round(SUDDEN / residual.runs[0].period))
     every = zip(residual.white, residual.unlogged, strict=True)
     known = [_add_neighbours(w, few)[_add_neighbours(lost, few) == 0] for w, lost in every]
     sums = np.concatenate(known)
     if not len(sums):
         return
-    # the median is not moved by what is looked for
+    # the median hardly changes with the few large innovations that are looked for
     usual = STD_PER_MAD * float(np.median(np.abs(sums)))
     count = int(np.sum(np.abs(sums) > RARE * usual))
     limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
@@ -45,7 +45,7 @@ def _add_neighbours(w: Array, few: int) -> Array:
 
 
 def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
-    """A single push that lasts a moment, at any time of any run at which thrusters were known."""
+    """Test for a single short push, at any time at which it is known what the thrusters did."""
     every = zip(residual.white, residual.filters, residual.runs, residual.undecided, strict=True)
     for w, f, run, undecided in every:
         for duration in KICKS:
@@ -57,7 +57,7 @@ def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
 
 
 def _kick(few: int, f: AxisFilter, run: ObservedRun) -> Array:
-    """How a kick of unit size over so many readings shows, until it is forgotten."""
+    """How a push of unit size over `few` readings shows in the innovations, until it has faded."""
     push = np.concatenate([np.ones(few), np.zeros(round(ECHO / run.period))])
     return lfilter(*f.response, push)
 
@@ -70,7 +70,16 @@ def _judge_kick(
     run: ObservedRun,
     known: Array,
 ) -> Iterator[Structure]:
-    """The largest kick of that duration in one run that begins where `known` (n,) says."""
+    """Judge the largest push of one duration in a run.
+
+    Args:
+        residual: of the axis.
+        w: whitened innovations (n,) of the run.
+        template: how a push of unit size shows in them.
+        duration: of the push, s.
+        run: the run.
+        known: mask (n,) of readings at which a push may begin.
+    """
     power = float(template @ template)
     factor = np.correlate(w, template, "valid") / power
     factor *= known[: len(factor)]

@@ -1,4 +1,4 @@
-"""When a log does not say what the thrusters did: what the vehicle did then is no physics."""
+"""Times at which the command log does not say what the thrusters did: no physics shows there."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,14 +10,20 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 SPIN = 0.3  # s within which propellers and motors follow a command
-FEW = 0.05  # of all lines: a log that is never regular lost none
+FEW = 0.05  # of all lines: at most so many count as lost, those with the largest changes
 
 
 def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
-    """Begins and ends (g, 2) of lost lines of the command log over which commands changed.
+    """Find gaps (lost lines) in the command log over which commands changed.
 
-    Where there are more than a few, those over which they changed most. In s since the start of the
-    run, as its `time`; `path` says when a logged command takes effect.
+    Where there are many, those over which commands changed most.
+
+    Args:
+        run: with its log.
+        path: says when a logged command takes effect.
+
+    Returns:
+        Begin and end (g, 2) of each gap, s since the first step, as `run.time`.
     """
     commands = run.motion.commands
     steps = np.diff(commands.time)
@@ -32,9 +38,10 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
 
 
 def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
-    """What the thrust over lost lines (g, 2) may have been off by (g, 6), m/s2 and rad/s2.
+    """By how much (g, 6) the acceleration may be wrong over gaps (g, 2), m/s2 and rad/s2.
 
-    As much as it changes from before until thrusters have followed.
+    This is how much the thrust changes from before a gap until thrusters have followed the command
+    after it.
     """
     a = run.drives.of([model])[0].wrench @ model.body.M_inv.T
     since = run.edges - run.edges[0]
@@ -45,22 +52,22 @@ def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
 
 
 def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
-    """Innovations (n,) of readings at which nobody knows whether a thruster turned.
+    """Mask (n,) of innovations at which the log does not say whether a thruster turned.
 
-    A command is rounded before it is logged, so that near the edge of a deadband the log does not
-    say on which side it was.
+    A command is rounded before it is logged. Near the edge of a deadband, it may have been on
+    either side.
     """
     times = [find_different(run, *models) for models in _list_either_side(h)]
     return _mark(run, np.vstack([np.empty((0, 2)), *times]))
 
 
 def mark_unlogged(run: ObservedRun, lost: Array) -> Array:
-    """Innovations (n,) of readings from where lines (g, 2) were lost until thrusters followed."""
+    """Mask (n,) of innovations in gaps (g, 2), and after them until thrusters have followed."""
     return _mark(run, lost + np.array([0.0, SPIN]))
 
 
 def _mark(run: ObservedRun, times: Array) -> Array:
-    """Innovations (n,) that overlap any of these times (g, 2)."""
+    """Mask (n,) of innovations that overlap any of the times (g, 2)."""
     found = np.zeros(len(run.time), bool)
     for begin, end in times:
         found |= run.overlapping(begin, end)
@@ -76,7 +83,7 @@ def find_different(run: ObservedRun, one: Model, other: Model) -> Array:
 
 
 def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
-    """Models with the values between which a log cannot tell where thrusters start."""
+    """For each threshold two models, with its value half a resolution lower and higher."""
     found = []
     for term, columns in zip(h.terms, h.columns, strict=True):
         for parameter, column in zip(term.parameters, columns, strict=True):
