@@ -21,7 +21,7 @@ from rovsim.intake.compose import propose
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.names import run_ids, run_key
 from rovsim.intake.pairing import pair
-from rovsim.intake.proposal import ANSWER, CampaignProposal, Question
+from rovsim.intake.proposal import ANSWER, CampaignProposal, OpenQuestion
 from rovsim.intake.survey import CommandCandidate, Track
 from rovsim.intake.survey.csv_files import look_into_csv
 from rovsim.intake.survey.starts import find_start
@@ -56,7 +56,7 @@ def test_whatever_is_written_is_read_back_the_same(name, column, comments, asked
     }
     told = tuple(comments)
     places = ("name", "mocap", "mocap.body", "commands.columns", "runs", "runs.0", "runs.1")
-    question = Question("mocap.world_axes", f"which? {column}", (("ned", name), (column, "")))
+    question = OpenQuestion("mocap.world_axes", f"which? {column}", (("ned", name), (column, "")))
     proposal = CampaignProposal(
         content, dict.fromkeys(places, told), (question,) * asked, checks=told
     )

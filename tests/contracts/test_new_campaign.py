@@ -4,7 +4,7 @@ import numpy as np
 
 from rovsim.apps.workbench.new_campaign import TOPICS, tell_unanswered
 from rovsim.intake.guesses import list_guesses
-from rovsim.intake.proposal import ANSWER, CampaignProposal, Question
+from rovsim.intake.proposal import ANSWER, CampaignProposal, OpenQuestion
 from rovsim.intake.survey.timing import Timing
 
 NO_LOG = "guess: no log of commands was among the files"
@@ -30,7 +30,7 @@ def test_a_guess_says_which_run_it_is_of_and_what_a_key_means():
 
 def test_all_that_is_not_answered_yet_is_named_as_on_the_screen():
     places = ("vehicle", "mocap.world_axes", "mocap.body_axes")
-    questions = [Question(place, "which?", ()) for place in places]
+    questions = [OpenQuestion(place, "which?", ()) for place in places]
     told = tell_unanswered(questions, {"vehicle": " ", "mocap.world_axes": "ned"})
     assert told.startswith("No answer yet: Vehicle and Axes of the rigid body.")
     assert tell_unanswered(questions, dict.fromkeys(places, "x")) == ""

@@ -35,7 +35,7 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.drifting_current import DriftFit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import Noise
-from rovsim.estimation.observer.random_walk import Rate
+from rovsim.estimation.observer.random_walk import WalkRate
 from rovsim.estimation.observer.residual_source import Linearised
 from rovsim.estimation.observer.usable_runs import UsableRuns
 from worlds import motion, sticks
@@ -233,6 +233,6 @@ def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(del
 
 
 def test_what_wanders_may_be_what_has_no_name():
-    drift = DriftFit(Rate(0.01, std=0.001, lr_statistic=120.0), lr_margin=100.0)
+    drift = DriftFit(WalkRate(0.01, std=0.001, lr_statistic=120.0), lr_margin=100.0)
     assert name_drift(drift, leaves_physics=False).probability == pytest.approx(1.0)
     assert name_drift(drift, leaves_physics=True).probability is None

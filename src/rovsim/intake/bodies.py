@@ -13,7 +13,7 @@ from rovsim.measurement.quality import STILL_POSITION
 
 
 @dataclass(frozen=True)
-class Body:
+class FoundBody:
     """The rigid body or topic that is the vehicle.
 
     Attributes:
@@ -27,7 +27,7 @@ class Body:
     choices: tuple[str, ...]
 
 
-def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Body:
+def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> FoundBody:
     """Find the body that is the vehicle in all files.
 
     Args:
@@ -42,18 +42,20 @@ def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Bod
     if not common:
         raise _nothing_common(motions)
     if len(common) == 1:
-        return Body(common[0], "" if len(names) == 1 else "the only one in all files", (common[0],))
+        return FoundBody(
+            common[0], "" if len(names) == 1 else "the only one in all files", (common[0],)
+        )
     scores = {name: score(name) for name in common}
     first, second = sorted(common, key=lambda name: -scores[name])[:2]
     if scores[first] >= MIN_CORRELATION and scores[first] > AHEAD * scores[second]:
         said = f"of {', '.join(common)} the one that follows the commands ({scores[first]:.2f})"
-        return Body(first, said, tuple(common))
+        return FoundBody(first, said, tuple(common))
     moving = [name for name in common if any(_moves(m, name) for m in motions)]
     if len(moving) == 1:
-        return Body(
+        return FoundBody(
             moving[0], f"guess: of {', '.join(common)} the only one that moves", tuple(common)
         )
-    return Body("", "", tuple(moving or common))
+    return FoundBody("", "", tuple(moving or common))
 
 
 def track_of(contents: Contents, body: str) -> Track:

@@ -14,7 +14,7 @@ from rovsim.evaluation.commanded_motion.predicted import velocity
 from rovsim.intake.facts import Facts
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.survey.starts import find_start
-from rovsim.intake.vehicles import Fit, as_logged
+from rovsim.intake.vehicles import VehicleMatch, as_logged
 from rovsim.measurement.quality import EXCITED, usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
@@ -59,7 +59,12 @@ def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterat
 
 
 def check_attitudes(
-    motion: MotionFile, log: CommandFile, fit: Fit, axes: Sequence[Array], lag: float, angles: bool
+    motion: MotionFile,
+    log: CommandFile,
+    fit: VehicleMatch,
+    axes: Sequence[Array],
+    lag: float,
+    angles: bool,
 ) -> str:
     """Check whether the motion follows its commands better in another convention of poses.
 
@@ -96,7 +101,9 @@ def _alike(a: Array, b: Array) -> Array:
     return found
 
 
-def check_order(motion: MotionFile, log: CommandFile, fit: Fit, axes: Array, lag: float) -> str:
+def check_order(
+    motion: MotionFile, log: CommandFile, fit: VehicleMatch, axes: Array, lag: float
+) -> str:
     """Check whether the motion follows better if two outputs are swapped, or one is reversed.
 
     Args:
@@ -137,7 +144,7 @@ def _turned(nu: Array, axes: Array) -> Array:
     return np.hstack([nu[:, place] * sign, nu[:, 3 + place] * sign])
 
 
-def _score(nu: Array, time: Array, commands: Commands, fit: Fit) -> float:
+def _score(nu: Array, time: Array, commands: Commands, fit: VehicleMatch) -> float:
     """Correlate body velocities (n, 6), FRD, with those that commands cause; mean of the axes.
 
     Only axes count that the commands excite; 0 where none of these was measured.

@@ -14,7 +14,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.intake.motions import correlate, turned
 from rovsim.intake.pairing import Pair
-from rovsim.intake.vehicles import Fit
+from rovsim.intake.vehicles import VehicleMatch
 
 SAME = 0.03  # correlation by which vehicles of one hull differ
 
@@ -33,15 +33,15 @@ class Choice:
         likeliest: the vehicle that `turned` and `runs` are of, where there is one.
     """
 
-    fit: Fit | None
+    fit: VehicleMatch | None
     said: str
-    fits: tuple[Fit, ...]
+    fits: tuple[VehicleMatch, ...]
     turned: tuple[tuple[float, Array], ...]
     runs: dict[int, CrossCorrelation]
-    likeliest: Fit | None = None
+    likeliest: VehicleMatch | None = None
 
 
-def choose(fits: Sequence[Fit], pairs: Sequence[Pair]) -> Choice:
+def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     """Choose the vehicle if no other hull explains the runs nearly as well.
 
     Also chosen is the only vehicle whose file names its columns as the log does.
@@ -78,7 +78,7 @@ def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Arra
     return turns[0][0] * float(np.mean(2.0 * ratios / (1.0 + ratios**2)))
 
 
-def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
+def _first(ordered: Sequence[VehicleMatch], scores: dict[str, float]) -> VehicleMatch:
     """Return the best vehicle, or the default one if it has that hull and is nearly as good."""
     best = ordered[0]
     for fit in ordered:
@@ -88,17 +88,17 @@ def _first(ordered: Sequence[Fit], scores: dict[str, float]) -> Fit:
     return best
 
 
-def _compared(fit: Fit, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
+def _compared(fit: VehicleMatch, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
     found = {k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)}
     return {k: one for k, one in found.items() if one is not None and one.excited.any()}
 
 
-def _one_hull(a: Fit, b: Fit) -> bool:
+def _one_hull(a: VehicleMatch, b: VehicleMatch) -> bool:
     """Whether two vehicles have the same hydrodynamics, so that only their thrusters differ."""
     return a.vehicle.hydrodynamics == b.vehicle.hydrodynamics
 
 
-def _told(fits: Sequence[Fit], scores: dict[str, float]) -> str:
+def _told(fits: Sequence[VehicleMatch], scores: dict[str, float]) -> str:
     if not scores:
         return f"the columns fit {', '.join(fit.name for fit in fits)}"
     told = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]

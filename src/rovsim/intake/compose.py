@@ -16,7 +16,7 @@ from rovsim.intake.proposal import CampaignProposal
 from rovsim.intake.runs import missing, runs
 from rovsim.intake.survey.timing import Timing
 from rovsim.intake.unread import list_unread, tell_unread
-from rovsim.intake.vehicles import Fit
+from rovsim.intake.vehicles import VehicleMatch
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.velocities import doubt_velocities
 
@@ -89,7 +89,7 @@ def _checked(facts: Facts) -> Iterator[str]:
         yield from _against_commands(facts, facts.choice.likeliest)
 
 
-def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
+def _against_commands(facts: Facts, fit: VehicleMatch) -> Iterator[str]:
     """Tell of runs whose motion does not go with the motion that a vehicle's commands cause."""
     runs, body = facts.choice.runs, facts.axes.body
     axes = BODY[body] if body else facts.choice.turned[0][1]
@@ -104,7 +104,9 @@ def _against_commands(facts: Facts, fit: Fit) -> Iterator[str]:
     yield from (f"{facts.ids[k]}: {said}" for k, said in told.items() if said)
 
 
-def _by_convention(facts: Facts, fit: Fit, axes: Array, most: int) -> Iterator[tuple[int, str]]:
+def _by_convention(
+    facts: Facts, fit: VehicleMatch, axes: Array, most: int
+) -> Iterator[tuple[int, str]]:
     """Tell of runs whose poses seem to be in another convention than the format's.
 
     Only the run that excites most axes, `most`, and runs that do not follow their commands are

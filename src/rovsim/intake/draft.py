@@ -6,7 +6,7 @@ A place is the dotted path of a key, such as `mocap.body` or `runs.0`.
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
-from rovsim.intake.proposal import ANSWER, Question
+from rovsim.intake.proposal import ANSWER, OpenQuestion
 
 
 @dataclass
@@ -21,7 +21,7 @@ class Draft:
 
     content: dict[str, Any] = field(default_factory=dict)
     comments: dict[str, list[str]] = field(default_factory=dict)
-    questions: list[Question] = field(default_factory=list)
+    questions: list[OpenQuestion] = field(default_factory=list)
 
     def say(self, place: str, *lines: str) -> None:
         """Add comment lines above the key of a place; empty ones are dropped."""
@@ -43,5 +43,5 @@ class Draft:
             The value that stands there until somebody answers.
         """
         meant = answers if isinstance(answers, Mapping) else dict.fromkeys(answers, "")
-        self.questions.append(Question(place, asks, tuple(meant.items()), free))
+        self.questions.append(OpenQuestion(place, asks, tuple(meant.items()), free))
         return ANSWER

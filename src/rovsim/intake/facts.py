@@ -9,7 +9,7 @@ import numpy as np
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.intake.axes import Axes, find_axes
-from rovsim.intake.bodies import Body, find_body, track_of
+from rovsim.intake.bodies import FoundBody, find_body, track_of
 from rovsim.intake.choice import Choice, choose
 from rovsim.intake.collect_files import CollectedFiles
 from rovsim.intake.motions import CommandFile, MotionFile, correlate, highest
@@ -17,7 +17,7 @@ from rovsim.intake.names import run_ids
 from rovsim.intake.pairing import Pair, pair
 from rovsim.intake.survey import Contents
 from rovsim.intake.together import list_stems
-from rovsim.intake.vehicles import Fit, fitting
+from rovsim.intake.vehicles import VehicleMatch, fitting
 from rovsim.measurement.recording.readers import mocap_readers
 
 OTHER_LOG = "Run init for each kind of log, with another out=."
@@ -43,7 +43,7 @@ class Facts:
 
     collected: CollectedFiles
     logs: tuple[CommandFile, ...]
-    body: Body
+    body: FoundBody
     pairs: tuple[Pair, ...]
     choice: Choice
     axes: Axes
@@ -118,7 +118,7 @@ def _logs(found: CollectedFiles) -> list[CommandFile]:
     return inside
 
 
-def _fits(logs: Sequence[CommandFile]) -> list[Fit]:
+def _fits(logs: Sequence[CommandFile]) -> list[VehicleMatch]:
     """List the vehicles that the logs fit.
 
     Raises:

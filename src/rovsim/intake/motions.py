@@ -17,7 +17,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.intake.survey.contents import CommandCandidate, Track
-from rovsim.intake.vehicles import Fit, as_logged
+from rovsim.intake.vehicles import VehicleMatch, as_logged
 from rovsim.measurement.rough_motion import Velocities, velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
@@ -64,7 +64,7 @@ class CommandFile:
     def __post_init__(self) -> None:
         object.__setattr__(self, "_caused", {})
 
-    def caused(self, fit: Fit) -> tuple[Array, Array] | None:
+    def caused(self, fit: VehicleMatch) -> tuple[Array, Array] | None:
         """Predict the velocity that the commands cause in a vehicle; computed once for each.
 
         Returns:
@@ -76,14 +76,14 @@ class CommandFile:
             known[fit.name] = self._velocity(fit)
         return known[fit.name]
 
-    def _velocity(self, fit: Fit) -> tuple[Array, Array] | None:
+    def _velocity(self, fit: VehicleMatch) -> tuple[Array, Array] | None:
         commands = as_logged(self.drive, fit, self.path)
         if commands is None or len(commands.time) < 2:
             return None
         return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
 
 
-def correlate(motion: MotionFile, log: CommandFile, fit: Fit) -> CrossCorrelation | None:
+def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossCorrelation | None:
     """Correlate a motion with the one that a log would cause in a vehicle, at many lags.
 
     Where the two clocks do not overlap, their starts are aligned first, and longer lags are tried.

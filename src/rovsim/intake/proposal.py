@@ -9,7 +9,7 @@ from rovsim.measurement.unanswered import ANSWER
 
 
 @dataclass(frozen=True)
-class Question:
+class OpenQuestion:
     """A key whose value only a person can give.
 
     Attributes:
@@ -40,7 +40,7 @@ class CampaignProposal:
 
     content: Mapping[str, Any]
     comments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    questions: tuple[Question, ...] = ()
+    questions: tuple[OpenQuestion, ...] = ()
     found: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
     copies: Mapping[Path, str] = field(default_factory=dict)
@@ -79,7 +79,7 @@ class CampaignProposal:
         return replace(self, content=content, questions=tuple(left))
 
 
-def _ask_for(question: Question) -> BadInput:
+def _ask_for(question: OpenQuestion) -> BadInput:
     return BadInput(
         "no answer",
         where=question.place,
@@ -88,7 +88,7 @@ def _ask_for(question: Question) -> BadInput:
     )
 
 
-def _check(question: Question, answer: str) -> None:
+def _check(question: OpenQuestion, answer: str) -> None:
     known = [value for value, _ in question.answers]
     if not question.free and answer not in known:
         raise BadInput(
@@ -118,4 +118,4 @@ def _copied(content: Any) -> Any:
     return [_copied(value) for value in content] if isinstance(content, list) else content
 
 
-__all__ = ["ANSWER", "CampaignProposal", "Question"]
+__all__ = ["ANSWER", "CampaignProposal", "OpenQuestion"]

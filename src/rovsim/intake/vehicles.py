@@ -20,7 +20,7 @@ OUTPUTS = "SERVO"  # columns of a log that may hold more outputs than thrusters
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class VehicleMatch:
     """A vehicle that a log of commands may be of.
 
     Attributes:
@@ -38,7 +38,7 @@ class Fit:
     by_name: bool
 
 
-def fitting(drive: CommandCandidate) -> list[Fit]:
+def fitting(drive: CommandCandidate) -> list[VehicleMatch]:
     """List the vehicles of conf/vehicle/ that can take a log's columns.
 
     If some of them name these columns as the log does, only those are listed.
@@ -47,12 +47,12 @@ def fitting(drive: CommandCandidate) -> list[Fit]:
     return [fit for fit in fits if fit.by_name] or fits
 
 
-def _fit(name: str, drive: CommandCandidate) -> Fit | None:
+def _fit(name: str, drive: CommandCandidate) -> VehicleMatch | None:
     vehicle = load_vehicle(name)
     expected = vehicle.command_columns
     if drive.kind in ("demand", "wrench"):
         return (
-            Fit(name, vehicle, drive.columns, drive.kind, False)
+            VehicleMatch(name, vehicle, drive.columns, drive.kind, False)
             if _drives(vehicle, drive)
             else None
         )
@@ -61,13 +61,13 @@ def _fit(name: str, drive: CommandCandidate) -> Fit | None:
     held = {*drive.columns, *(drive.rest if own else ())}
     if expected and (set(expected) == set(drive.columns) or (own and set(expected) <= held)):
         kind = drive.kind or _kind(drive, vehicle)
-        return Fit(name, vehicle, expected, kind, own) if kind else None
+        return VehicleMatch(name, vehicle, expected, kind, own) if kind else None
     count = len(expected)
     outputs = all(column.startswith(OUTPUTS) for column in drive.columns)
     if drive.kind is None or not count or len(drive.columns) < count or any(vehicle.angles):
         return None
     if len(drive.columns) == count or outputs:
-        return Fit(name, vehicle, drive.columns[:count], drive.kind, False)
+        return VehicleMatch(name, vehicle, drive.columns[:count], drive.kind, False)
     return None
 
 
@@ -91,7 +91,7 @@ def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
     return mixer is not None and all(vehicle.thrusters.mixing()[:, axis].any() for axis in moving)
 
 
-def as_logged(drive: CommandCandidate, fit: Fit, path: Path) -> Commands | None:
+def as_logged(drive: CommandCandidate, fit: VehicleMatch, path: Path) -> Commands | None:
     """Convert a log to commands as the vehicle takes them.
 
     Args:

@@ -7,7 +7,7 @@ from typing import Any, Mapping
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from rovsim.intake.proposal import CampaignProposal, Question
+from rovsim.intake.proposal import CampaignProposal, OpenQuestion
 
 WIDTH = 110
 HEAD = (
@@ -41,7 +41,7 @@ def _open(proposal: CampaignProposal) -> list[str]:
     return [*([asked] if asked else []), *(f"CHECK: {check}" for check in proposal.checks)]
 
 
-def _asked(question: Question) -> list[str]:
+def _asked(question: OpenQuestion) -> list[str]:
     choices = "; ".join(f"{v} ({meaning})" if meaning else v for v, meaning in question.answers)
     more = " or another" if question.free else ""
     return [f"ANSWER: {question.asks} {choices}{more}".rstrip()]

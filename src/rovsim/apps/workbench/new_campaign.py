@@ -9,7 +9,7 @@ from rovsim.apps.workbench.folders import DESCRIPTION, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 from rovsim.core.errors import RovsimError
 from rovsim.intake.guesses import list_guesses
-from rovsim.intake.proposal import CampaignProposal, Question
+from rovsim.intake.proposal import CampaignProposal, OpenQuestion
 from rovsim.reporting.wording import listed
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"
@@ -78,14 +78,14 @@ def _guesses(proposal: CampaignProposal) -> None:
             text(line)
 
 
-def tell_unanswered(questions: Sequence[Question], answers: Mapping[str, str]) -> str:
+def tell_unanswered(questions: Sequence[OpenQuestion], answers: Mapping[str, str]) -> str:
     """Which questions have no answer by place yet, by what their fields are called."""
     left = [q.place for q in questions if not answers.get(q.place, "").strip()]
     names = listed([TOPICS.get(place, place) for place in left])
     return f"No answer yet: {names}. Answer every question; no file does." if left else ""
 
 
-def _field(question: Question) -> Callable[[], str]:
+def _field(question: OpenQuestion) -> Callable[[], str]:
     """A field with the question above it; returns what tells its value."""
     label = TOPICS.get(question.place, question.place)
     text(question.asks)

@@ -14,7 +14,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.innovations import accelerate, observe
 from rovsim.estimation.observer.noise import CurrentPath, RunFilters, whiten_run
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.estimation.observer.random_walk import RandomWalk, Rate, fit_common, list_terms
+from rovsim.estimation.observer.random_walk import RandomWalk, WalkRate, fit_common, list_terms
 from rovsim.simulation.measured_states import undo_mocap_view
 
 CURRENT_STEP = 0.05  # m/s, a usual current
@@ -36,7 +36,7 @@ class DriftFit(NamedTuple):
     `lr_margin`: its likelihood-ratio statistic less that of what else comes close, if that does.
     """
 
-    rate: Rate
+    rate: WalkRate
     lr_margin: float
 
     @property

@@ -25,8 +25,14 @@ DRAW = 0  # seed
 LOG_RATE_STEP = 0.05  # for the second derivative
 
 
-class Rate(NamedTuple):
-    """The likeliest rate, its standard deviation, and its likelihood-ratio statistic."""
+class WalkRate(NamedTuple):
+    """The likeliest rate of a random walk.
+
+    Attributes:
+        value: in the unit of the walk, per sqrt(s).
+        std: its standard deviation, in the same unit.
+        lr_statistic: of the walk, against none.
+    """
 
     value: float
     std: float
@@ -94,7 +100,7 @@ class RandomWalk:
         """Likelihood-ratio statistic: how much likelier it makes innovations (6, m) of each run."""
         return _WalkLikelihood.of(z, self._decompose(run_filters)).lr_statistic(rate)
 
-    def fit_rate(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> Rate:
+    def fit_rate(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> WalkRate:
         """The likeliest rate for whitened innovations (6, m) of each run."""
         return _WalkLikelihood.of(z, self._decompose(run_filters)).fit()
 
@@ -129,7 +135,7 @@ class RandomWalk:
         return rests, walks
 
 
-def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> Rate:
+def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> WalkRate:
     """The likeliest size of what is the same in all runs, for whitened innovations (6, m) of each.
 
     `columns` (c, 6, m) of each run: innovations, white too, by each of its parts for a size of 1.
@@ -169,7 +175,7 @@ class _WalkLikelihood:
         more = rate**2 * self.power
         return float(np.sum(self.squares * more / (1.0 + more) - np.log1p(more)))
 
-    def fit(self) -> Rate:
+    def fit(self) -> WalkRate:
         """The likeliest rate."""
         tried = np.linspace(np.log(MIN_RATE), np.log(MAX_RATE), RATES_TRIED)
         best = tried[int(np.argmax([self.lr_statistic(np.exp(x)) for x in tried]))]
@@ -184,4 +190,4 @@ class _WalkLikelihood:
         sides += self.lr_statistic(np.exp(x + LOG_RATE_STEP))
         bend = (2.0 * lr_statistic - sides) / LOG_RATE_STEP**2
         std = np.exp(x) * np.sqrt(2.0 / bend) if bend > 0.0 else np.inf
-        return Rate(float(np.exp(x)), float(std), lr_statistic)
+        return WalkRate(float(np.exp(x)), float(std), lr_statistic)
