@@ -1,4 +1,4 @@
-"""One step at a time, with how sure it is: a model as it may as well be, many times side by side.
+"""One step at a time, with a band: many possible models are stepped side by side.
 
 ensemble = Ensemble(model)
 states = ensemble.start(state)
@@ -22,10 +22,10 @@ from rovsim.simulation.stepper import Stepper
 
 
 class Ensemble:
-    """Steppers of a model whose values, names and disturbance are drawn from what is known of them.
+    """Steppers of possible models, with effects, values and disturbances drawn from a posterior.
 
-    Of the state of the vehicle nothing is drawn: it may be known better than a motion capture
-    tells, or worse. Spread the states of `start` where it is not sure.
+    The state of the vehicle is not drawn, for it may be known better than a motion capture tells
+    it, or worse. Where it is uncertain, vary the states that `start` returns.
 
     Args:
         model: as `rovsim add` made it of a diagnosis.
@@ -36,7 +36,7 @@ class Ensemble:
         seed: of the draws.
 
     Raises:
-        BadInput: how sure the model is, is not known, or it cannot be stepped.
+        BadInput: the model file does not say how sure it is, or the model cannot be stepped.
     """
 
     def __init__(
@@ -63,13 +63,14 @@ class Ensemble:
         self._drawn = random.normal(size=(draws, 6))
 
     def start(self, state: Array) -> Array:
-        """States (draws, 13), all at the one (13,) where the run begins."""
+        """States (draws, 13) of all models, equal to the state (13,) in which the run begins."""
         return np.tile(np.asarray(state, dtype=np.float64), (len(self.members), 1))
 
     def step(self, states: Array, command: Array, dt: float) -> Array:
-        """The states (draws, 13) after dt s under a command that is given now and holds.
+        """The states (draws, 13) after dt s under a command that is given now and held.
 
-        The disturbance is held as long: take steps shorter than its memory, some 0.5 s.
+        The disturbance is held for dt as well, so take steps shorter than its correlation time,
+        which is some 0.5 s.
 
         Raises:
             BadInput: a command or states of another shape, or dt that is not positive.

@@ -1,8 +1,9 @@
-"""Windows of a replay in their neighbourhood, so that a filter finds no edge at theirs.
+"""Extend windows of a replay on both sides, so that the filter has no edge at their ends.
 
-The measurement went through its filter a stretch at a time. A window's motion that is filtered by
-itself has two edges where the measurement has none: a perfect model would err there. So the motion
-that was measured comes before it, and after it the model runs on, up to the ends of the stretch.
+The measurement went through its filter one stretch at a time. If the motion in a window were
+filtered by itself, it would have two edges where the measurement has none, and even a perfect model
+would show errors there. So the measured motion is put before the window, and the model runs on
+after it, up to the ends of the stretch.
 """
 
 from collections import defaultdict
@@ -21,7 +22,7 @@ AT_ONCE = 1 << 16  # samples in a stack: filters take some twenty times its room
 
 @dataclass(frozen=True)
 class Embedded:
-    """A window from sample `first` to `last`, with so many samples `before` and `after` it."""
+    """A window from sample `first` to `last`; `before` and `after`: by how many it is extended."""
 
     before: int
     after: int
@@ -30,7 +31,7 @@ class Embedded:
 
 
 def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[Embedded]:
-    """Windows of a sampled run with up to `reach` samples of their stretch on either side."""
+    """Extend windows of a sampled run by up to `reach` samples on either side, in their stretch."""
     stretches = find_stretches(np.isfinite(motion.nu).all(axis=1))
     found = []
     for a, b in spans:
@@ -46,13 +47,16 @@ def derive(
     motions: Sequence[Motion],
     signals: SignalSettings,
 ) -> list[Array]:
-    """Velocity and acceleration (2, n, 6) of each path, infinite where a window's motion diverged.
+    """Filter and differentiate the simulated poses of windows.
 
     Args:
-        paths: poses (n, 7) as reported, from the first sample of a window to the last after it.
-        windows: where they lie.
-        motions: as measured, of one clock.
+        paths: reported poses (n, 7) of each window, from its first sample to the last one after it.
+        windows: of each path.
+        motions: as measured, of each path; all have one clock.
         signals: filter and derivative of the measurement.
+
+    Returns:
+        Velocity and acceleration (2, n, 6) of each path; infinite where it diverged in its window.
     """
     found = [np.full((2, len(path), 6), np.inf) for path in paths]
     period = time_step(motions[0].time) if motions else 0.0
@@ -75,7 +79,7 @@ def derive(
 
 
 def _count_finite(path: Array, window: Embedded) -> int:
-    """Samples until a path leaves the finite numbers; 0 if that is inside its window."""
+    """Number of samples until a path diverges; 0 if it diverges inside its window."""
     finite = np.isfinite(path).all(axis=1)
     count = len(path) if finite.all() else int(np.argmin(finite))
     return count if count > window.last - window.first else 0

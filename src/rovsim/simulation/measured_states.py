@@ -1,4 +1,4 @@
-"""A model at the measured states: teacher-forced, it is told where it is and only accelerates."""
+"""The acceleration of a model at measured states (teacher forcing): it is not integrated."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ from rovsim.simulation.unfiltered_motion import sharpen
 
 
 def undo_mocap_view(model: Model, motion: Motion) -> Motion:
-    """The motion behind the reported one, if the motion capture sees as the model says."""
+    """The true motion of CO behind the reported one, if the motion capture is as the model says."""
     motion, back = sharpen(model, motion), model.mocap_view.inverse
     return (
         motion
@@ -38,7 +38,7 @@ def true_states(model: Model, motion: Motion, index: Array) -> Array:
     if motion.binned or (view.identity and not view.low_pass.time_constants):
         return undo_mocap_view(model, motion).state_at(index)
     found = np.empty((len(index), 13))
-    for k, i in enumerate(index):  # each stage knows its predecessor; the first two, the line
+    for k, i in enumerate(index):  # each stage needs the sample before, or the one after the first
         first = max(int(i) - len(view.low_pass.time_constants), 0)
         near = undo_mocap_view(model, motion.part(slice(first, int(i) + 2)))
         found[k] = near.state[int(i) - first]
@@ -46,34 +46,37 @@ def true_states(model: Model, motion: Motion, index: Array) -> Array:
 
 
 def interpolate_state(motion: Motion, time: float) -> Array:
-    """State (13,) between two samples or bin starts, linearly."""
+    """Interpolate the state (13,) linearly between two samples or starts of bins; `time` in s."""
     state = interpolate(motion.time, motion.state, time)
     state[3:7] = normalized(state[3:7])
     return state
 
 
 def interpolate(times: Array, values: Array, time: float) -> Array:
-    """Value (..., c) between two of `values` (..., n, c) at `times` (n,), linearly."""
+    """Interpolate `values` (..., n, c) at `times` (n,) linearly to one time: (..., c)."""
     k = int(np.clip(np.searchsorted(times, time) - 1, 0, len(times) - 2))
     share = (time - times[k]) / (times[k + 1] - times[k])
     return (1.0 - share) * values[..., k, :] + share * values[..., k + 1, :]
 
 
 def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
-    """Acceleration (n, 6) of a model at the states of a true motion, as it is driven there (n)."""
+    """Acceleration (n, 6) of a model at the states of a true motion, m/s2 and rad/s2.
+
+    `drive` is that of the model at the n samples or starts of bins.
+    """
     memory = measured_memory(model, motion, motion.time)
     times = motion.commands.since_start(motion.time)
     return Batch([model], motion.site).accelerations(drive, times, motion.state, memory)
 
 
 def accelerate_as_logged(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
-    """Acceleration (n, 6) of a model at the states of a true motion, driven as the log says."""
+    """Acceleration (n, 6) of a model at the states of a true motion, under the logged commands."""
     drive = drive_as_measured(model, motion, settings)
     return accelerate_as_measured(model, motion, drive)
 
 
 def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) -> Drive:
-    """What the log does to a model at every measured instant: means of the steps around it.
+    """The drive of a model at every sample or start of a bin, as the mean over the steps around it.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.

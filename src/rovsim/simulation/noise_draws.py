@@ -1,4 +1,4 @@
-"""What no model foresees, drawn at random: a disturbance, and the noise of what is measured."""
+"""Draw at random what no model predicts: a disturbance, and errors of the measurement."""
 
 from dataclasses import dataclass, replace
 
@@ -20,11 +20,17 @@ AT_ONCE = 1 << 16  # samples: filters take some twenty times their room
 
 @dataclass(frozen=True, eq=False)
 class NoiseDraws:
-    """Standard deviations and correlation times per axis (6,), and a generator.
+    """Draws disturbances and errors of measurements; (6,) is surge to yaw.
 
-    `disturbance_std` m/s2 or rad/s2 and `correlation_time` s of the disturbance. `reading_std` m,
-    rad of poses `period` s apart, m/s, rad/s of binned velocities; `colour_std` m, rad and
-    `colour_correlation_time` s of a slow error of poses.
+    Attributes:
+        disturbance_std: standard deviation (6,) of the disturbance, m/s2 and rad/s2.
+        correlation_time: of the disturbance (6,), s.
+        reading_std: standard deviation (6,) of the white noise of readings: m and rad for poses,
+            m/s and rad/s for velocities that are means over bins.
+        period: time between two readings, s.
+        colour_std: standard deviation (6,) of a slow error of poses, m and rad.
+        colour_correlation_time: of that error (6,), s.
+        random: generator of all draws.
     """
 
     disturbance_std: Array
@@ -37,7 +43,7 @@ class NoiseDraws:
 
     @staticmethod
     def of(noise: FittedNoise, random: np.random.Generator) -> "NoiseDraws | None":
-        """As a file has it; None where it does not say everything."""
+        """The draws for the noise of a model file; None where the file lacks some of it."""
         known = (noise.disturbance, noise.memory_s, noise.reading)
         if any(len(own) != 6 or None in own for own in known) or noise.period_s is None:
             return None
@@ -48,7 +54,10 @@ class NoiseDraws:
         return NoiseDraws(level, memory, reading, noise.period_s, colour, lasts, random)
 
     def draw_disturbance(self, steps: Array, draws: int) -> Array:
-        """Accelerations (draws, k, 6) over steps (k,) s: first-order Gauss-Markov."""
+        """Draw disturbances (draws, k, 6) over steps of `steps` (k,) s, m/s2 and rad/s2.
+
+        Each is a first-order Gauss-Markov process.
+        """
         fade = gauss_markov.decay(steps[:, None, None] / self.correlation_time)
         normal = self.random.normal(size=(len(fade), draws, 6))
         found = gauss_markov.propagate(fade, normal, self.random.normal(size=(draws, 6)))
@@ -57,7 +66,14 @@ class NoiseDraws:
     def resample_measurement_noise(
         self, motion: Motion, view: MocapView, signals: SignalSettings, draws: int
     ) -> list[Motion]:
-        """A motion as other measurements of it would have reported it, after the same chain."""
+        """A motion as `draws` other measurements of it would have given it.
+
+        Args:
+            motion: as it was measured.
+            view: of the motion capture, which may smooth.
+            signals: filter and derivative of the measurement.
+            draws: how many.
+        """
         if motion.binned:
             return [self._read_bins_again(motion) for _ in range(draws)]
         period, signals = time_step(motion.time), signals.suited(motion)
@@ -76,7 +92,10 @@ class NoiseDraws:
     def _misread(
         self, count: int, period: float, draws: int, view: MocapView, signals: SignalSettings
     ) -> tuple[Array, Array, Array]:
-        """Poses (draws, n, 7), velocities and accelerations (draws, n, 6) of a vehicle at rest."""
+        """Measurements of a vehicle at rest: poses (draws, n, 7), and velocities and accelerations.
+
+        The last two are (draws, n, 6). All have passed the smoothing of the cameras and the filter.
+        """
         pad = round(PAD / period)
         kicks = np.stack([self._err(count + 2 * pad, period) for _ in range(draws)])
         poses = np.concatenate([kicks[..., :3], rotations.exp(kicks[..., 3:])], axis=-1)
@@ -86,12 +105,12 @@ class NoiseDraws:
         return smooth[:, inside], nu[:, inside], nu_dot[:, inside]
 
     def _err(self, count: int, period: float) -> Array:
-        """Errors (count, 6) of single frames."""
-        one = self.reading_std * np.sqrt(self.period / period)  # of white noise
+        """Errors (count, 6) of single frames, `period` s apart."""
+        one = self.reading_std * np.sqrt(self.period / period)  # a reading is a mean of frames
         return one * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
 
     def _err_slowly(self, count: int, period: float) -> Array:
-        """Errors (count, 6) of the cameras that last."""
+        """Slow errors (count, 6) of the cameras."""
         if not self.colour_std.any():
             return np.zeros((count, 6))
         keep = gauss_markov.decay(period / self.colour_correlation_time)
@@ -101,7 +120,10 @@ class NoiseDraws:
 
 
 def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:
-    """A motion with errors of the poses, along its body axes, and of their derivatives."""
+    """Add errors to a motion: of poses `off` (n, 7), velocities and accelerations (n, 6).
+
+    All are along the body axes.
+    """
     place = motion.eta[:, :3] + rotations.rotate(motion.eta[:, 3:], off[:, :3])
     eta = np.hstack([place, rotations.multiply(motion.eta[:, 3:], off[:, 3:])])
     nu, nu_dot = motion.nu + nu, motion.nu_dot + nu_dot

@@ -1,4 +1,4 @@
-"""The motion that a smoothing motion capture saw, behind the one it reports."""
+"""Undo the smoothing of a motion capture: the motion that it saw, from the one it reports."""
 
 from dataclasses import replace
 
@@ -13,9 +13,9 @@ from rovsim.measurement.signals.motion import Motion
 
 
 def sharpen(model: Model, motion: Motion) -> Motion:
-    """The motion as it was seen, before the software smoothed it as the model says.
+    """Undo the smoothing that a model says the motion capture does.
 
-    Its filter and ours commute, so derivatives are turned back like the poses.
+    Its filter and that of the measurement commute, so it can be undone in derivatives as in poses.
     """
     if not model.mocap_view.low_pass.time_constants:
         return motion
@@ -24,10 +24,12 @@ def sharpen(model: Model, motion: Motion) -> Motion:
 
 
 def stage_outputs(model: Model, motion: Motion) -> Array:
-    """What entered the first low-pass, and what left each (stages + 1, n, c), in world axes.
+    """Input of the first low-pass of a motion capture, and the output of each.
 
-    Channels are those of `low_pass.in_world`: 21 of a sampled motion, 14 of a binned one. NaN where
-    the motion is not known.
+    Returns:
+        Array (stages + 1, n, c) in world axes; the last stage is what is reported. The channels are
+        those of `low_pass.in_world`, 21 of a sampled motion and 14 of a binned one. NaN where the
+        motion is unknown.
     """
     low_pass = model.mocap_view.low_pass
     rates = (motion.state_nu,) if motion.binned else (motion.nu, motion.nu_dot)
@@ -42,9 +44,9 @@ def stage_outputs(model: Model, motion: Motion) -> Array:
 
 
 def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
-    """The same (stages + 1, n, 14) at the starts of bins, which are farther apart than the frames.
+    """The same (stages + 1, n, 14) at the starts of bins, which are farther apart than frames.
 
-    The third derivative is the last that is taken from them.
+    Derivatives up to the third are used instead of the samples before.
     """
     eta, first = channels[:, :7], channels[:, 7:]
     second = _differentiate(first, time)
@@ -58,7 +60,7 @@ def _differentiate(values: Array, time: Array) -> Array:
 
 
 def _of_samples(motion: Motion, seen: Array) -> Motion:
-    """A sampled motion with what was seen (n, 21), where it is known."""
+    """A sampled motion with the channels that were seen (n, 21), where these are known."""
     known = np.isfinite(seen).all(axis=1)[:, None]
     old = (motion.eta, motion.nu, motion.nu_dot)
     eta, nu, nu_dot = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
@@ -66,7 +68,10 @@ def _of_samples(motion: Motion, seen: Array) -> Motion:
 
 
 def _of_bins(motion: Motion, seen: Array) -> Motion:
-    """A binned motion with what was seen (n, 14); means change as the bin's ends do on average."""
+    """A binned motion with the channels that were seen (n, 14).
+
+    The mean velocity of a bin changes by the average change at both of its ends.
+    """
     known = np.isfinite(seen).all(axis=1)[:, None]
     old = (motion.eta, motion.state_nu)
     eta, state_nu = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))

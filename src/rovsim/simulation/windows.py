@@ -1,4 +1,4 @@
-"""Where replays start anew: windows of some seconds inside usable stretches."""
+"""Windows of some seconds inside usable stretches: a replay starts again in each of them."""
 
 from typing import Iterable, Iterator
 
@@ -12,12 +12,17 @@ LAST_SHARE = 0.75  # of a window's length, that what is left of an uneven run mu
 
 
 def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
-    """Index pairs (anchor, end) of full windows inside usable stretches.
+    """Find all full windows inside usable stretches, one after the other.
 
-    None where a window is shorter than half a sample.
+    A window of a binned run ends at the bin that begins nearest to `seconds` after its start, since
+    bins may differ in length.
 
-    Of bins, whose number follows the uneven clock, the next window starts at the one that begins
-    nearest to `seconds` later.
+    Args:
+        motion: the run.
+        seconds: length of a window; there are no windows shorter than half a sample.
+
+    Returns:
+        Sample or bin at which each window begins, and the one at which it ends.
     """
     for first, last in motion.segments():
         if motion.binned:
@@ -40,17 +45,17 @@ def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterato
 
 
 def predicted(motion: Motion, window: tuple[int, int]) -> slice:
-    """Samples or bins that a window predicts: not the sample that it begins with."""
+    """Samples or bins that are predicted in a window: without the sample that it begins with."""
     anchor, end = window
     return slice(anchor, end) if motion.binned else slice(anchor + 1, end + 1)
 
 
 def last_predicted(motion: Motion, windows: Iterable[tuple[int, int]]) -> Array:
-    """The last of them (w,) in each window."""
+    """The last sample or bin (w,) that is predicted in each window."""
     return np.array([predicted(motion, window).stop - 1 for window in windows], int)
 
 
 def find_whole(motion: Motion) -> list[tuple[int, int]]:
-    """From the first usable sample to the last sample, once; nothing of an unusable run."""
+    """One window from the first usable sample to the last sample; none for an unusable run."""
     last = len(motion.time) - (0 if motion.binned else 1)
     return [(first, last) for first, _ in motion.segments()[:1] if first < last]
