@@ -1,10 +1,10 @@
-"""Where compiled code is kept: one folder for each state of the sources.
+"""Where compiled code is cached: one folder for each version of the sources.
 
-Numba keeps a function by its own file, and knows nothing of the functions that it calls. So all
-that is kept lies in a folder named by a digest of everything that can be compiled into it: the
-engine, the kernels of effects and of learned residuals, and Numba's version. Whatever is edited,
-the next run finds an empty folder; nothing in it is ever stale. Each process marks its folder as
-used when it starts, and removes those that no process marked for a month.
+Numba's cache checks the file of a function, but not those of the functions that it calls. So the
+name of our folder is a digest of all sources that can be compiled into it: the engine, the kernels
+of effects and of learned residuals, and Numba's version. After any edit the next run uses a new,
+empty folder, so that the cache is never stale. Each process marks its folder as used when it
+starts, and removes folders that no process marked for 30 days.
 """
 
 import hashlib
@@ -19,14 +19,14 @@ import numba
 from platformdirs import user_cache_path
 
 DYNAMICS = Path(__file__).parents[1]
-ROOMS = ("engine", "effects", "learned")  # whose functions are compiled
-# s, 30 days; our choice. A process that outlives it loses nothing: Numba compiles what it misses.
+ROOMS = ("engine", "effects", "learned")  # packages of `dynamics` whose functions are compiled
+# s, 30 days; our choice. A longer process loses nothing: Numba compiles again what is missing.
 UNUSED = 30 * 86400.0
 
 
 @cache
 def cache_folder() -> Path:
-    """Folder of what is compiled from these sources: in $ROVSIM_CACHE or the user's cache."""
+    """Folder of the code compiled from these sources, in $ROVSIM_CACHE or the user's cache."""
     root = Path(os.environ.get("ROVSIM_CACHE") or user_cache_path("rovsim"))
     folder = root / "compiled" / _digest_sources()
     with suppress(OSError):  # where nothing can be written, Numba says so
@@ -37,7 +37,7 @@ def cache_folder() -> Path:
 
 
 def prune(folders: Path) -> None:
-    """Remove the folders in `folders` that nobody marked as used for `UNUSED` seconds."""
+    """Remove the folders in `folders` that no process marked as used for `UNUSED` seconds."""
     oldest = time.time() - UNUSED
     for folder in folders.iterdir():
         with suppress(OSError):  # another process may have removed it
@@ -51,5 +51,5 @@ def _digest_sources() -> str:
 
 
 def digest(*parts: bytes) -> str:
-    """A short name for these bytes."""
+    """A short hexadecimal digest (SHA-256) of these bytes."""
     return hashlib.sha256(b"\n".join(parts)).hexdigest()[:16]

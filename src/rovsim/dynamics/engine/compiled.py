@@ -1,4 +1,4 @@
-"""How functions are compiled, and kept on disk (`rovsim.dynamics.engine.cache`)."""
+"""Decorators that compile functions with Numba and cache them on disk (`engine.cache`)."""
 
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,15 +11,19 @@ from numba.core.compiler_lock import global_compiler_lock
 from rovsim.dynamics.engine.cache import cache_folder
 
 MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
-# What makes a function callable from outside takes half of the time that it takes to compile.
-FROM_PYTHON: dict[str, Any] = {"no_cfunc_wrapper": True}  # from there, but not from C
+# Wrappers that make a function callable from outside take half of the time of its compilation.
+FROM_PYTHON: dict[str, Any] = {"no_cfunc_wrapper": True}  # callable from Python, but not from C
 UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def keep(**options: Any) -> Callable[[Callable], Any]:
-    """Compile a function that Python or a kept function calls, and keep what comes of it.
+    """Return a decorator that compiles a function with Numba and caches the result on disk.
 
-    What it calls may lie in `cache.ROOMS`, or in the module of a wrench effect.
+    The functions that it calls must be in the packages `cache.ROOMS` or in the module of a wrench
+    effect: the cache notices changes of these files alone.
+
+    Args:
+        options: of `numba.njit`.
     """
 
     def decorate(function: Callable) -> Any:
@@ -30,9 +34,10 @@ def keep(**options: Any) -> Callable[[Callable], Any]:
 
 
 def keep_address(signature: Any, **options: Any) -> Callable[[Callable], Any]:
-    """Compile a function of one signature that compiled ones get as an argument, and keep it.
+    """Return a decorator for a function that is passed to compiled functions as an argument.
 
-    They call it by its address, so none of them is compiled anew for it.
+    It is compiled for one signature, cached on disk, and called by its address; so the functions
+    that it is passed to need not be compiled again for it.
     """
 
     def decorate(function: Callable) -> Any:
@@ -44,7 +49,7 @@ def keep_address(signature: Any, **options: Any) -> Callable[[Callable], Any]:
 
 @contextmanager
 def _kept_there() -> Iterator[None]:
-    """Numba keeps what is decorated meanwhile in our folder."""
+    """Within this context, Numba caches functions that are decorated in our folder."""
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())  # type: ignore[attr-defined]
     try:
         yield
@@ -53,17 +58,18 @@ def _kept_there() -> Iterator[None]:
 
 
 def _compiled_once(function: Any) -> Any:
-    """Let one process compile it, and others wait for what comes of it, or load it.
+    """Lock the compilation of a function, so that one process compiles and others load the result.
 
-    Numba's own index of what is kept loses what two processes write at once, or takes one's for the
-    other's. Who compiles waits only for what is called, so no two wait for each other.
+    Numba's index of its cache loses or mixes up entries that two processes write at the same time.
+    There is no deadlock: while a function is compiled, its process waits only for the locks of
+    functions that it calls.
     """
     compile_it, locked = function.compile, lock_file(function)
 
     def compile_alone(signature: Any) -> Any:
         if signature in function.overloads:
             return compile_it(signature)
-        # in this order, whichever thread comes first; a lock made anew: none goes through a fork
+        # always in this order; the file lock is made anew, so that no lock is inherited by a fork
         with global_compiler_lock, FileLock(locked):
             return compile_it(signature)
 
@@ -72,7 +78,7 @@ def _compiled_once(function: Any) -> Any:
 
 
 def lock_file(function: Any) -> Path:
-    """Locked by the process that compiles a kept function."""
+    """The file that a process locks while it compiles a cached function."""
     return _lock_file(function.py_func)
 
 
@@ -80,13 +86,14 @@ def _lock_file(function: Any) -> Path:
     return cache_folder() / f"{function.__module__}.{function.__name__}.lock"
 
 
-kept = keep(nogil=True, **MATHS, **FROM_PYTHON)  # what Python calls, from any thread
-# Parts that are the same in every engine.
+kept = keep(nogil=True, **MATHS, **FROM_PYTHON)  # callable from Python, in any thread
+# Functions that are the same in every engine, inlined where they are called.
 inline_shared = keep(forceinline=True, **MATHS, **FROM_PYTHON)
 inline_internal = keep(forceinline=True, **MATHS, **UNSEEN)  # not called from Python
 internal = keep(**MATHS, **UNSEEN)  # too large or too rare to be inlined
-# Parts that depend on the effects: compiled anew for each engine, and kept as parts of it. What is
-# handed `extra` must be inlined: it is no argument, and its address no other process knows.
+# Functions that depend on the effects: compiled anew with each engine, and cached as part of it. A
+# function with an argument `extra` must be inlined, because the address of `extra` is different in
+# each process, so that the function could not be cached by itself.
 inlined = numba.njit(forceinline=True, **MATHS)  # helpers of an effect's kernel
 inline_anew = numba.njit(forceinline=True, **MATHS, **UNSEEN)
-entry = numba.njit(inline="always", **MATHS)  # the body of what an engine keeps
+entry = numba.njit(inline="always", **MATHS)  # the bodies of the functions that an engine caches

@@ -1,12 +1,14 @@
 """Fossen's equation of motion, compiled by Numba.
 
-`extra(at, p, body, acting)` is the wrench of one model's further effects: a compiled function that
-is handed down to where it is called, so that LLVM inlines the kernels of the effects there.
+`extra(at, p, body, acting)` returns the wrench (6) of all wrench effects of a model. This compiled
+function is passed down the calls, so that LLVM inlines the kernels of the effects.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
         = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)
 
-State: position NED, quaternion body to world, body velocity. SI, float64, FRD at CO.
+State: position in NED, quaternion (w, x, y, z) body to world, nu in body axes. SI, float64, FRD at
+CO. Vectors are tuples (`vectors`). Arguments in common: `body`, the `Constants` of one parameter
+set; `p`, its `WrenchParameters`; `acting`, see `types.Inputs`.
 """
 
 import numpy as np
@@ -31,8 +33,8 @@ from rovsim.dynamics.engine.vectors import (
 def rotation(q):
     """Rotation matrix body to world, by rows (Fossen 2021, eq. 2.73).
 
-    Homogeneous in q: where a Runge-Kutta stage has stretched it, all of R is stretched alike, and
-    no direction of the world is preferred.
+    Homogeneous in q: if a Runge-Kutta stage has changed the length of q, all elements of R are
+    scaled by the same factor, and no direction of the world is preferred.
     """
     w, i, j, k = q
     return (
@@ -44,7 +46,7 @@ def rotation(q):
 
 @inline_internal
 def quaternion_rate(q, nu):
-    """Rate of the quaternion under body rates (Fossen 2021, eq. 2.78)."""
+    """Time derivative of the quaternion q at velocity nu (6) (Fossen 2021, eq. 2.78)."""
     a, b, c = 0.5 * nu[3], 0.5 * nu[4], 0.5 * nu[5]
     return (
         -q[1] * a - q[2] * b - q[3] * c,
@@ -58,7 +60,7 @@ def quaternion_rate(q, nu):
 def coriolis(M, v):
     """C(v) v of a body with inertia M (6, 6), from its momentum (Fossen 2021, eq. 6.43).
 
-    Written as cross products it can do no work: v' C(v) v = 0 whatever M is.
+    Written with cross products, it does no work: v' C(v) v = 0 for any M.
     """
     h = times6(M, v)
     force = cross(v[3:], h[:3])
@@ -68,7 +70,7 @@ def coriolis(M, v):
 
 @inline_internal
 def flow(current, R, nu):
-    """Velocity through the water, and the rate of change of the current seen in body axes."""
+    """nu_r (6), and the rate (6) of a constant NED current (3,) as seen in turning body axes."""
     c = into_body(R, current)
     rate = cross(c, nu[3:])  # d/dt (R' v_c) = -omega x (R' v_c)
     nu_r = (nu[0] - c[0], nu[1] - c[1], nu[2] - c[2], nu[3], nu[4], nu[5])
@@ -77,13 +79,13 @@ def flow(current, R, nu):
 
 @inline_internal
 def damping_term(linear, quadratic, v):
-    """Damping force of one axis."""
+    """Linear and quadratic damping force of one axis at velocity v: positive = drag."""
     return -(linear + quadratic * abs(v)) * v
 
 
 @inline_internal
 def damping(a, b, v):
-    """Linear (a) and quadratic (b) diagonal damping (Fossen 2021, eq. 6.75)."""
+    """Wrench (6) of diagonal damping, linear a and quadratic b (Fossen 2021, eq. 6.75)."""
     return (
         damping_term(a[0], b[0], v[0]),
         damping_term(a[1], b[1], v[1]),
@@ -96,14 +98,14 @@ def damping(a, b, v):
 
 @inline_internal
 def restoring(net_weight, restoring_lever, R):
-    """Weight and buoyancy; the world's down in body axes is the last row of R."""
+    """Wrench (6) of weight and buoyancy; the last row of R is the NED z axis in body axes."""
     d, m = R[2], cross(restoring_lever, R[2])
     return net_weight * d[0], net_weight * d[1], net_weight * d[2], m[0], m[1], m[2]
 
 
 @internal
 def coupled_damping(coupling, v):
-    """Damping of each axis by motion along the others: linear, then quadratic matrix."""
+    """Wrench (6) of damping between axes; coupling (2, 6, 6): linear, then quadratic matrix."""
     tau = np.zeros(6)
     for i in range(6):
         for j in range(6):
@@ -113,7 +115,7 @@ def coupled_damping(coupling, v):
 
 @internal
 def thrust_loss(acting, advance, B, directions, nu_r):
-    """Change of the thruster wrench with inflow: F -> F (1 - c sign(F) d.v_r)."""
+    """Change (6) of the thruster wrench with inflow: F -> F (1 - c sign(F) d.v_r), c = advance."""
     tau = np.zeros(6)
     for n in range(B.shape[1]):
         inflow = dot3(vector3(directions[n]), nu_r)
@@ -124,7 +126,7 @@ def thrust_loss(acting, advance, B, directions, nu_r):
 
 @inline_anew
 def accelerate(extra, at, body, p, thrust, acting, level):
-    """Body acceleration under a thruster wrench (6,), of the forces in `acting` (n + s,)."""
+    """nu_dot (6) under a thruster wrench (6); level: z in NED where a floating vehicle rests."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
     tau = add6(tau, 1.0, at.drag)
@@ -158,9 +160,18 @@ def diagonal(a, b):
 
 @inline_anew
 def slope(extra, t, x, body, p, step, correction, site):
-    """Rate of change of the state at time t; `correction` (6,) adds to the acceleration.
+    """Time derivative of the state x at time t.
 
-    Axes that are held stay so: `M_inv` is zero there, and so must be the correction.
+    Args:
+        extra: wrench of the model's effects, see the module.
+        t: s since the start of the recording.
+        x: the state.
+        body: constants of the equation.
+        p: parameters of the wrench effects.
+        step: inputs of the present step, as `integration.step_of` returns them.
+        correction: (6) additional acceleration, m/s2 and rad/s2. It must be zero along axes that
+            are held, as `M_inv` is, so that they stay at rest.
+        site: as `integration.site_of` returns it.
     """
     thrust, acting, demand, duration = step
     R = rotation(x.attitude)

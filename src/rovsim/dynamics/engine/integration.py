@@ -1,7 +1,9 @@
-"""Integration of the equation of motion; `extra` as in `equation`, which it is handed on to.
+"""Numerical integration of the equation of motion, compiled by Numba.
 
-`data` is an exported residual, or None: then Numba compiles nothing of what evaluates one, which
-takes longer than all the rest.
+`extra` is the wrench of a model's effects, see `equation`. `data` is an exported learned residual,
+or None: Numba then does not compile its evaluation, which takes longer than everything else.
+`place` or `site`: what `site_of` returns. `body` and `own` are the constants and the parameters of
+one set, `p` and `bodies` those of all.
 """
 
 from math import exp, sqrt
@@ -30,7 +32,7 @@ ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 @inline_internal
 def moved(x, h, dx):
-    """x + h dx."""
+    """The state x + h dx; its quaternion is not normalised."""
     return State(
         add3(x.position, h, dx.position),
         add4(x.attitude, h, dx.attitude),
@@ -48,9 +50,9 @@ def renormalised(x):
 
 @inline_anew
 def runge_kutta(extra, t, x, h, body, p, step, correction, ramp, site):
-    """One classical Runge-Kutta 4 step, and the mean velocity over it (Nystroem's formula).
+    """One classical Runge-Kutta 4 step of h s; returns the state and the mean nu (Nystroem).
 
-    `ramp` is what the correction grows by over the step.
+    `correction` (6) is an additional acceleration, `ramp` (6) its change over the step.
     """
     k1 = slope(extra, t, x, body, p, step, add6(correction, -0.5, ramp), site)
     k2 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)
@@ -63,40 +65,40 @@ def runge_kutta(extra, t, x, h, body, p, step, correction, ramp, site):
 
 @inline_internal
 def through_water(x, body):
-    """Velocity through the water."""
+    """Velocity nu_r (6) relative to the water at a state."""
     return flow(body.current, rotation(x.attitude), x.nu)[0]
 
 
 @inline_internal
 def lagged(memory, nu_r, time):
-    """What is remembered after a time, in time constants, of going at nu_r."""
+    """Fluid memory (6) after moving at a constant nu_r for `time`, in time constants."""
     kept = exp(-time)
     return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
 
 
 @inline_internal
 def memory_push(body, memory):
-    """Acceleration by the water that still moves as the vehicle did."""
+    """Acceleration (6) by the fluid memory: by water that still moves as the vehicle did."""
     return times6(body.M_inv, each6(body.memory, memory))
 
 
 @internal
 def push_over_step(x, memory, h, body):
-    """The same at the middle of a step that begins at x; held, it is of second order."""
+    """The same at the middle of a step from x: held over the step, it is of second order."""
     ahead = lagged(memory, through_water(x, body), 0.5 * h * body.memory_decay)
     return memory_push(body, ahead)
 
 
 @internal
 def memory_after(memory, x, after, h, body):
-    """Memory after a step from one state to another."""
+    """Fluid memory after a step from state x to state `after`, at their mean nu_r."""
     mean = add6(through_water(x, body), 1.0, through_water(after, body))
     return lagged(memory, add6(ZERO6, 0.5, mean), h * body.memory_decay)
 
 
 @inline_anew
 def learned(extra, t, x, body, p, step, push, data, site, features, a_res):
-    """Learned acceleration error at x. tau_res = M a_res, so it simply adds to nu_dot."""
+    """Learned acceleration residual (6) at x: tau_res = M a_res, so it adds to nu_dot."""
     base = slope(extra, t, x, body, p, step, push, site)
     assemble_one(data, x.nu, base.nu, step[0], rotation(x.attitude), features)
     evaluate(data, features, a_res)
@@ -141,7 +143,7 @@ def parameters_of(p, m):
 
 @inline_internal
 def step_of(inputs, row, k):
-    """Commands of step k: wrench, forces and angles, demand, duration of the recording."""
+    """Inputs of step k: wrench, forces and angles, demand, duration (see `types.Inputs`)."""
     return (
         vector6(inputs.wrench[row, k]),
         inputs.acting[row, k],
@@ -152,7 +154,7 @@ def step_of(inputs, row, k):
 
 @inline_internal
 def ramp_of(inputs, row, k, body):
-    """What the thrusters' acceleration grows by over step k."""
+    """Change of the acceleration by the thrusters over step k, (6)."""
     if inputs.ramp.size == 0:
         return ZERO6
     return times6(body.M_inv, vector6(inputs.ramp[row, k]))
@@ -177,7 +179,7 @@ def store(x, out):
 
 @inline_internal
 def site_of(site):
-    """Walls (low, high per world axis) and MoCap axes as tuples, and where what floats rests."""
+    """`SiteArrays` as tuples: walls (low, high per NED axis), MoCap axes, level of rest."""
     tank = site.tank
     walls = ((tank[0, 0], tank[0, 1]), (tank[1, 0], tank[1, 1]), (tank[2, 0], tank[2, 1]))
     return walls, vector3(site.axes), site.level
@@ -185,7 +187,7 @@ def site_of(site):
 
 @inline_anew
 def stepped(extra, t, x, memory, h, body, own, step, ramp, data, place, features, a_res):
-    """State and memory one step later; a learned residual is held over the step."""
+    """State and fluid memory after one step; the learned residual is constant over the step."""
     push = ZERO6
     if body.memory_decay != 0.0:
         push = push_over_step(x, memory, h, body)
@@ -200,9 +202,9 @@ def stepped(extra, t, x, memory, h, body, own, step, ramp, data, place, features
 
 @entry
 def integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out):
-    """Integrate the jobs; after every `stride` steps a state goes into the next row of out.
+    """Integrate all jobs; every `stride` steps the state is written to the next row of `out`.
 
-    `time` (k+1,) s at which the steps of the inputs begin and end.
+    `time` (k+1,) are the instants, in s, between the steps of the inputs; `out` is (.., 13).
     """
     place, features, a_res = site_of(site), np.empty(FEATURES), np.empty(6)
     for job in range(jobs.first.size):
@@ -223,7 +225,7 @@ def integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out):
 
 @entry
 def advance(extra, state, memory, t, h, bodies, inputs, p, data, site):
-    """Move state (13,) and memory (6,) on over all steps of the inputs, in place."""
+    """Integrate a state (13,) and memory (6,) in place over all inputs, in steps of h s."""
     x, body, place, m = state_of(state), constants_of(bodies, 0), site_of(site), vector6(memory)
     features, a_res, own = np.empty(FEATURES), np.empty(6), parameters_of(p, 0)
     for n in range(inputs.duration.size):
@@ -238,10 +240,10 @@ def advance(extra, state, memory, t, h, bodies, inputs, p, data, site):
 
 @entry
 def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
-    """Heun's method over the steps of the inputs, each with an extra acceleration pushes (k, 6).
+    """Integrate with Heun's method, with an additional acceleration in each step: pushes (k, 6).
 
-    For the synthetic tank, whose truth must not share the replay's integrator. What the water
-    remembers, memory (6,), is integrated with the state and written back.
+    For the synthetic tank, whose truth must not share the integrator of a replay. The fluid memory
+    (6,) is integrated with the state and updated in place; states go to `out` (k, 13).
     """
     x, body, place = state_of(state), constants_of(bodies, 0), site_of(site)
     features, a_res, m = np.empty(FEATURES), np.empty(6), vector6(memory)
@@ -270,9 +272,9 @@ def heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
 
 @entry
 def accelerations(extra, times, states, memory, bodies, inputs, p, data, site, out):
-    """nu_dot (n, 6) of parameter set 0 at each state (n, 13) under the commands of step n.
+    """Evaluate nu_dot (n, 6) of parameter set 0 at states (n, 13), under the inputs of step n.
 
-    `memory` (n, 6) is what the water remembers then; empty: nothing.
+    `memory` (n, 6) is the fluid memory at each state; empty: none.
     """
     body, own, place = constants_of(bodies, 0), parameters_of(p, 0), site_of(site)
     features, a_res = np.empty(FEATURES), np.empty(6)

@@ -1,9 +1,10 @@
-"""Compiled modules for lists of wrench effects, written among what is kept on disk.
+"""Write and import compiled modules for lists of wrench effects, in the folder of the cache.
 
-`engine` has the equation of motion with some effects, whose kernels it names, chains, and hands to
-the functions of `integration` and `observer`: ten seconds to compile, and then the fastest. What
-`attached` compiles is a chain alone, in less than one, which an engine calls by its address, 0.05
-us a call. So engines are for what the package brings, and a user's own effects are attached to one.
+`engine` writes a module with the equation of motion and a list of effects: it sums the wrenches of
+their kernels in a function `extra`, and passes that to the functions of `integration` and
+`observer`. It compiles in ten seconds, and runs fastest. `attached` compiles only the sum of the
+wrenches of some effects, in less than a second; an engine calls it by its address, at 0.05 us a
+call. So the package's own effects are compiled into engines, and a user's effects are attached.
 """
 
 import importlib.util
@@ -103,19 +104,27 @@ PUSH = """\
         )
 {reading}        tau = add6(tau, 1.0, {id}_wrench({at}, own))
 """
-COLUMNS, MARGIN = 88, " " * 12  # of the parameters in `PUSH`
+COLUMNS, MARGIN = 88, " " * 12  # columns and indentation of the parameters in `PUSH`
 
 
 def engine(wrenches: Sequence[Any], attachable: bool = False) -> ModuleType:
-    """The compiled equation of motion with these wrench effects, in this order.
+    """Return the module of the compiled equation of motion with these wrench effects.
 
-    Where others can be attached, each parameter set brings their values behind those of its own.
+    Args:
+        wrenches: classes of effects, in the order of their values in `WrenchParameters`.
+        attachable: whether further effects can be attached. The values of each parameter set then
+            end with those of the attached effects.
     """
     return _engine(tuple(wrenches), attachable)
 
 
 def attached(wrenches: Sequence[Any], channel: int) -> Any:
-    """The compiled wrench of these effects, in this order; `channel` is the first of theirs."""
+    """Return the compiled sum of the wrenches of these effects, to be attached to an engine.
+
+    Args:
+        wrenches: classes of effects, in the order of their values.
+        channel: index of their first channel: the number of channels of the engine's effects.
+    """
     return _attached(tuple(wrenches), channel)
 
 
@@ -154,7 +163,7 @@ def _imported(name: str, path: Path) -> ModuleType:
 
 
 def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
-    """What the templates are filled with; an effect may act in a chain more than once."""
+    """Values for the fields of the templates; an effect may be in the list more than once."""
     known = list(dict.fromkeys(wrenches))
     pushes, acts = "", 0
     for wrench in wrenches:
@@ -178,20 +187,20 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
 
 
 def _kernel(wrench: Any, known: Sequence[Any]) -> str:
-    """The kernel of an effect, and the types of what it is handed."""
+    """Source lines that name the kernel of an effect and the types of its arguments."""
     name = _name(wrench, known)
     types = CHANNELS.format(id=wrench.id, name=name) if wrench.channels else ""
     return KERNEL.format(id=wrench.id, name=name) + types
 
 
 def _reading(wrench: Any, first: int) -> str:
-    """What an effect reads, its channels from this one on."""
+    """Source lines that read actuators and channels; `first` is the index of its first channel."""
     own = [f"acting[first_channel(layout) + {first + k}]" for k in range(len(wrench.channels))]
     return READING.format(channels=f"{wrench.id}_channels({', '.join(own)})" if own else "0.0")
 
 
 def _name(wrench: Any, known: Sequence[Any]) -> str:
-    """What a class is called in an engine: two of one name go by their ids."""
+    """Name of a class in the module: where two have the same name, their ids are appended."""
     alike = [one for one in known if one.__name__ == wrench.__name__]
     return wrench.__name__ if len(alike) == 1 else f"{wrench.__name__}_{wrench.id}"
 

@@ -1,8 +1,9 @@
-"""One-step prediction errors: a model that runs along a measurement and is corrected by it.
+"""Innovations of a model that is integrated along a measurement and corrected by it.
 
     x_dot = f(x, u) + a,   a_dot = -a / T + white noise,   reading = pose or mean velocity + noise
 
-A steady-state Kalman filter per axis; its innovations are what the model could not foresee.
+This is a Kalman filter with constant gains for each axis: a is the disturbance, an acceleration (6)
+with time constants T. Innovations are one-step prediction errors of the model.
 """
 
 from math import atan2, cos, sin
@@ -35,7 +36,7 @@ from rovsim.dynamics.engine.vectors import (
 
 @inline_internal
 def turned(q, v):
-    """q followed by a small rotation vector v in body axes; the length is restored later."""
+    """q rotated by a small rotation vector v (3), body axes, rad; not normalised."""
     w, i, j, k = q
     a, b, c = 0.5 * v[0], 0.5 * v[1], 0.5 * v[2]
     return (
@@ -48,7 +49,7 @@ def turned(q, v):
 
 @inline_internal
 def heading(q):
-    """The yaw of an attitude, as a quaternion."""
+    """The yaw part of an attitude q, as a quaternion."""
     w, i, j, k = q
     half = 0.5 * atan2(2.0 * (w * k + i * j), w * w + i * i - j * j - k * k)
     return cos(half), 0.0, 0.0, sin(half)
@@ -56,14 +57,14 @@ def heading(q):
 
 @inline_internal
 def headed(q, y):
-    """Measured attitude, in y (7,) behind the position, turned by the predicted yaw."""
+    """Quaternion of a measured pose y (7,), rotated in addition by the yaw of the predicted q."""
     c, _, _, s = heading(q)
     return c * y[3] - s * y[6], c * y[4] - s * y[5], c * y[5] + s * y[4], c * y[6] + s * y[3]
 
 
 @inline_internal
 def axes_of_errors(q, known):
-    """Rotation from the axes in which errors of the position stand: the body's, or level ones."""
+    """Rotation to NED from the axes of position errors: body axes, or level ones at its yaw."""
     if known[4] == 1.0:
         return rotation(heading(q))
     return rotation(q)
@@ -71,10 +72,16 @@ def axes_of_errors(q, known):
 
 @inline_internal
 def pose_error(x, y, known):
-    """Measured pose y (7,) minus the predicted one, along the axes of errors: m and rad.
+    """Innovation (6) of a pose: measured y (7,) minus predicted, m and rad (rotation vector).
 
-    `known` (5,): 1 where x, y, z and yaw were measured, 0 where they are taken as predicted; last
-    1 where sensors of their own tell height and place: level axes keep the noise of each apart.
+    Position errors are along `axes_of_errors`, rotations along body axes.
+
+    Args:
+        x: predicted state.
+        y: measured position in NED, m, and quaternion body to world.
+        known: (5,) 1 where x, y, z and yaw were measured, 0 where the prediction stands in for
+            them. The last element is 1 where different sensors measure height and horizontal
+            position: position errors are then along level axes, which keeps their noise apart.
     """
     moved = (
         known[0] * (y[0] - x.position[0]),
@@ -100,7 +107,7 @@ def pose_error(x, y, known):
 
 @inline_internal
 def velocity_error(mean, y):
-    """Measured mean velocity, in y (13,) behind the pose, minus the predicted one."""
+    """Innovation (6) of the mean velocity: y[7:] of a reading y (13,) minus the predicted mean."""
     return (
         y[7] - mean[0],
         y[8] - mean[1],
@@ -113,7 +120,10 @@ def velocity_error(mean, y):
 
 @inline_internal
 def corrected(x, y, e, known, gain_pose, gain_nu, by_velocity):
-    """The state after a reading; where velocities are read, poses are taken as measured."""
+    """The state corrected by an innovation e (6), with gains (6) on the pose and on nu.
+
+    With `by_velocity`, e corrects nu alone, and the measured pose of y replaces the predicted one.
+    """
     nu = add6(x.nu, 1.0, each6(gain_nu, e))
     if by_velocity:
         return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
@@ -141,13 +151,26 @@ def observe(
     by_velocity,
     out,
 ):
-    """Innovations of the jobs: each from reading `first`, over the `steps` readings that follow.
+    """Filter all jobs, and write their innovations to `out`.
 
-    `time` (s+1,) s at which the steps begin and end; `ends` (k,) steps at which the readings
-    (r, k, 13) end, `row` (m,) which of them belong to each parameter set; `seen` (k, 6) 1 for the
-    axes that a reading shows, `known`: see `pose_error`; `gains` (3, 6) of pose, velocity and
-    disturbance; `decay` (s, 6) of the disturbance over each step; `out` (.., 6)
-    innovations, m or m/s and rad or rad/s.
+    Args:
+        extra: wrench of the model's effects, see `equation`.
+        jobs: each starts at the reading `first` and covers the `steps` readings that follow.
+        time: (s+1,) instants between the integration steps, s.
+        ends: (k,) index into `time` of each reading.
+        bodies: constants of m parameter sets.
+        inputs: actuation over the integration steps.
+        p: parameters of the wrench effects.
+        site: the surroundings.
+        readings: (r, k, 13) measured pose, and mean velocity since the reading before.
+        row: (m,) which of the r series of readings belongs to each parameter set.
+        seen: (k, 6) 1 for the axes that a reading measures; innovations of the others are 0.
+        known: (5,) see `pose_error`.
+        gains: (3, 6) of pose, velocity and disturbance, per unit of innovation.
+        decay: (s, 6) factor on the disturbance over each step.
+        by_velocity: innovations are those of the mean velocity, and measured poses are taken as
+            true; otherwise they are those of the pose.
+        out: (.., 6) innovations, m or m/s and rad or rad/s.
     """
     place = site_of(site)
     for job in range(jobs.first.size):

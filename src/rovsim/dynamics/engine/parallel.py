@@ -1,7 +1,8 @@
-"""Compiled kernels on all cores, in threads: they need no interpreter, so none waits for another.
+"""Run compiled kernels on all cores, in threads: kernels release the interpreter's lock (GIL).
 
-Numba's own parallel loops take as long to compile as all the rest, and must not run twice at once
-in a process. A kernel's jobs are independent, so the numbers do not depend on how many cores.
+Numba's own parallel loops would double the time of compilation, and two of them must not run at
+the same time in one process. The jobs of a kernel are independent of each other, so the results do
+not depend on the number of cores.
 """
 
 import os
@@ -15,7 +16,7 @@ from numba import config
 
 from rovsim.dynamics.engine.types import Jobs
 
-PIECES = 4  # for each core, so that none waits long for the last
+PIECES = 4  # of the jobs for each core: with more pieces than cores, all end at about the same time
 
 
 @cache
@@ -23,21 +24,21 @@ def _threads(count: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(count, "rovsim")
 
 
-if hasattr(os, "register_at_fork"):  # where processes fork, a child has none of the threads
+if hasattr(os, "register_at_fork"):  # a forked child process has none of the threads
     os.register_at_fork(after_in_child=_threads.cache_clear)
 
 
 def run_jobs(kernel: Callable, jobs: Jobs, *given: Any) -> None:
-    """`kernel(jobs, *given)`, shared by the cores; the kernel must not need the interpreter."""
+    """Call `kernel(part, *given)` for parts of the jobs on all cores; it must release the GIL."""
     on_cores(lambda part: kernel(Jobs(*(values[part] for values in jobs)), *given), jobs.steps)
 
 
 def on_cores(kernel: Callable[[slice], None], lengths: np.ndarray) -> None:
-    """Call `kernel(part)` for parts of jobs that take about as long; NUMBA_NUM_THREADS at once.
+    """Call `kernel(part)` for parts of about equal duration, NUMBA_NUM_THREADS at a time.
 
     Args:
-        kernel: works off a slice of the jobs, without the interpreter's lock.
-        lengths: how long each job (j,) takes, in any unit.
+        kernel: does a slice of the jobs, without the interpreter's lock (GIL).
+        lengths: (j,) relative duration of each job, in any unit.
     """
     cores = config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     if cores == 1 or len(lengths) < 2:

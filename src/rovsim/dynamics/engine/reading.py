@@ -1,10 +1,10 @@
-"""What the kernels of effects may read beside `At`: actuators, and channels logged beside commands.
+"""What kernels of effects may read beside `At`: actuators, and channels logged with the commands.
 
-Only a kernel that says `at.actuators` or `at.channels` is handed it; others pay nothing for it.
+Only a kernel whose code contains `at.actuators` or `at.channels` gets them; others are not slowed.
 
-Columns of `acting` where an engine has such a kernel: forces of the components of the thrusters
-(k), angles of the surfaces (s), forces of the thrusters (n), logged commands (k + s), then the
-channels of each such effect, one effect after the other.
+Columns of `acting` where an engine has such a kernel: forces of the thruster components (k), N;
+angles of the surfaces (s), rad; forces of the thrusters (n), N; logged commands (k + s); then the
+channels of each such effect, in the order of the effects.
 """
 
 from typing import Any, NamedTuple
@@ -19,11 +19,14 @@ from rovsim.dynamics.engine.vectors import add3, cross, vector3
 
 
 class Actuators(NamedTuple):
-    """Thrusters, in the vehicle file's order, then control surfaces.
+    """Forces, commands and inflow of the actuators, in the order of the vehicle file.
 
-    `force` (n,) N of the n thrusters; `command` (c,) as logged and mixed, in the order of
-    `Vehicle.command_columns`: [-1, 1], angles in rad; `inflow` (n + s, 3) velocity through the
-    water at each place, body axes, m/s, without what the propellers add.
+    Attributes:
+        force: (n,) of the n thrusters, N.
+        command: (c,) as logged and mixed, in the order of `Vehicle.command_columns`: in [-1, 1];
+            angles in rad.
+        inflow: (n + s, 3) velocity relative to the water at thrusters, then control surfaces, body
+            axes, m/s, without the velocity that propellers induce.
     """
 
     force: Array
@@ -32,7 +35,7 @@ class Actuators(NamedTuple):
 
 
 class ReadingAt(NamedTuple):
-    """`At`, the actuators, and the channels that an effect declares, by name."""
+    """`At` with the same attributes, the actuators, and the channels of an effect by name."""
 
     t: float
     duration: float
@@ -51,13 +54,13 @@ class ReadingAt(NamedTuple):
 
 
 def example_reading(channels: Any) -> ReadingAt:
-    """Some instant: what such a kernel can be tried on, of a vehicle with eight actuators."""
+    """An arbitrary instant of a vehicle with eight thrusters: to compile and try kernels on."""
     actuators = Actuators(np.zeros(8), np.zeros(8), np.zeros((8, 3)))
     return ReadingAt(*EXAMPLE, actuators, channels)
 
 
 class Layout(NamedTuple):
-    """Of `acting`: the number of thrusters' components and of surfaces, and all `places`."""
+    """Numbers of thruster components and surfaces, and all `places`: they order `acting`."""
 
     components: int
     surfaces: int
@@ -66,20 +69,20 @@ class Layout(NamedTuple):
 
 @inline_internal
 def layout_of(body):
-    """Where in `acting` is what."""
+    """The layout of `acting` for a vehicle with these constants."""
     return Layout(body.B.shape[1], body.lifting.size, body.places)
 
 
 @inline_internal
 def first_channel(layout):
-    """Column of `acting` where the channels begin."""
+    """Index of the column of `acting` where the channels begin."""
     components, surfaces, places = layout
     return 2 * (components + surfaces) + places.shape[0] - surfaces
 
 
 @inline_internal
 def actuators_at(at, layout, acting):
-    """All actuators at one instant."""
+    """All actuators at one instant, from the columns of `acting` and the motion."""
     columns, count = layout.components + layout.surfaces, layout.places.shape[0]
     first = columns + count - layout.surfaces
     inflow = np.empty((count, 3))
@@ -92,7 +95,7 @@ def actuators_at(at, layout, acting):
 
 @inline_anew
 def reading_at(at, actuators, channels):
-    """An instant with what only some effects read."""
+    """`at` together with the actuators and the channels that a kernel reads."""
     return ReadingAt(
         at.t,
         at.duration,
@@ -111,7 +114,7 @@ def reading_at(at, actuators, channels):
     )
 
 
-# How a chain of effects is called by its address: (at, p, layout, acting).
+# Signature of attached effects, which are called by address: (at, p, layout, acting) -> wrench.
 BY_ADDRESS = types.UniTuple(types.float64, 6)(
     typeof(EXAMPLE), types.float64[::1], typeof(Layout(0, 0, np.zeros((0, 3)))), types.float64[::1]
 )

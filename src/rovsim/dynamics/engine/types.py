@@ -1,4 +1,4 @@
-"""What the compiled engine passes around. SI units, body axes FRD at CO, world NED, float64."""
+"""Types passed between the compiled functions: SI, body FRD at CO, world NED, float64."""
 
 from typing import Any, NamedTuple, Sequence
 
@@ -8,9 +8,10 @@ from numpy import ndarray as Array
 NO_RAMP = np.empty((0, 0, 6))
 NO_MEMORY = np.empty((0, 6))
 
-# Columns of `surfaces`: place, normal and chord (3 each), half the density times the area, slope of
-# the lift per rad, drag of the profile, stall rad, the thruster whose jet it stands in (-1: none),
-# and by how much the square of the speed there grows per newton.
+# Columns of `surfaces`: place m, normal and chord (3 each, body axes), half the density times the
+# area (kg/m), slope of the lift coefficient per rad, drag coefficient of the profile, stall angle
+# rad, column in `acting` of the thruster whose jet the surface stands in (-1: none), and by how
+# much that jet increases the square of the flow speed, m2/s2 per N.
 PLACE, NORMAL, CHORD = 0, 3, 6
 HALF, SLOPE, PROFILE, STALL, WAKE, JET = range(9, 15)
 
@@ -19,14 +20,22 @@ Vector6 = tuple[float, float, float, float, float, float]
 
 
 class At(NamedTuple):
-    """One instant, as a wrench kernel sees it: floats and tuples of floats.
+    """One instant, as floats and tuples: motion and surroundings that a wrench kernel reads.
 
-    `t` s since the start of the recording, `duration` s of the whole recording, `position` (3),
-    `R` rows of the rotation body to world, `nu` (6) velocity, `nu_r` (6) velocity through the
-    water, `nu_c_dot` (6) acceleration of the current in body axes, `drag` (6) wrench of the six
-    diagonal damping terms, `inertia` (6) diagonal of the whole M, `demand` (6) pilot demand per
-    axis in [-1, 1] (NaN if not logged), `tank` (low, high) per world axis (NaN if unknown; the
-    surface is the low end in z), `axes` (3) signs between MoCap world axes and NED.
+    Attributes:
+        t: time since the start of the recording, s.
+        duration: of the whole recording, s.
+        position: (3) of CO in NED, m.
+        R: rotation matrix from body to world, three rows.
+        nu: (6) velocity in body axes, m/s and rad/s.
+        nu_r: (6) velocity relative to the water, m/s and rad/s.
+        nu_c_dot: (6) rate of change of the current in body axes, m/s2.
+        drag: (6) wrench of the diagonal linear and quadratic damping, N and N m.
+        inertia: (6) diagonal of M = M_RB + M_A, kg and kg m2.
+        demand: (6) pilot demand of each axis in [-1, 1]; NaN if it was not logged.
+        tank: (low, high) position of the walls along each NED axis, m; NaN if unknown. The water
+            surface is the low end in z.
+        axes: (3) signs between the world axes of the MoCap and NED.
     """
 
     t: float
@@ -44,7 +53,7 @@ class At(NamedTuple):
 
 
 _NONE: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-# Some instant: what a kernel can be tried on.
+# An arbitrary instant, at rest: to compile and try kernels on.
 EXAMPLE = At(
     0.0,
     1.0,
@@ -62,7 +71,7 @@ EXAMPLE = At(
 
 
 class State(NamedTuple):
-    """Position NED m, quaternion body to world, body velocity; or their rates of change."""
+    """Position in NED, m, unit quaternion (w, x, y, z) body to world, and nu; or their rates."""
 
     position: Vector3
     attitude: tuple[float, float, float, float]
@@ -72,15 +81,33 @@ class State(NamedTuple):
 class Constants(NamedTuple):
     """Constants of the equation of motion for m parameter sets, stacked along the first axis.
 
-    `M_RB`, `M_A`, `M_inv` (m, 6, 6); `linear`, `quadratic` (m, 6); `net_weight` (m,) weight minus
-    buoyancy in N; `restoring_lever` (m, 3) weight at CG minus buoyancy at CB in N m; `current`
-    (m, 3) NED; `advance` (m,) s/m; `coupling` (m, 2, 6, 6) linear and quadratic damping between
-    axes, read only where `coupled` (m,) is not 0; `memory` (m, 6) force per remembered velocity,
-    `memory_decay` (m,) 1/s (0: nothing is remembered); `B` (m, 6, n) thruster allocation;
-    `directions` (n, 3) of positive thrust. Read only where `uncommon` (m,) is not 0, as in `Body`:
-    `waterplane` (m, 3), `products` (m, t) and their `factors` (t, 4), `surfaces` (s, 15),
-    `lifting` (m, s). `free` (m, 6) is 1 for axes that move, 0 where they are held; `places`
-    (n + s, 3) of thrusters, then surfaces.
+    `rovsim.dynamics.body.Body` has the same quantities of one parameter set, with their units.
+
+    Attributes:
+        M_RB: (m, 6, 6) rigid-body inertia.
+        M_A: (m, 6, 6) added mass.
+        M_inv: (m, 6, 6) inverse of M_RB + M_A; zero in rows and columns of axes that are held.
+        linear: (m, 6) linear damping, positive = drag.
+        quadratic: (m, 6) quadratic damping, positive = drag.
+        net_weight: (m,) weight minus buoyancy, N.
+        restoring_lever: (m, 3) weight times r_CG minus buoyancy times r_CB, N m.
+        current: (m, 3) velocity of the water in NED, m/s.
+        advance: (m,) relative loss of thrust per inflow velocity, s/m.
+        coupled: (m,) 0 where `coupling` is zero and need not be evaluated.
+        coupling: (m, 2, 6, 6) linear and quadratic damping between axes.
+        memory: (m, 6) force per remembered velocity (`Body.remember`).
+        memory_decay: (m,) 1 / time constant of the fluid memory, 1/s; 0: no memory.
+        B: (m, 6, n) allocation: wrench per force of each thruster component.
+        directions: (n, 3) of positive thrust, body axes.
+        uncommon: (m,) 0 where waterplane, products and surfaces are absent and need not be
+            evaluated.
+        waterplane: (m, 3) stiffness in heave, roll and pitch.
+        products: (m, t) coefficients of products of velocities.
+        factors: (t, 4) axis of the force and up to three velocities of each product.
+        surfaces: (s, 15) control surfaces; the columns stand at the top of this module.
+        lifting: (m, s) factor on the lift of each surface.
+        free: (m, 6) 1 for axes that move, 0 for axes that are held.
+        places: (n + s, 3) of thrusters, then surfaces, body axes, m.
     """
 
     M_RB: Array
@@ -109,21 +136,25 @@ class Constants(NamedTuple):
 
     @staticmethod
     def stacked(sets: "Sequence[Constants]") -> "Constants":
-        """Those of several sets of one vehicle; what has no first axis m is the first one's."""
+        """Stack parameter sets of a vehicle along m; fields `OF_VEHICLE` are those of the first."""
         first, several = sets[0], [name for name in Constants._fields if name not in OF_VEHICLE]
         return first._replace(
             **{name: np.concatenate([getattr(one, name) for one in sets]) for name in several}
         )
 
 
-OF_VEHICLE = ("directions", "factors", "surfaces", "places")  # the same in all its parameter sets
+OF_VEHICLE = ("directions", "factors", "surfaces", "places")  # the same in all sets
 
 
 class WrenchParameters(NamedTuple):
-    """Parameters of wrench effects: `values` (m, k) for each of m sets, or (k,) of one set.
+    """Parameters of all wrench effects, as the compiled engine reads them.
 
-    Those of an engine's own effects come first, each behind 1 or 0: whether it acts. Values beyond
-    them are those of `attached`, another chain of effects (`rovsim.dynamics.engine.modules`).
+    Attributes:
+        values: (m, k) for m parameter sets, or (k,) of one set. For each effect, first 1 or 0
+            (whether it acts), then its parameters. The engine's own effects come first, then the
+            attached ones.
+        attached: compiled function with the sum of the attached effects, see
+            `rovsim.dynamics.engine.modules`; None where there are none.
     """
 
     values: Array
@@ -131,14 +162,17 @@ class WrenchParameters(NamedTuple):
 
 
 class Inputs(NamedTuple):
-    """Mean thrust over each step: `wrench` (r, k, 6), `acting` (r, k, n + s), `demand` (k, 6).
+    """Actuation over each of k integration steps, in r variants that parameter sets can share.
 
-    `acting`: forces N of the n thrusters, angles rad of the s control surfaces, then what some
-    effects read (`rovsim.dynamics.engine.reading`).
-
-    `row` (m,) says which of the r rows belongs to each parameter set; `duration` (k,) is the
-    length in s of the recording the step belongs to. `ramp` (r, k, 6) is what the wrench grows by
-    over each step, N and N m; empty: nothing.
+    Attributes:
+        wrench: (r, k, 6) mean thruster wrench over each step, body axes, N and N m.
+        acting: (r, k, n + s) mean forces of the n thruster components, N, and angles of the s
+            control surfaces, rad; then the further columns of `rovsim.dynamics.engine.reading`.
+        demand: (k, 6) pilot demands in [-1, 1].
+        row: (m,) which of the r variants belongs to each of m parameter sets.
+        duration: (k,) length of the recording that the step belongs to, s.
+        ramp: (r, k, 6) change of the wrench from the begin of a step to its end, N and N m; empty
+            if it is constant over a step.
     """
 
     wrench: Array
@@ -152,9 +186,14 @@ class Inputs(NamedTuple):
 class Jobs(NamedTuple):
     """Trajectories to integrate, j of them.
 
-    `state` (j, 13) to start from; `first` (j,) step of the inputs, `steps` (j,) to take, `member`
-    (j,) parameter set, `out` (j,) first row of the output. `memory` (j, 6) velocity through the
-    water that the water remembers at the start; empty: none.
+    Attributes:
+        state: (j, 13) initial states: position, quaternion, nu.
+        first: (j,) index of the first step in `Inputs`.
+        steps: (j,) number of steps.
+        member: (j,) index of the parameter set.
+        out: (j,) first row of the output.
+        memory: (j, 6) initial state of the fluid memory, a velocity relative to the water; empty:
+            zero.
     """
 
     state: Array
@@ -166,9 +205,12 @@ class Jobs(NamedTuple):
 
 
 class SiteArrays(NamedTuple):
-    """`tank` (3, 2) low and high walls in NED, `axes` (3,) signs of the MoCap axes.
+    """The surroundings of a recording.
 
-    `level` m NED: where what floats is at rest.
+    Attributes:
+        tank: (3, 2) low and high walls along each NED axis, m.
+        axes: (3,) signs between the world axes of the MoCap and NED.
+        level: z in NED at which a floating vehicle is at rest, m.
     """
 
     tank: Array

@@ -1,6 +1,7 @@
 """Forces that few vehicles have: of a waterplane, of products of velocities, of control surfaces.
 
-The equation of motion comes here only for vehicles that have one of them.
+The equation of motion evaluates them only for vehicles that have at least one. The columns of a
+control surface stand in `types`.
 """
 
 from math import atan2, pi, sin, sqrt
@@ -24,9 +25,12 @@ from rovsim.dynamics.engine.vectors import add3, cross, dot3, vector3, vector6
 
 @inline_internal
 def float_up(waterplane, depth, down):
-    """Restoring of what floats `depth` below its rest: heave, roll, pitch (Fossen 2021, 4.2).
+    """Hydrostatic restoring of a surface vehicle in heave, roll, pitch (Fossen 2021, 4.2).
 
-    `down` is the world's down in body axes; the angles are Euler's, all small.
+    Args:
+        waterplane: stiffness in heave N/m, roll and pitch N m/rad.
+        depth: of CO below its position at rest, m.
+        down: (3) the NED z axis in body axes. Roll and pitch are assumed to be small.
     """
     x, y, z = down
     roll, pitch = atan2(y, z), atan2(-x, sqrt(y * y + z * z))
@@ -35,7 +39,11 @@ def float_up(waterplane, depth, down):
 
 @inline_internal
 def product(factors, v):
-    """Product of velocities; a factor of 6 and more is a size, one below 0 is none."""
+    """Product of up to three velocities v (6).
+
+    factors (4): element 0 is the axis of the force, the others are i for v_i, 6 + i for |v_i|, and
+    -1 for none.
+    """
     found = 1.0
     for k in range(1, 4):
         if factors[k] >= 6:
@@ -47,10 +55,11 @@ def product(factors, v):
 
 @inline_internal
 def coefficients(alpha, slope, stall):
-    """Lift and drag of a plate at an angle of attack, rad; the drag of its profile apart.
+    """Lift and drag coefficients at an angle of attack alpha, rad, without the profile's drag.
 
-    Linear up to the stall; beyond, a flat plate (Viterna & Janetzke 1982) that meets it there. The
-    force stands on the plate: no suction at its nose.
+    The lift is linear (`slope` per rad) up to the angle `stall`, rad. Beyond, it is that of a flat
+    plate (Viterna & Janetzke 1982), scaled so that both agree at the stall. The force is normal to
+    the plate: there is no suction at the leading edge.
     """
     plate = slope * stall / sin(2.0 * stall)
     turned = alpha - 2.0 * pi * round(alpha / (2.0 * pi))
@@ -60,7 +69,15 @@ def coefficients(alpha, slope, stall):
 
 @inline_internal
 def surface_force(s, lifting, v, angle, thrust):
-    """Force (3,) of a surface (row s of `Body.surfaces`) that meets the water at v (3,)."""
+    """Force (3) of one control surface, body axes, N.
+
+    Args:
+        s: (15,) its row of `Body.surfaces`.
+        lifting: factor on its lift.
+        v: (3) its velocity relative to the water, body axes, m/s.
+        angle: of its deflection, rad.
+        thrust: of the thruster whose jet it stands in, N; 0 if there is none.
+    """
     normal, chord = vector3(s[NORMAL:]), vector3(s[CHORD:])
     ahead, across = dot3(chord, v), dot3(normal, v)
     jet = s[JET] * thrust
@@ -79,10 +96,15 @@ def surface_force(s, lifting, v, angle, thrust):
 
 @internal
 def further_forces(body, depth, down, v, acting, count):
-    """Wrench of waterplane, products and surfaces at a velocity v (6,) through the water.
+    """Wrench (6) of waterplane, products of velocities and surfaces, body axes, N and N m.
 
-    `body`: the last of `Constants`, from `waterplane` to `lifting`; `acting`: forces of the `count`
-    components of the thrusters, then angles of the surfaces.
+    Args:
+        body: the fields of `Constants` from `waterplane` to `lifting`.
+        depth: of CO below its position at rest, m.
+        down: (3) the NED z axis in body axes.
+        v: (6) velocity relative to the water.
+        acting: forces of the `count` thruster components, N, then angles of the surfaces, rad.
+        count: number of thruster components.
     """
     waterplane, products, factors, surfaces, lifting = body
     tau = np.zeros(6)

@@ -1,4 +1,4 @@
-"""Small vectors as tuples of floats: they live in registers, where arrays would be counted."""
+"""Small vectors as tuples of floats: kept in registers, without an array's reference count."""
 
 from rovsim.dynamics.engine.compiled import inline_shared
 
@@ -48,7 +48,7 @@ def add6(a, h, b):
 
 @inline_shared
 def each6(a, b):
-    """Products of the elements."""
+    """Element-wise product of 6-vectors."""
     return a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3], a[4] * b[4], a[5] * b[5]
 
 
