@@ -1,4 +1,4 @@
-"""The constants of Fossen's equation, filled in by effects, then packed for the engine."""
+"""The constants of Fossen's equation: summed up by effects, then packed for the engine."""
 
 from dataclasses import dataclass, field
 from math import inf
@@ -26,19 +26,38 @@ def inertia_at(mass: float, r: Array, inertia: Array) -> Array:
 
 @dataclass
 class Body:
-    """An empty body in still water; effects add to it.
+    """Constants of the equation of motion; empty, in still water, until effects add to them.
 
-    SI, FRD at CO: `M_RB`, `M_A` (6, 6); `linear`, `quadratic` (6,) damping, positive = drag;
-    `weight` N and `weight_moment` (3,) sum of weight times place, N m; `buoyancy` N at
-    `center_of_buoyancy` (3,) m; `current` (3,) m/s NED; `B` (6, n) wrench per thruster force and
-    `directions` (n, 3); `spin` (n,) sign of the reaction moment; `advance` s/m; `coupling`
-    (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another (column), never
-    changed by walls; `memory` (6,) force per remembered velocity; `memory_decay` 1/s, 0: none;
-    `memories`: so many effects gave one; `waterplane` (3,) stiffness N/m, N m/rad in heave, roll,
-    pitch; `products` (t,) coefficients of products of velocities, `factors` (t, 4) axis of the
-    force and up to three velocities: i, 6 + i for its size, -1 for none; `surfaces` (s, 15) with
-    the columns of `engine.types`, `lifting` (s,) factor on the lift of each; `free` (6,) axes that
-    move; `places` (n + s, 3) m of thrusters, then surfaces.
+    SI units, body axes FRD at CO.
+
+    Attributes:
+        gravity: m/s2.
+        M_RB: (6, 6) rigid-body inertia.
+        M_A: (6, 6) added mass.
+        linear: (6,) linear damping, positive = drag, N s/m and N m s/rad.
+        quadratic: (6,) quadratic damping, positive = drag, N s2/m2 and N m s2/rad2.
+        weight: N.
+        weight_moment: (3,) sum of each weight times its place, N m.
+        buoyancy: N.
+        center_of_buoyancy: (3,) m.
+        current: (3,) velocity of the water in NED, m/s.
+        B: (6, n) allocation: wrench per force of each thruster component.
+        directions: (n, 3) of positive thrust.
+        spin: (n,) sign of the reaction moment of each propeller.
+        advance: relative loss of thrust per inflow velocity, s/m.
+        coupling: (2, 6, 6) linear and quadratic damping of an axis (row) by motion along another
+            (column); walls do not change it.
+        memory: (6,) force per remembered velocity, N s/m and N m s/rad.
+        memory_decay: 1 / time constant of the fluid memory, 1/s; 0: no memory.
+        memories: number of effects that added a fluid memory.
+        waterplane: (3,) stiffness in heave N/m, roll and pitch N m/rad.
+        products: (t,) coefficients of forces that are products of velocities.
+        factors: (t, 4) for each product, the axis of the force and up to three velocities: i for
+            the velocity of axis i, 6 + i for its absolute value, -1 for none.
+        surfaces: (s, 15) control surfaces, with the columns of `engine.types`.
+        lifting: (s,) factor on the lift of each surface.
+        free: (6,) whether an axis moves; otherwise it is held at rest.
+        places: (n + s, 3) of thrusters, then surfaces, m.
     """
 
     gravity: float
@@ -68,16 +87,21 @@ class Body:
     places: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     def add_mass(self, mass: float, place: Array, inertia: Array) -> None:
-        """Add a mass in kg at a place (3,), with its own inertia (3, 3), and its weight."""
+        """Add a mass, kg, at a place (3,), m, with its own inertia (3, 3), and its weight."""
         self.M_RB += inertia_at(mass, place, inertia)
         self.weight += mass * self.gravity
         self.weight_moment += mass * self.gravity * place
 
     def remember(self, memory: Array, time_constant: float) -> None:
-        """Water that follows the vehicle within a time constant in s, and goes on pushing.
+        """Add a fluid memory: water that follows the vehicle late, and then goes on pushing it.
 
-        -c nu_r, with `memory` c (6,) in N s/m and N m s/rad, is linear damping that no wall
-        changes; the engine adds c times what is remembered. A body has at most one.
+        The wrench is c (mu - nu_r), where mu is nu_r low-passed with the time constant. The part
+        -c nu_r is linear damping that walls do not change; the engine adds c mu. A body has at most
+        one fluid memory.
+
+        Args:
+            memory: c (6,), N s/m and N m s/rad.
+            time_constant: of the low-pass, s.
         """
         self.memories += 1
         self.memory, self.memory_decay = memory, 1.0 / time_constant
@@ -85,24 +109,24 @@ class Body:
 
     @property
     def possible(self) -> bool:
-        """Whether there can be such a body, and the engine can hold it."""
+        """Whether M is positive definite, and there is at most one fluid memory."""
         return self.least_inertia > 0.0 and self.memories <= 1
 
     @property
     def least_inertia(self) -> float:
-        """Smallest eigenvalue of the inertia that moves: positive if such a body can exist."""
+        """Smallest eigenvalue of M of the axes that move: positive if such a body can exist."""
         M = (self.M_RB + self.M_A)[np.ix_(self.free, self.free)]
         symmetric = 0.5 * (M + M.T)
-        if not np.isfinite(symmetric).all():  # two numbers near the largest have no sum
+        if not np.isfinite(symmetric).all():  # the sum of two very large numbers overflows
             return -inf
         return float(np.linalg.eigvalsh(symmetric)[0])
 
     @property
     def M(self) -> Array:
-        """Total inertia (6, 6).
+        """Total inertia M_RB + M_A (6, 6).
 
         Raises:
-            BadInput: it is not positive definite, so no such body exists; or it has two memories.
+            BadInput: M is not positive definite, or there is more than one fluid memory.
         """
         if self.memories > 1:
             raise BadInput(
@@ -123,10 +147,10 @@ class Body:
 
     @property
     def M_inv(self) -> Array:
-        """Acceleration per force (6, 6): its inverse; zero where an axis is held.
+        """Inverse of M for the axes that move (6, 6); zero in rows and columns of held axes.
 
         Raises:
-            BadInput: no such body exists.
+            BadInput: see `M`.
         """
         if self.free.all():
             return np.linalg.inv(self.M)
@@ -136,7 +160,7 @@ class Body:
 
     @property
     def stated(self) -> dict[str, Array]:
-        """Coefficients (6,) of the vehicle file, by the effect whose values are changes of them."""
+        """Diagonal coefficients (6,), by the id of the effect whose parameters change them."""
         return {
             "linear_damping": self.linear,
             "quadratic_damping": self.quadratic,
@@ -150,7 +174,7 @@ class Body:
 
 
 def packed(body: Body) -> Constants:
-    """Constants of one parameter set for the engine."""
+    """Pack a body into the constants of the engine, as a single parameter set (m = 1)."""
 
     def alone(value: ArrayLike) -> Array:
         return np.array([value], dtype=float)
