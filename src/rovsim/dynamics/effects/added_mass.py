@@ -8,7 +8,7 @@ from rovsim.dynamics.effects.base import Coefficients, Parameter
 from rovsim.dynamics.effects.parameters import Signature, per_axis
 
 PAIRS = [(i, j) for i in range(6) for j in range(i + 1, 6)]
-UNITS = ("kg", "kg m", "kg m2")  # by how many of the two axes are rotations
+UNITS = ("kg", "kg m", "kg m2")  # of an entry, by how many of its two axes are rotations
 SCALES = (1.0, 0.2, 0.05)  # 1 kg displaced by 0.2 m; its moment of inertia there
 
 

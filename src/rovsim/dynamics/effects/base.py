@@ -1,7 +1,7 @@
 """What an effect is: one declaration that simulates, fits, is reported and documented.
 
-An effect acts at one place of the equation of motion; the base class says which, and asks for one
-method. Effects are immutable and add: a model is a list of them.
+An effect is a subclass of one of the classes below, which says on what it acts, and implements the
+method of that class. Effects are immutable, and a model is a list of them.
 
     base class         acts on                               method
     Coefficients       the constants of Fossen's equation    enter(body)
@@ -39,11 +39,11 @@ Requirement = Literal["nothing", "commands", "demands", "thrusters", "surfaces",
 
 
 class Actuated(Protocol):
-    """What effects ask of a vehicle: its weight, its thrusters and its surfaces."""
+    """What effects need to know of a vehicle: its mass, its thrusters and its control surfaces."""
 
     @property
     def dry_mass(self) -> float:
-        """Its mass, kg, without water that it holds."""
+        """Dry mass, kg: without the water inside the vehicle."""
 
     @property
     def thruster_count(self) -> int:
@@ -59,26 +59,26 @@ class Actuated(Protocol):
 
 
 class Effect(ABC):
-    """A physical effect with values for its parameters; those not given have their default.
+    """A physical effect with values for its parameters; a value not given is the default.
 
     Raises:
-        BadInput: an unknown parameter, a value that is not a number or outside its range.
+        BadInput: an unknown parameter, or a value that is not a number or is out of range.
     """
 
     id: ClassVar[str]
     equation: ClassVar[str]
-    symbols: ClassVar[tuple[tuple[str, str], ...]] = ()  # in it (LaTeX, meaning), no parameters
+    symbols: ClassVar[tuple[tuple[str, str], ...]] = ()  # (LaTeX, meaning); no parameters
     neglects: ClassVar[str]
     source: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     starts: ClassVar[tuple[dict[str, float], ...]] = ({},)  # where fits begin; {} = the defaults
-    cause: ClassVar[str] = ""  # what in a laboratory makes it happen, one sentence
-    revealed_by: ClassVar[str] = ""  # what to record to be sure of it, one sentence
-    telling: ClassVar[tuple[str, ...]] = ()  # parameters by which it shows; (): by any
+    cause: ClassVar[str] = ""  # what in a laboratory makes it act, one sentence
+    revealed_by: ClassVar[str] = ""  # what to record to confirm it, one sentence
+    telling: ClassVar[tuple[str, ...]] = ()  # that show the effect in a run; (): any of them
     signature: ClassVar[Signature | None] = None  # how the catalogue page shows it
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
-    requires: ClassVar[Requirement] = "nothing"  # by what it acts: without, no run can show it
+    requires: ClassVar[Requirement] = "nothing"  # a run without it cannot show the effect
 
     def __init__(self, **values: float) -> None:
         known = [p.name for p in self.parameters]
@@ -93,7 +93,7 @@ class Effect(ABC):
         ]
         self.values: Array = np.array(numbers, dtype=float)
         self.values.setflags(write=False)
-        self.std: Mapping[str, float] = {}  # of values that were fitted, by name
+        self.std: Mapping[str, float] = {}  # standard deviations of fitted values
 
     def _checked(self, parameter: Parameter, value: Any) -> float:
         is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
@@ -126,7 +126,7 @@ class Effect(ABC):
         return type(self)(**self.given() | dict(values))
 
     def neutral(self) -> "Effect":
-        """The effect at what changes nothing; what every vehicle has stays."""
+        """The effect at its defaults, which change nothing; unless it is not `listed`: itself."""
         return type(self)() if self.listed else self
 
     def with_std(self, std: Mapping[str, float]) -> "Effect":
@@ -137,7 +137,7 @@ class Effect(ABC):
 
     @classmethod
     def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:
-        """Values from which fits begin at this site; more than one where zero is a flat place."""
+        """Initial values of fits at this site; several where the likelihood is flat at neutral."""
         return cls.starts
 
     @classmethod
@@ -147,13 +147,13 @@ class Effect(ABC):
 
     @classmethod
     def adapted(cls, **own: Any) -> type[Self]:
-        """The same effect with its own parameters or starts, as `on` returns it."""
+        """A subclass with other class attributes, such as parameters, for `on` to return."""
         known = {"__doc__": cls.__doc__, "__module__": cls.__module__}
         return type(cls.__name__, (cls,), known | own)
 
     @classmethod
     def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
-        """Parameters that a fit from these values may change."""
+        """Names of the parameters that a fit from these initial values may change."""
         return tuple(p.name for p in cls.parameters if p.fitted)
 
     def check(self, site: Site, kind: CommandKind) -> None:  # noqa: B027 - most need nothing
@@ -164,24 +164,24 @@ class Effect(ABC):
         """
 
     def needs_duration(self) -> bool:
-        """Whether its values are of a whole run, and say nothing unless its duration is known."""
+        """Whether its values refer to the duration of a run, which then must be known."""
         return False
 
 
 class Coefficients(Effect):
-    """Changes the constants of Fossen's equation: inertia, damping, buoyancy, current, …"""
+    """An effect on the constants of Fossen's equation: inertia, damping, buoyancy, current, …"""
 
     @abstractmethod
     def enter(self, body: Body) -> None:
-        """Add this effect's contribution to the constants."""
+        """Add this effect's contribution to the constants of the body, in place."""
 
 
 class Wrench(Effect):
-    """Pushes the vehicle: a wrench that depends on the state and on time.
+    """An effect that pushes the vehicle: a wrench that depends on the state and on time.
 
-    A kernel that says `at.actuators`, itself or in a helper, reads forces, commands and inflow of
-    the actuators, and `at.channels.NAME` what was logged beside the commands, by the names in
-    `channels` (`rovsim.dynamics.engine.reading`).
+    Its kernel (`wrench`) or a helper may also use `at.actuators`, the forces, commands and inflow
+    of the actuators, and `at.channels.NAME`, channels that were logged beside the commands and are
+    declared in `channels` (see `rovsim.dynamics.engine.reading`).
     """
 
     channels: ClassVar[tuple[str, ...]] = ()
@@ -201,12 +201,12 @@ class Wrench(Effect):
 
     @classmethod
     def named_channels(cls) -> type:
-        """The named tuple type in which it gets its channels."""
+        """The named tuple type in which the compiled kernel gets its channels."""
         return namedtuple(f"{cls.__name__}Channels", cls.channels)
 
     @classmethod
     def example_channels(cls) -> Any:
-        """Channels with which the kernel can be tried; where it has none, the engine's number."""
+        """Channels to compile and try the kernel with; 0.0, as in an engine, where it has none."""
         return cls.named_channels()(*(1.0 for _ in cls.channels)) if cls.channels else 0.0
 
     @classmethod
@@ -216,72 +216,72 @@ class Wrench(Effect):
 
 
 class StochasticCurrent(Effect):
-    """Moves the water at random: the tank draws it, and a model has its mean, still water."""
+    """Random motion of the water. The synthetic tank draws it; a model has its mean, zero."""
 
     @abstractmethod
     def draw(self, ticks: int, dt: float, random: np.random.Generator) -> Array:
-        """Current (ticks, 3) m/s in NED that it adds during each tick of dt s."""
+        """Current (ticks, 3) in NED, m/s, to add during each of the time steps of dt s."""
 
 
 class CommandTiming(Effect):
-    """Moves the instants at which logged commands take effect."""
+    """An effect on the instants at which logged commands take effect."""
 
     requires: ClassVar[Requirement] = "commands"
 
     @abstractmethod
     def effective_time(self, time: Array) -> Array:
-        """Instants (m,) in s, increasing, at which lines logged at `time` (m,) take effect."""
+        """Instants (m,), s, increasing, at which the commands logged at `time` (m,) take effect."""
 
 
 class DemandTransform(Effect):
-    """Changes the demand before the mixer."""
+    """An effect on the pilot's demands before the mixer."""
 
     requires = "demands"
 
     @abstractmethod
     def mixer_demand(self, demand: Array) -> Array:
-        """Demands (m, 6) as the mixer sees them."""
+        """Demands (m, 6) that the mixer gets, of logged ones (m, 6)."""
 
 
 class Autopilot(Effect):
-    """Acts on some axes itself: their demands do not reach the mixer."""
+    """A control loop on some axes, whose demands then do not reach the mixer."""
 
     requires = "demands"
 
     @abstractmethod
     def mixer_demand(self, demand: Array) -> Array:
-        """Demands (m, 6) in [-1, 1] that are left to the mixer."""
+        """Demands (m, 6) in [-1, 1] for the mixer: 0 for axes of the loop."""
 
     @abstractmethod
     def demanded_wrench(self, demand: Array, inertia: Array) -> Array:
-        """Wrench (m, 6) for the demands (m, 6) it took; `inertia` (6,) diagonal of the whole M.
+        """Wrench (m, 6) in response to demands (m, 6); `inertia` (6,) is the diagonal of M.
 
-        What it does about the vehicle's motion is its `wrench`.
+        The feedback of the loop, its response to the motion, is the effect's `wrench`.
         """
 
 
 class CommandTransform(Effect):
-    """Changes the thruster command before the force curve."""
+    """An effect on the thruster commands before the force curve."""
 
     requires = "thrusters"
 
     @abstractmethod
     def thruster_command(self, command: Array) -> Array:
-        """Commands (m, n) in [-1, 1] as the propellers see them."""
+        """Commands (m, n) in [-1, 1] of n thrusters, for the force curve."""
 
 
 class ThrustCurveShape(Effect):
-    """Changes the shape of the static force curve."""
+    """An effect on the shape of the static force curve."""
 
     requires = "thrusters"
 
     @abstractmethod
     def reshaped_force(self, force: Array, full: Array) -> Array:
-        """Forces (m, n) in N of nominal ones; `full` (2, n) at full command backwards, forwards."""
+        """Forces (m, n), N, of nominal ones; `full` (2, n): at full command, back and ahead."""
 
 
 class ThrustScaling(Effect):
-    """Changes the static thruster force after the force curve; `steady`: the same at all times."""
+    """An effect on the static force after the force curve; `steady`: it does not depend on time."""
 
     steady = False
 
@@ -289,33 +289,33 @@ class ThrustScaling(Effect):
 
     @abstractmethod
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
-        """Forces (m, n) in N at times t (m,) s into a recording of that duration."""
+        """Forces (m, n), N, at times t (m,), s since the start of a recording of `duration` s."""
 
 
 class ThrusterDynamics(Effect):
-    """Gives the thruster force dynamics of its own."""
+    """An effect on the dynamics of the thruster force, after the static force."""
 
     requires = "thrusters"
 
     @abstractmethod
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """Mean forces (k, n) over steps of h s that follow static mean forces (k, n).
+        """Mean forces (k, n), N, over steps of h s, and the state after the last step.
 
-        `state` is what an earlier call returned; None starts at rest at the first force.
+        `force` (k, n): static mean forces. `state`: from an earlier call; None: steady at force[0].
         """
 
 
 class FrameMisalignment(Effect):
-    """Changes what the motion capture reports of a motion, never the motion itself."""
+    """An effect on the frames in which the motion capture reports a motion, not on the motion."""
 
     @abstractmethod
     def transforms(self) -> tuple[Rigid, Rigid]:
-        """World side and body side: measured pose = world o true pose o body."""
+        """Transforms (world, body): measured pose = world o true pose o body."""
 
 
 class MeasurementFilter(Effect):
-    """Smooths the poses that the motion capture reports, after all `FrameMisalignment`."""
+    """A low-pass on the poses that the motion capture reports, after all `FrameMisalignment`."""
 
     @abstractmethod
     def time_constants(self) -> tuple[float, ...]:
-        """Time constants in s of first-order low-passes one after the other; none: as they are."""
+        """Time constants, s, of first-order low-passes in series; empty: no filter."""

@@ -24,11 +24,11 @@ class InputDelay(CommandTiming):
     )
     signature = Signature({"delay": 0.2}, "sway", "change of sway thrust")
     parameters = (Parameter("delay", "s", r"\delta", scale=0.05, resolution=STAMP),)
-    # a step of a command that comes 0.1 s late looks like nothing that a small delay does
+    # several starts: from no delay, derivatives do not lead to a step of a command 0.1 s later
     starts = ({}, {"delay": 0.1}, {"delay": 0.3}, {"delay": -0.1})
 
     def effective_time(self, time: Array) -> Array:
-        """Every line arrives later by the delay."""
+        """Delay every command by the same time."""
         return time + self["delay"]
 
 

@@ -7,7 +7,8 @@ from rovsim.dynamics.effects.parameters import Signature
 
 PAIRS = [(i, j) for i in range(6) for j in range(6) if i != j]
 POWERS = (("", "d"), ("_quadratic", "d^q"))  # the rows of Body.coupling
-# A tenth of what the diagonal terms of such a vehicle change by, force and moment by motion (i, j).
+# A tenth of what the diagonal terms of such a vehicle change by. First index: 0 force, 1 moment;
+# second index: by 0 translation, 1 rotation.
 SCALES = {(0, 0): 2.0, (0, 1): 0.5, (1, 0): 0.5, (1, 1): 0.1}
 
 

@@ -63,6 +63,6 @@ class CurrentDrift(StochasticCurrent):
     )
 
     def draw(self, ticks: int, dt: float, random: np.random.Generator) -> Array:
-        """A random walk in the plane."""
+        """A random walk of the horizontal velocity."""
         steps = self["rate"] * np.sqrt(dt) * random.normal(size=(ticks, 3))
         return np.cumsum(steps * [1.0, 1.0, 0.0], axis=0)

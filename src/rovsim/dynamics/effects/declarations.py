@@ -1,4 +1,4 @@
-"""What a class has to declare to be an effect: each of it of the right kind, before it is used."""
+"""Check the declarations of an effect class before it is used: types and ranges."""
 
 import keyword
 from numbers import Real
@@ -16,12 +16,12 @@ NUMBERS = ("low", "high", "default", "scale", "resolution")
 
 
 def refused(found: str, where: object, expected: str) -> BadInput:
-    """Of somebody's own effect: what was found, and what was expected."""
+    """The error that refuses a user's effect: what was found where, and what was expected."""
     return BadInput(found, where=where, expected=expected, remedy=GUIDE)
 
 
 def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
-    """What is wrong with what a complete class declares, and what was expected; best one by one."""
+    """Yield faults of a complete class: (found, expected). Callers should stop at the first."""
     yield from _find_shapes(cls)
     yield from _find_kinds(cls)
     for parameter in cls.parameters:
@@ -39,7 +39,7 @@ def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 
 def _find_shapes(cls: type[Effect]) -> Iterator[tuple[str, str]]:
-    """Declarations that are no tuples, most of them for want of a comma, or hold something else."""
+    """Yield declarations that are not tuples (often a comma is missing) or have wrong elements."""
     if not _holds(cls.parameters, Parameter):
         yield "'parameters' holds something else", "a tuple of Parameter(name, unit, symbol, …)"
     if not cls.starts or not _holds(cls.starts, Mapping):
@@ -57,7 +57,7 @@ def _find_shapes(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 
 def _find_out_of_range(cls: type[Effect]) -> Iterator[tuple[str, str]]:
-    """Values of starts that no such effect can have."""
+    """Yield values of `starts` that are out of the range of their parameter."""
     for p in cls.parameters:
         for value in [start[p.name] for start in cls.starts if p.name in start]:
             if not (isinstance(value, Real) and np.isfinite(value) and p.low <= value <= p.high):
@@ -66,7 +66,7 @@ def _find_out_of_range(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 
 def _find_kinds(cls: type[Effect]) -> Iterator[tuple[str, str]]:
-    """Single declarations of another kind."""
+    """Yield wrong types among the declarations that are not tuples."""
     if not cls.equation.strip():
         yield "'equation' is empty", "LaTeX that says what it does"
     for name in ("cause", "revealed_by"):

@@ -11,7 +11,7 @@ SMOOTH = 0.01  # m/s or rad/s: a convention of model files, as its equation says
 
 @inlined
 def rub(c, v):
-    """Friction against a velocity; what is absent costs nothing."""
+    """Friction of size c against a velocity v; 0 at once for c = 0, which costs no tanh."""
     return -c * tanh(v / SMOOTH) if c != 0.0 else 0.0
 
 

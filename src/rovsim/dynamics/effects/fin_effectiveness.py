@@ -42,7 +42,7 @@ class FinEffectiveness(Coefficients):
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
-        """Its surfaces by name."""
+        """With a factor for each surface of the vehicle, by its name."""
         return _of(vehicle.surface_names)
 
     def enter(self, body: Body) -> None:
@@ -53,5 +53,5 @@ class FinEffectiveness(Coefficients):
 
 @cache
 def _of(names: tuple[str, ...]) -> type[FinEffectiveness]:
-    """With a parameter for each of these surfaces."""
+    """The effect with a factor for each of these surfaces, and the common one, `all`."""
     return FinEffectiveness.adapted(parameters=(*(_gain(name) for name in names), _gain("all")))

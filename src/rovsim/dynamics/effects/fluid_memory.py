@@ -44,6 +44,6 @@ class FluidMemory(Coefficients):
     starts = tuple({"coefficient": 5.0, "time_constant": T} for T in (0.2, 0.8, 3.0))
 
     def enter(self, body: Body) -> None:
-        """Give the water a memory."""
+        """Add the fluid memory to the body."""
         if self["coefficient"]:
             body.remember(self["coefficient"] * WEIGHTS, self["time_constant"])

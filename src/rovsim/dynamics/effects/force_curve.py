@@ -31,7 +31,7 @@ class CurveExponent(ThrustCurveShape):
     parameters = (Parameter("exponent", "1", "e", low=0.1, default=1.0, scale=0.1),)
 
     def reshaped_force(self, force: Array, full: Array) -> Array:
-        """A power of the share of the full force."""
+        """Raise the ratio to the full force to a power."""
         most = np.abs(np.where(force < 0.0, full[0], full[1]))
         share = np.divide(np.abs(force), most, out=np.zeros_like(force), where=most > 0.0)
         return np.sign(force) * most * share ** self["exponent"]

@@ -1,7 +1,8 @@
-"""The kernel of somebody's own effect, tried at many instants before an engine calls it.
+"""Try the kernel of a user's effect at many instants before an engine calls it.
 
-Compiled code reads and writes beyond an array without a word, and an error in it ends nothing: the
-engine prints it at every step and goes on. So both must show here.
+Compiled code reads and writes out of the bounds of an array without an error, and an exception in
+it does not end a simulation: the engine prints it at every step and continues. So both must be
+found here.
 """
 
 from functools import cache
@@ -15,11 +16,11 @@ from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.effects.kernels import compiled_alone
 from rovsim.dynamics.engine.types import EXAMPLE, At
 
-INSTANTS = 100  # at which kernels are tried
-FASTEST = 2.0  # m/s and rad/s there
+INSTANTS = 100  # number of random instants that kernels are tried at
+FASTEST = 2.0  # m/s and rad/s: largest velocity at these instants
 LONGEST = 60.0  # s of a recording
 STRONGEST = 50.0  # N of a thruster
-BEYOND = 512  # numbers before and after those of the actuators, of which nothing may depend
+BEYOND = 512  # numbers before and after the actuators' arrays, which a kernel must not read
 
 
 class Actuating(NamedTuple):
@@ -31,12 +32,12 @@ class Actuating(NamedTuple):
 
     @property
     def places(self) -> int:
-        """Where the velocity through the water is known."""
+        """Number of places with an inflow velocity: thrusters and control surfaces."""
         return self.forces + self.surfaces
 
     @property
     def told(self) -> str:
-        """What a kernel may read of them."""
+        """What a kernel may read of the actuators, in words for messages."""
         return (
             f"indices within the actuators of this vehicle: {self.forces} forces, {self.commands} "
             f"commands, inflow at {self.places} places, three numbers each; nothing is written"
@@ -44,11 +45,11 @@ class Actuating(NamedTuple):
 
 
 def largest_push(e: Wrench, there: Actuating) -> float:
-    """Size of the largest number that a kernel returns, N or N m; what is no number is left out.
+    """Largest absolute value that a kernel returns at any instant, N or N m, but for NaN.
 
     Raises:
-        IndexError: it reads an actuator that is not there.
-        ValueError: it writes where it may only read.
+        IndexError: the kernel reads an actuator that does not exist.
+        ValueError: the kernel writes to the arrays of the actuators.
     """
     cls = type(e)
     kernel, p = compiled_alone(cls), cls.named_parameters()(*map(float, e.values))
@@ -57,7 +58,7 @@ def largest_push(e: Wrench, there: Actuating) -> float:
 
 
 def _push(kernel: Any, readings: "Sequence[_Reading]", p: Any) -> tuple[float, ...]:
-    """What a kernel returns at an instant, whatever lies beside what it may read."""
+    """The wrench at one instant; `readings` differ only in what is beyond the actuators' arrays."""
     made = []
     for reading in readings:
         before = [memory.copy() for memory in reading.memories]
@@ -71,14 +72,14 @@ def _push(kernel: Any, readings: "Sequence[_Reading]", p: Any) -> tuple[float, .
 
 
 class _Reading(NamedTuple):
-    """An instant as a kernel reads it, and the memory in which its actuators lie."""
+    """An instant as a kernel reads it, and the arrays that contain those of its actuators."""
 
     at: Any
     memories: Sequence[Array]
 
 
 def _instants(cls: type[Wrench], there: Actuating) -> Iterator[Sequence[_Reading]]:
-    """Instants, each with other numbers beside its actuators where a kernel reads these."""
+    """Yield instants; if the kernel reads actuators, each with three fillings of the margins."""
     random = np.random.default_rng(0)
     for at in _states():
         if not cls.reads():
@@ -92,7 +93,7 @@ def _instants(cls: type[Wrench], there: Actuating) -> Iterator[Sequence[_Reading
 
 @cache
 def _states() -> tuple[At, ...]:
-    """At rest, at rest in no known tank and without demands, and moving anywhere in a tank."""
+    """Instants at rest, at rest with unknown walls and demands, and at random in a tank."""
     unknown = (float("nan"),) * 2
     lost = EXAMPLE._replace(tank=(unknown,) * 3, demand=(float("nan"),) * 6)
     random = np.random.default_rng(1)
@@ -117,7 +118,7 @@ def _moving(rest: At, random: np.random.Generator) -> At:
 
 
 def _read(at: At, acting: Array, channels: Any, there: Actuating, beyond: float) -> _Reading:
-    """`acting` (5, k): forces in shares of a strong one, commands, and inflow (3, k) in m/s."""
+    """An instant with actuators of `acting` (5, k): forces / STRONGEST, commands, inflow (3, k)."""
     from rovsim.dynamics.engine.reading import Actuators, ReadingAt
 
     force = STRONGEST * acting[0, : there.forces]
@@ -129,7 +130,7 @@ def _read(at: At, acting: Array, channels: Any, there: Actuating, beyond: float)
 
 
 def _surrounded(values: Array, beyond: float) -> Array:
-    """The same values in a memory that holds something else before and after them."""
+    """An array with the values in the middle, and `beyond` before and after them."""
     memory = np.full((BEYOND + len(values) + BEYOND, *values.shape[1:]), beyond)
     memory[BEYOND : BEYOND + len(values)] = values
     return memory

@@ -1,4 +1,4 @@
-"""The kernel of an effect: compiled alone, and what it and its helpers say."""
+"""The kernel of a wrench effect: compile it alone, and inspect its code and its helpers."""
 
 import dis
 import inspect
@@ -9,9 +9,9 @@ from typing import Any, Callable, Iterator
 
 @cache
 def compiled_alone(cls: Any) -> Any:
-    """The kernel of an effect, by itself: callable from Python, indices beyond arrays refused.
+    """Compile the kernel of an effect by itself, callable from Python, with bounds checks.
 
-    Those in its helpers are not.
+    An index out of bounds raises an error in the kernel, but not in helpers that it calls.
     """
     import numba
 
@@ -22,13 +22,13 @@ def compiled_alone(cls: Any) -> Any:
 
 @cache
 def says(kernel: Callable, name: str) -> bool:
-    """Whether a kernel, or a helper that it calls, however deep, has this name in its code."""
+    """Whether a kernel, or a helper that it calls directly or indirectly, contains this name."""
     return any(name in function.__code__.co_names for function in _written_for(kernel))
 
 
 @cache
 def line_that_raises(kernel: Callable) -> int | None:
-    """The line in which a kernel, or a helper that it calls, raises or asserts; None: nowhere."""
+    """First line where a kernel or a helper that it calls raises or asserts; None if none does."""
     for function in _written_for(kernel):
         for one in dis.get_instructions(function):
             if one.opname == "RAISE_VARARGS" and one.positions is not None:
@@ -37,7 +37,7 @@ def line_that_raises(kernel: Callable) -> int | None:
 
 
 def _written_for(kernel: Callable) -> list[FunctionType]:
-    """A kernel and the helpers that it calls, however deep."""
+    """A kernel and all helpers that it calls, directly or indirectly, as Python functions."""
     found = [_written(kernel)]
     for function in found:
         found += [helper for helper in _helpers(function) if helper not in found]
@@ -45,12 +45,12 @@ def _written_for(kernel: Callable) -> list[FunctionType]:
 
 
 def _written(function: Any) -> Any:
-    """The function behind one that Numba compiles."""
+    """The Python function of one that Numba compiles."""
     return getattr(function, "py_func", function)
 
 
 def _helpers(function: Callable) -> Iterator[Callable]:
-    """Functions that stand in a function's code, compiled or not, also by way of a module."""
+    """Functions that a function refers to, compiled or not, by name or as members of a module."""
     used = inspect.getclosurevars(function)
     named = [*used.globals.values(), *used.nonlocals.values()]
     for module in [one for one in named if isinstance(one, ModuleType)]:

@@ -1,8 +1,8 @@
-"""Any law of up to three terms as one effect: its terms are data, so that nothing is compiled anew.
+"""Any law of up to three terms as one effect: its terms are data, so that nothing is recompiled.
 
-A term is a coefficient, what it acts on, and up to three factors; both are numbers in the effect's
-parameters (`law_codes`). A test holds the kernel against
-the file written of a law.
+A term is a coefficient, what it acts on (an axis or the water), and up to three factors. Codes of
+these are among the effect's parameters (`law_codes`). A test compares this kernel with the effect
+file that is written for a law.
 """
 
 from math import exp, sqrt, tanh
@@ -29,26 +29,26 @@ from rovsim.dynamics.engine.vectors import into_body
 
 TERMS, FACTORS = 3, 3
 STRIDE = 3 + FACTORS  # parameters of a term
-SMOOTH = 0.02  # m/s, rad/s: a sign that turns over within the noise of the velocity
-TILT = 0.05  # of the world's down in body axes, 3 degrees: likewise of the attitude
+SMOOTH = 0.02  # m/s, rad/s: width of the sign of a velocity, within its noise
+TILT = 0.05  # 3 degrees: width of the sign of the NED z axis in body axes
 STILL = 0.02  # m/s: below, a direction of motion fades
 
 
 @inlined
 def speed(v):
-    """Of translation."""
+    """Speed of translation of a velocity (6), m/s."""
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
 
 
 @inlined
 def away(at, x, y):
-    """Metres north and east of a place in MoCap coordinates."""
+    """Distance north and east, m, from the place x, y in MoCap coordinates."""
     return at.position[0] - x * at.axes[0], at.position[1] - y * at.axes[1]
 
 
 @inlined
 def of_velocity(k, v):
-    """Velocities, their sizes and directions; the speed, and what is along the motion."""
+    """Factor k of the velocity v (6): a component, its size or sign, the speed, or 1 / speed."""
     if k < SIZE:
         return v[k - VELOCITY]
     if k < SIGN:
@@ -61,7 +61,7 @@ def of_velocity(k, v):
 
 @inlined
 def of_place(k, at, x, y, z, s):
-    """Metres from a place, and how near it is."""
+    """Factor k of the place x, y, z: distance north, east or down, m; or nearness of width s."""
     north, east = away(at, x, y)
     if k == NORTH:
         return north
@@ -74,7 +74,7 @@ def of_place(k, at, x, y, z, s):
 
 @inlined
 def factor(code, at, p):
-    """One factor of a term; 1 where there is none."""
+    """Value of a factor by its code; 1 for no factor."""
     k = int(code)
     if k == NONE:
         return 1.0
@@ -89,7 +89,7 @@ def factor(code, at, p):
 
 @internal
 def term(at, p, k):
-    """A term: its coefficient, size and factors. Called: inlined, engines take twice as long."""
+    """Term k: coefficient, size and factors. Inlined, it would double an engine's compile time."""
     value = p[STRIDE * k] * p[STRIDE * k + 1]
     if value != 0.0:
         for j in range(FACTORS):
@@ -99,7 +99,7 @@ def term(at, p, k):
 
 @inlined
 def total(p, on, values):
-    """Sum of the terms that act there."""
+    """Sum of the terms that act on `on`."""
     found = 0.0
     for k in range(TERMS):
         if int(p[STRIDE * k + 2]) == on:
@@ -109,13 +109,13 @@ def total(p, on, values):
 
 @inlined
 def drag_change(linear, quadratic, v, water):
-    """What moving water adds to the drag of one axis."""
+    """Change of the drag force of one axis with a velocity v when the water moves at `water`."""
     w = v - water
     return (linear + quadratic * abs(v)) * v - (linear + quadratic * abs(w)) * w
 
 
 def _term(k: int) -> tuple[Parameter, ...]:
-    """The numbers of one term: free coefficient, its size, what it acts on, its factors."""
+    """Parameters of term k: fitted coefficient; fixed size, what it acts on, and factors."""
     fixed = (f"size{k}", f"on{k}", *(f"factor{k}{j}" for j in range(1, FACTORS + 1)))
     return (
         Parameter(f"c{k}", "1", f"c_{k}", scale=1.0),
@@ -148,7 +148,7 @@ class Law(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """Forces along the body's axes and the world's, and what water that moves adds to drag."""
+        """Sum of the terms along body and NED axes, and the change of drag by moving water."""
         t = (term(at, p, 0), term(at, p, 1), term(at, p, 2))
         world = (total(p, WORLD, t), total(p, WORLD + 1, t), total(p, WORLD + 2, t))
         f = into_body(at.R, world)

@@ -14,8 +14,8 @@ from rovsim.dynamics.effects.parameters import Signature
 from rovsim.dynamics.engine.compiled import inlined
 
 SPEEDS = ("m/s", "rad/s")
-# Where a fit of loops on all axes begins: what this vehicle reaches at full stick (Blue Robotics:
-# 1.5 m/s forward), and how soon.
+# Where a fit of loops on all axes begins: gains, the speed of this vehicle at full stick (Blue
+# Robotics: 1.5 m/s forward), m/s and rad/s; and bandwidths, 1/s.
 FULL_SPEED, FULL_WIDTH = (1.0, 1.0, 1.0, 3.0, 3.0, 3.0), (1.0, 1.0, 1.0, 3.0, 3.0, 3.0)
 EVERY_AXIS = {f"gain_{axis}": g for axis, g in zip(AXES, FULL_SPEED, strict=True)} | {
     f"bandwidth_{axis}": b for axis, b in zip(AXES, FULL_WIDTH, strict=True)
@@ -26,7 +26,7 @@ LEANING = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])  # axes whose angle a loop ma
 
 @inlined
 def held(inertia, bandwidth, nu, angle):
-    """What a loop of that bandwidth does about a velocity, and about an angle if it holds one."""
+    """Force or moment by which a loop counteracts a velocity nu, and an angle if it holds one."""
     return -inertia * bandwidth * (nu + bandwidth * angle)
 
 
@@ -84,11 +84,11 @@ class OnboardControl(Wrench, Autopilot):
 
     @classmethod
     def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:
-        """Only the loops that are closed: a further one would take its demand from the mixer."""
+        """Parameters of the start alone: another loop would take its demand from the mixer."""
         return tuple(name for name in super().free_at(start) if name in start)
 
     def check(self, site: Site, kind: CommandKind) -> None:
-        """The log must hold demands."""
+        """Refuse a run whose log holds no demands."""
         if kind != "demand" and self._closed.any():
             raise BadInput(
                 "onboard_control acts on demands, and this log holds none",
@@ -102,13 +102,13 @@ class OnboardControl(Wrench, Autopilot):
         return self.values[6:12] > 0.0
 
     def mixer_demand(self, demand: Array) -> Array:
-        """Demands of axes without a loop."""
+        """The demands, with 0 for axes that have a loop."""
         return np.where(self._closed, 0.0, demand)
 
     def demanded_wrench(self, demand: Array, inertia: Array) -> Array:
-        """What the loops push for their set-points alone: M_ii b_i g_i demand_i.
+        """Wrench (m, 6) by which the loops follow their set-points: M_ii b_i g_i demand_i.
 
-        In attitude mode roll and pitch ask for b_i g_i demand_i, a rate in proportion to the angle.
+        For roll and pitch in attitude mode, the demanded angle g_i demand_i times b_i is a rate.
         """
         gain, bandwidth = self.values[:6], self.values[6:12]
         by_angle = 1.0 + self["attitude"] * LEANING * (bandwidth - 1.0)
@@ -116,7 +116,7 @@ class OnboardControl(Wrench, Autopilot):
 
     @staticmethod
     def wrench(at, p):
-        """What the loops do about the motion."""
+        """The feedback of the loops: damping, and stiffness in attitude mode."""
         M, nu = at.inertia, at.nu
         x, y, z = at.R[2]  # the world's down in body axes
         roll, pitch = p.attitude * atan2(y, z), p.attitude * atan2(-x, sqrt(y * y + z * z))

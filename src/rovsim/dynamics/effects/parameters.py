@@ -1,4 +1,4 @@
-"""What an effect declares of its numbers."""
+"""Declarations of an effect: its parameters, and how the catalogue page shows it."""
 
 from dataclasses import dataclass, field
 from typing import Mapping
@@ -7,24 +7,33 @@ import numpy as np
 
 from rovsim import AXES
 
-# kg, the BlueROV2 Heavy (conf/vehicle): what is worth looking for in the catalogue is of its size.
+# kg, the BlueROV2 Heavy (conf/vehicle): `Parameter.scale` in the catalogue suits its size.
 REFERENCE_MASS = 13.5
 STAMP = 0.001  # s: command logs are stamped in whole milliseconds
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of an effect: its name, SI unit, symbol, allowed range and value when absent.
+    """One parameter of an effect.
 
-    A `default` of NaN means that the site decides where nothing is given. `scale` is the size of a
-    change worth looking for: a fit works in multiples of it. `resolution`: changes much smaller
-    than this do nothing, or all at once, or cannot be told from how a log rounds. Not `fitted`:
-    only when asked for; but `shape`, once its effect is known to act, where the data determine it.
-    `discrete`: it has a few values, one of which is right: they are tried. They are whole numbers,
-    and none above `most` means anything; a search that adds two of them may pass it.
-    `tried`: values of a threshold, with which commands or states are compared: what changes with it
-    does so in jumps, and no derivative leads there.
-    `reciprocal`: changes add in its reciprocal, as those of cutoffs do.
+    Attributes:
+        name: by which files and code refer to it.
+        unit: SI.
+        symbol: in LaTeX, as in the equation of the effect.
+        low: least value.
+        high: largest value.
+        default: value if none is given; NaN means that it then follows from the site.
+        scale: size of a change worth looking for; fits work in multiples of it.
+        resolution: a smaller change has no effect, or a sudden one, or cannot be distinguished
+            from the rounding of a log.
+        fitted: whether fits estimate it; otherwise they do so only on request, or see `shape`.
+        shape: not `fitted` at first, but once the effect is accepted, if the data determine it.
+        discrete: whether only a few whole numbers are possible, which are tried one by one.
+        most: largest meaningful value of a discrete parameter. A search that adds the values of
+            two effects may exceed it.
+        tried: values to try for a threshold that commands or states are compared with. The
+            response to a threshold changes in jumps, so that no derivative can guide a fit.
+        reciprocal: whether changes add in 1 / value, as those of cutoff frequencies do.
     """
 
     name: str
@@ -44,16 +53,16 @@ class Parameter:
 
     @property
     def highest(self) -> float:
-        """The largest value that means something."""
+        """The largest meaningful value: the lower of `high` and `most`."""
         return min(self.high, self.most)
 
     @property
     def neutral_value(self) -> float:
-        """The value that changes nothing; zero where the site would decide."""
+        """The value at which the effect changes nothing: the default, or zero if that is NaN."""
         return self.default if np.isfinite(self.default) else 0.0
 
     def combine(self, value: float, other: float, share: float = 1.0) -> float:
-        """A value with a share of the change from neutral to another on top, inside the range."""
+        """Add a share of the change from neutral to `other` to a value; clip to the range."""
         if self.reciprocal:
             both = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.neutral_value))
         else:
@@ -61,14 +70,14 @@ class Parameter:
         return float(np.clip(both, self.low, self.high))
 
     def std_of(self, scaled: float) -> float:
-        """Standard deviation in the parameter's unit, of a fitted one in scales.
+        """Standard deviation in the parameter's unit, of one in multiples of `scale`.
 
-        Within its resolution a value could be anywhere (uniform: / √12).
+        Adds the uniform distribution of a value within its resolution (resolution / √12).
         """
         return float(np.hypot(scaled * self.scale, self.resolution / np.sqrt(12.0)))
 
     def size(self, value: float) -> float:
-        """How large a change from neutral is, in the parameter's unit."""
+        """Absolute change from neutral; of a reciprocal parameter the absolute value."""
         return abs(value) if self.reciprocal else abs(value - self.neutral_value)
 
 
@@ -80,7 +89,7 @@ def per_axis(
     scales: tuple[float, float],
     low: float = -np.inf,
 ) -> tuple[Parameter, ...]:
-    """Six parameters named surge ... yaw; units and scales of the two kinds of axes."""
+    """Six parameters named surge ... yaw; scales are of translations, then of rotations."""
     units = (translation, rotation)
     return tuple(
         Parameter(axis, units[i // 3], rf"{symbol}_{{{axis}}}", low, scale=scales[i // 3])
@@ -90,10 +99,14 @@ def per_axis(
 
 @dataclass(frozen=True)
 class Signature:
-    """How the catalogue page shows an effect: hidden with these values, in the error of one axis.
+    """How the catalogue page shows an effect: by the error of a model that lacks it.
 
-    The mean error, or its `size` (RMS), is drawn over a condition of
-    `rovsim.evaluation.error_conditions`, or over a measured acceleration ("surge acceleration").
+    Attributes:
+        values: parameters of the effect that acts.
+        axis: whose error is shown.
+        condition: a condition of `rovsim.evaluation.error_conditions`, or a measured acceleration
+            ("surge acceleration"), over which the error is drawn.
+        size: whether the RMS error is drawn, instead of the mean error.
     """
 
     values: Mapping[str, float]

@@ -1,4 +1,4 @@
-"""What becomes of a demand before it is mixed."""
+"""Gains on the pilot's demands before the mixer."""
 
 from numpy import ndarray as Array
 

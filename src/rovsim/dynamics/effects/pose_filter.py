@@ -51,10 +51,10 @@ class PoseFilter(MeasurementFilter, CommandTiming):
     starts = ({"cutoff": 10.0}, {"cutoff": 4.0})
 
     def time_constants(self) -> tuple[float, ...]:
-        """Of the two low-passes, s."""
+        """Time constants of the two low-passes, s; empty where there is no filter."""
         cutoff = self["cutoff"]
         return () if cutoff >= NONE else 2 * (1.0 / (2.0 * pi * cutoff),)
 
     def effective_time(self, time: Array) -> Array:
-        """On the clock of the poses every line takes effect later by the latency."""
+        """Delay by the latency: the poses' clock is late by it, so commands seem to act later."""
         return time + self["latency"]

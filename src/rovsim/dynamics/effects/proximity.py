@@ -1,4 +1,4 @@
-"""Resistance that grows near a boundary of the water. Where no tank is known, there is none."""
+"""Damping that grows near a wall or the surface; no effect where the tank is not known."""
 
 from math import exp
 
@@ -9,13 +9,13 @@ from rovsim.dynamics.engine.compiled import inlined
 
 @inlined
 def nearness(distance, length):
-    """exp(-d/l) with d at least 0; 0 where the distance is not known."""
+    """exp(-d/l), with d clipped at 0; 0 where the distance is NaN (not known)."""
     return exp(-max(distance, 0.0) / length) if distance == distance else 0.0
 
 
 @inlined
 def times(factor, tau):
-    """A wrench times a factor."""
+    """A wrench (6) times a factor."""
     return (
         factor * tau[0],
         factor * tau[1],
@@ -27,7 +27,7 @@ def times(factor, tau):
 
 
 def _length(default: float) -> Parameter:
-    # the gain's effect at the usual distances fixes the product of both, often hardly the length
+    # at usual distances, the data fix the effect of gain and length together, hardly the length
     return Parameter(
         "length_scale", "m", "l", low=0.01, default=default, scale=0.2, fitted=False, shape=True
     )
@@ -58,7 +58,7 @@ class WallProximity(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """The part of the damping that the nearer wall of each pair adds."""
+        """The additional damping by the nearer wall along x and along y."""
         near = 0.0
         for axis in range(2):
             low, high = at.tank[axis]
@@ -90,6 +90,6 @@ class SurfaceProximity(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """The part of the damping that the surface adds."""
+        """The additional damping by the surface."""
         depth = at.position[2] - at.tank[2][0]
         return times(p.gain * nearness(depth, p.length_scale), at.drag)

@@ -43,7 +43,10 @@ class RigidBody(Coefficients):
 
 
 def _places(mass: float, reach: float) -> tuple[dict[str, float], ...]:
-    """At CO, and at the ends of a frame: without a mass its place means nothing."""
+    """Starts of a payload's fit: at CO, and `reach` m away along each axis.
+
+    The place is not identifiable at zero mass, so that fits do not begin there.
+    """
     ends = ({axis: place} for axis in "xyz" for place in (-reach, reach))
     return tuple({"mass": mass} | place for place in ({}, *ends))
 
@@ -75,7 +78,7 @@ class Payload(Coefficients):
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
-        """With starts that suit its size."""
+        """With starts that suit the size of the vehicle."""
         return _on_a_vehicle_of(vehicle.dry_mass)
 
     def enter(self, body: Body) -> None:
@@ -85,6 +88,6 @@ class Payload(Coefficients):
 
 @cache
 def _on_a_vehicle_of(mass: float) -> type[Payload]:
-    """With starts that suit a vehicle of so many kg: as on a BlueROV2 Heavy, but for its size."""
+    """With the starts of a BlueROV2 Heavy scaled to a vehicle of this mass, kg."""
     size = mass / REFERENCE_MASS
     return Payload.adapted(starts=_places(START * size, REACH * size ** (1.0 / 3.0)))

@@ -1,4 +1,4 @@
-"""How the motion capture sees the vehicle: what it calls the body, and what it calls level."""
+"""Wrong frames of the motion capture: body origin, body axes, and a world that is not level."""
 
 import numpy as np
 

@@ -16,7 +16,7 @@ ATTACHMENT = tuple(
 
 
 def _anchor(default: float, fitted: bool) -> tuple[Parameter, ...]:
-    """Where the tether leaves the tank, in MoCap world axes."""
+    """Parameters of the point where the tether leaves the tank, in MoCap world axes."""
     return tuple(
         Parameter(f"anchor_{axis}", "m", f"{axis}_a", default=default, scale=1.0, fitted=fitted)
         for axis in "xyz"
@@ -25,7 +25,7 @@ def _anchor(default: float, fitted: bool) -> tuple[Parameter, ...]:
 
 @inlined
 def attached(p, F):
-    """Wrench of a force at the attachment."""
+    """Wrench (6) at CO of a force F (3) at the attachment, body axes."""
     moment = cross((p.attachment_x, p.attachment_y, p.attachment_z), F)
     return F[0], F[1], F[2], moment[0], moment[1], moment[2]
 
@@ -80,7 +80,7 @@ class TetherTension(Wrench):
 
 @inlined
 def known(value, otherwise):
-    """A number that was given, else another."""
+    """The value, or `otherwise` if it is NaN."""
     return value if value == value else otherwise
 
 
@@ -117,7 +117,7 @@ class TetherDrag(Wrench):
     starts = ({"coefficient": 0.5}, {"coefficient": 2.0})
 
     def check(self, site: Site, kind: CommandKind) -> None:
-        """The tank or the anchor must be known."""
+        """Refuse a run where neither the tank nor the anchor is known."""
         if any(self[f"anchor_{axis}"] != self[f"anchor_{axis}"] for axis in _unknown(site)):
             raise BadInput(
                 "tether_drag has no anchor, and the tank is not known",
@@ -133,7 +133,7 @@ class TetherDrag(Wrench):
         north = known(p.anchor_x * at.axes[0], 0.5 * (x0 + x1)) - at.position[0]
         east = known(p.anchor_y * at.axes[1], 0.5 * (y0 + y1)) - at.position[1]
         down = known(p.anchor_z * at.axes[2], surface) - at.position[2]
-        # nothing, where no place is known and the drag is none
+        # 0, where the place is unknown: the coefficient is then 0
         r = known(sqrt(north * north + east * east + down * down), 0.0)
         v = at.nu_r[:3]
         drag = -p.coefficient * r * sqrt(dot3(v, v))
@@ -141,12 +141,12 @@ class TetherDrag(Wrench):
 
 
 def _unknown(site: Site) -> str:
-    """World axes along which the tank is not known."""
+    """World axes along which the walls of the tank are not known."""
     return "".join(axis for axis, wall in zip("xyz", site.tank[:, 0], strict=True) if wall != wall)
 
 
 def _over(site: Site) -> list[dict[str, float]]:
-    """Anchors in MoCap axes: over the middle and the corners at the surface; none if unknown."""
+    """Anchors at the surface over the middle and the corners of the tank, in MoCap axes, m."""
     if _unknown(site):
         return [{}]
     (x0, x1), (y0, y1), (surface, _) = site.tank

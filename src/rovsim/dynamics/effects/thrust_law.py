@@ -1,8 +1,8 @@
 """A push that follows the thrust: one of the laws that a diagnosis may propose, its term as data.
 
-The term is a coefficient, the axis it acts on, the thrust along an axis (as the forces of the
-thrusters and a row of the allocation make it) or its size, and perhaps one more factor: a
-velocity, its size, or the thrust along another axis.
+The term is a coefficient, the axis it acts on, the thrust along an axis (a row of the allocation
+matrix times the forces of the thrusters) or its absolute value, and perhaps one more factor: a
+velocity, its absolute value, or the thrust along another axis.
 """
 
 from rovsim.dynamics.effects.base import Parameter, Wrench
@@ -16,7 +16,7 @@ OTHER = 12  # code of a second thrust as the further factor; below, velocities a
 
 @inlined
 def along(force, p, first):
-    """Thrust along an axis, N or N m."""
+    """Thrust along an axis, N or N m: p[first:], a row of the allocation, times the forces."""
     found = 0.0
     for i in range(min(force.size, THRUSTERS)):
         found += p[first + i] * force[i]
@@ -44,7 +44,7 @@ class ThrustLaw(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """One component."""
+        """The term, along its axis."""
         force = at.actuators.force
         value, k = along(force, p, FIRST), int(p.factor)
         if p.unsigned > 0.0:

@@ -1,4 +1,4 @@
-"""Outputs that are plugged in wrong."""
+"""Two outputs of the autopilot that are swapped."""
 
 from dataclasses import replace
 from functools import cache
@@ -41,17 +41,17 @@ class ThrusterOrder(CommandTransform):
 
     @classmethod
     def describe(cls, value: float, names: Sequence[str]) -> str:
-        """An output by its number, and by the name of the thruster (`names` in that order)."""
+        """Describe an output by its number and its thruster, the one of `names` in that place."""
         k = int(value)
         return f"{k} ({names[k - 1]})" if 0 < k <= len(names) else f"{k}"
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
-        """All pairs of its thrusters."""
+        """With all pairs of the vehicle's thrusters as starts."""
         return _among(vehicle.thruster_count)
 
     def thruster_command(self, command: Array) -> Array:
-        """Two columns in each other's place."""
+        """Swap the two columns."""
         count = command.shape[1]
         i, j = (int(k) for k in self.values)
         if not (0 < i <= count and 0 < j <= count):
@@ -63,7 +63,7 @@ class ThrusterOrder(CommandTransform):
 
 @cache
 def _among(count: int) -> type[ThrusterOrder]:
-    """All pairs of so many thrusters."""
+    """The effect with all pairs of so many thrusters as starts."""
     pairs = combinations(range(1, count + 1), 2)
     starts = tuple({"first": float(i), "second": float(j)} for i, j in pairs)
     parameters = tuple(replace(p, most=float(count)) for p in ThrusterOrder.parameters)

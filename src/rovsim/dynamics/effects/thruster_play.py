@@ -24,9 +24,9 @@ class ThrusterPlay(ThrusterDynamics):
     starts = ({"band": 0.5}, {"band": 2.0}, {"share": 0.1})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """The play operator: every step clips what was there before.
+        """The play operator: at every step, clip the force before to the present band.
 
-        Two clips in a row are one, so what all steps up to one do is found by doubling.
+        Two clips in a row are again a clip, so all steps are evaluated together, by doubling.
         """
         F = force[0] if state is None else state
         known = self.given()

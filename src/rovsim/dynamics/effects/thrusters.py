@@ -21,16 +21,16 @@ from rovsim.dynamics.effects.base import (
 )
 from rovsim.dynamics.effects.parameters import STAMP, Signature
 
-USUAL_COUNT = 8  # thrusters that the catalogue lists: those of a BlueROV2 Heavy
+USUAL_COUNT = 8  # thrusters of the effect in the catalogue: those of a BlueROV2 Heavy
 
 
 def name_gains(count: int) -> tuple[str, ...]:
-    """What files call the gains of so many thrusters, in the vehicle file's order."""
+    """Names of the gains of so many thrusters, t1 to tn, in the vehicle file's order."""
     return tuple(f"t{i}" for i in range(1, count + 1))
 
 
 def _gains(count: int) -> tuple[Parameter, ...]:
-    """A gain for each of so many thrusters, and the common one."""
+    """Parameters: a gain for each of so many thrusters, and the common one, `all`."""
     names = (*name_gains(count), "all")
     return tuple(Parameter(name, "1", f"g_{{{name}}}", default=1.0, scale=0.1) for name in names)
 
@@ -62,7 +62,7 @@ class ThrusterDeadband(CommandTransform):
     starts = ({"width": 0.03}, {"width": 0.07})
 
     def thruster_command(self, command: Array) -> Array:
-        """Commands inside the band become zero."""
+        """Set commands inside the band to zero."""
         return np.where(np.abs(command) <= self["width"], 0.0, command)
 
 
@@ -107,12 +107,12 @@ class ThrusterGain(ThrustScaling):
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
-        """A gain for each thruster that there is."""
+        """With a gain for each thruster of the vehicle."""
         names = vehicle.thruster_names
         return cls if names == name_gains(USUAL_COUNT) else _gain_of(names)
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
-        """Forces times each thruster's gain and the common one."""
+        """Multiply forces by each thruster's gain and the common one."""
         each, own = np.ones(force.shape[1]), self.values[:-1][: force.shape[1]]
         each[: len(own)] = own
         return force * (self["all"] * each)
@@ -120,7 +120,7 @@ class ThrusterGain(ThrustScaling):
 
 @cache
 def _gain_of(names: tuple[str, ...]) -> type[ThrusterGain]:
-    """With a parameter for each of the thrusters that a vehicle file calls so."""
+    """The effect with a gain for each thruster of a vehicle, by their names in its file."""
     return ThrusterGain.adapted(parameters=_gains(len(names)), called=names)
 
 
@@ -142,7 +142,7 @@ class ThrustAsymmetry(ThrustScaling):
     parameters = (Parameter("ratio", "1", "a", low=0.0, default=1.0, scale=0.1),)
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
-        """Negative forces times the ratio."""
+        """Multiply negative forces by the ratio."""
         return np.where(force < 0.0, self["ratio"] * force, force)
 
 
@@ -173,11 +173,11 @@ class VoltageSag(ThrustScaling):
     )
 
     def needs_duration(self) -> bool:
-        """A fraction is of a run."""
+        """Whether there is a fraction: it is lost over the duration of a run."""
         return self["fraction"] != 0.0
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
-        """Forces that fade linearly with time."""
+        """Reduce the forces linearly with time."""
         lost = self["fraction"] * t / duration + self["rate"] * t
         return force * np.maximum(0.0, 1.0 - lost)[:, None]
 
@@ -203,7 +203,7 @@ class ThrusterLag(ThrusterDynamics):
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """Exact response to forces that are constant over each step, and its mean over it."""
+        """Mean over each step of the exact response to forces that are constant over each step."""
         T = self["time_constant"]
         start = force[0] if state is None else state
         if T == 0.0:
@@ -243,7 +243,7 @@ class AdvanceLoss(Coefficients):
     parameters = (Parameter("coefficient", "s/m", "c", scale=0.2),)
 
     def enter(self, body: Body) -> None:
-        """Add to the loss per speed of advance."""
+        """Add to the relative loss of thrust per inflow velocity, s/m."""
         body.advance += self["coefficient"]
 
 
@@ -277,9 +277,14 @@ class PropellerTorque(Coefficients):
 
 
 def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str:
-    """A parameter as people read it: `bow (t3)` is that of the third of `thrusters`, the bow's.
+    """Name of a parameter for readers: `bow (t3)` for the gain t3 if the third thruster is `bow`.
 
-    In model files and results it is t3 in the vehicle file's order, for every vehicle alike.
+    In model files and results the gains are t1 to tn, in the order of the vehicle file.
+
+    Args:
+        effect: id of the effect.
+        parameter: name of its parameter.
+        thrusters: names of the thrusters in the vehicle file.
     """
     gains = name_gains(len(thrusters))
     if effect != ThrusterGain.id or parameter not in gains:
@@ -289,6 +294,6 @@ def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str
 
 
 def with_thruster_names(parameters: Iterable[str], thrusters: Sequence[str]) -> list[str]:
-    """The same of parameters that are called `effect.parameter`."""
+    """Apply `name_parameter` to parameters with names of the form `effect.parameter`."""
     parts = (one.partition(".") for one in parameters)
     return [f"{effect}.{name_parameter(effect, name, thrusters)}" for effect, _, name in parts]

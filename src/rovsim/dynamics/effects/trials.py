@@ -1,6 +1,7 @@
-"""What somebody's own effect does, tried on a vehicle before anything is simulated with it.
+"""Try a user's effect on a vehicle before it is used in a simulation.
 
-Each kind of effect has its trials here: what its methods are given, and what they must return.
+For each kind of effect, trials call its methods with examples of their arguments and check what
+they return.
 """
 
 import sys
@@ -33,28 +34,28 @@ from rovsim.dynamics.effects.base import (
 from rovsim.dynamics.effects.declarations import refused
 from rovsim.dynamics.effects.kernel_trials import Actuating, largest_push
 
-INSTANTS = 5  # at which methods are tried
+INSTANTS = 5  # number of samples that methods are tried with
 TIME = np.arange(INSTANTS) / 10.0  # s
 DURATION = 60.0  # s of a recording
-NOTHING = 1e-9  # N, N m: what two equal forces of opposite sign leave
+NOTHING = 1e-9  # N, N m: rounding of two equal forces of opposite sign
 FULL = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
 BODY = "constants of the body as they are: finite numbers of the same shape"
-GROWING = ("products", "factors")  # of a body, to which an effect may add rows
+GROWING = ("products", "factors")  # constants of a body to which an effect may add rows
 
 
 class Tried(Actuated, Protocol):
-    """What trials ask of a vehicle, beside what effects do."""
+    """What trials need to know of a vehicle, in addition to what effects do."""
 
     @property
     def command_columns(self) -> tuple[str, ...]:
-        """What a log of thruster commands holds."""
+        """Names of the columns of a log of thruster commands."""
 
     def effects(self) -> tuple[Effect, ...]:
         """Its nominal effects."""
 
 
 class Trial(NamedTuple):
-    """A call of a method, and whether its result is what was expected."""
+    """A call of a method, what is expected of its result in words, and a check of that."""
 
     method: str
     call: Callable[[], Any]
@@ -63,10 +64,10 @@ class Trial(NamedTuple):
 
 
 def try_on(cls: type[Effect], vehicle: Tried) -> None:
-    """Call what an effect declares, where its fits begin, with what this vehicle has.
+    """Call the methods of an effect on this vehicle, at its defaults and where its fits begin.
 
     Raises:
-        BadInput: a method fails, or returns something else than its kind does.
+        BadInput: a method fails, or returns something else than expected.
     """
     where = _place_of(cls)
     if cls.requires == "thrusters" and not vehicle.thruster_count:
@@ -85,20 +86,20 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
 
 
 def _place_of(cls: type[Effect]) -> str:
-    """The file of an effect, and its id."""
+    """The file and the id of an effect, for messages."""
     file = getattr(sys.modules.get(cls.__module__), "__file__", None)
     return f"{file}, effect {cls.id}" if file else f"effect {cls.id}"
 
 
 def _line_of(error: Exception, cls: type[Effect]) -> str:
-    """The line of its own module in which an effect failed."""
+    """The line of the effect's own module in which it failed, for messages."""
     walked = traceback.walk_tb(error.__traceback__)
     own = [line for frame, line in walked if frame.f_globals.get("__name__") == cls.__module__]
     return f", line {own[-1]}" if own else ""
 
 
 def _list_trials(effect: Effect, vehicle: Tried) -> Iterator[Trial]:
-    """All trials of the kinds that an effect is of."""
+    """Yield the trials of all kinds of effect that this effect belongs to."""
     for kind, trials in TRIALS.items():
         if isinstance(effect, kind):
             yield from trials(effect, vehicle)
@@ -126,7 +127,7 @@ def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _shapes(body: Body) -> dict[str, tuple[int, ...] | None]:
-    """Shape of each constant of a body but its products of velocities; None: no finite numbers."""
+    """Shape of each constant but `GROWING`, by name; None if it is not finite numbers."""
     named = {one.name: getattr(body, one.name) for one in fields(body)}
     alike = {name: value for name, value in named.items() if name not in GROWING}
     return {name: np.shape(v) if _is_finite(v) else None for name, v in alike.items()}
@@ -221,7 +222,7 @@ def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _is_none(push: float) -> bool:
-    """Whether a largest push is none; one that is no number is told where it is simulated."""
+    """Whether the largest push is zero or NaN; a simulation reports a wrench that is NaN."""
     return not push > NOTHING
 
 
@@ -232,12 +233,12 @@ def _array(
 
 
 def _is_array(made: Any, shape: tuple[int, ...]) -> bool:
-    """Whether something is finite numbers of a shape."""
+    """Whether something is an array of finite numbers with this shape."""
     return np.shape(made) == shape and bool(np.isfinite(np.asarray(made, float)).all())
 
 
 def _told(made: Any) -> str:
-    """What a method returned, in a few words."""
+    """Describe what a method returned, for messages."""
     if isinstance(made, np.ndarray):
         return f"an array {made.shape}" + ("" if np.isfinite(made).all() else " with NaN or inf")
     return repr(made)
@@ -249,12 +250,12 @@ def _moving(columns: int) -> Array:
 
 
 def _forces(vehicle: Tried) -> Array:
-    """Forces (INSTANTS, n) N that a vehicle's thrusters may have."""
+    """Examples of forces (INSTANTS, n), N, of the vehicle's thrusters."""
     return _given(FULL[1][0] * _moving(vehicle.thruster_count))
 
 
 def _given(values: Array) -> Array:
-    """What a method may not change: in a simulation it is the log itself."""
+    """The values, read-only: in a simulation, a method gets the log itself."""
     values.setflags(write=False)
     return values
 

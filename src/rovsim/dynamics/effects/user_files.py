@@ -30,9 +30,10 @@ def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]
 
 @cache
 def _run(path: Path, text: str) -> ModuleType:
-    """The module that this text makes; never from a stale byte-code file.
+    """Run the text of a file as a module, never from a stale byte-code file.
 
-    Called after its content: an engine compiled for it remembers the name, wherever the file lies.
+    The name of the module is a digest of the text: compiled engines import it by this name,
+    wherever the file is.
     """
     module = ModuleType(f"rovsim_own_{hashlib.sha256(text.encode()).hexdigest()[:12]}")
     module.__file__ = str(path)
@@ -53,10 +54,11 @@ def _run(path: Path, text: str) -> ModuleType:
 def check_effects(
     content: Mapping[str, Any], where: object, taken: Mapping[str, Any]
 ) -> dict[str, type[Effect]]:
-    """The effects that stand in a module, complete and with new ids.
+    """Return the effects among the members of a module, after checking each of them.
 
     Raises:
-        BadInput: there is none, or one is incomplete or cannot be compiled.
+        BadInput: there is none, or one is incomplete, cannot be compiled, or has an id that is
+            already in `taken`.
     """
     name = content.get("__name__")
     classes = [
@@ -98,7 +100,7 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
 
 
 def _check_kernel(cls: type[Wrench], where: str) -> None:
-    """Compile the kernel alone: its errors are then short, and not those of the whole engine."""
+    """Compile the kernel alone, and refuse it if that fails: an engine's errors would be long."""
     from numba import typeof, types
     from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
@@ -128,7 +130,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
 
 
 def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
-    """Refuse what compiles and cannot be used where it is called a hundred times a second."""
+    """Refuse a kernel that raises or prints: it compiles, but cannot be used in a simulation."""
     line = line_that_raises(cls.wrench)
     if line is not None:
         raise refused(
@@ -141,7 +143,7 @@ def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
 
 
 def _reason(text: str) -> str:
-    """What Numba found, and in which line, without its report."""
+    """The cause and the line in an error message of Numba, without the rest of its report."""
     plain = [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines()]
     told = [
         line for line in plain if line and not line.startswith(("Failed in", "- ", ">>>", "Th"))

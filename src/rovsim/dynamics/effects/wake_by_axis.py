@@ -26,7 +26,7 @@ class WakeByAxis(Coefficients):
     starts = tuple({"time_constant": T} for T in (0.3, 1.0, 3.0))
 
     def enter(self, body: Body) -> None:
-        """Give the water a memory of the axes that have one."""
+        """Add the fluid memory to the body, if a coefficient is not 0."""
         known = self.given()
         memory = np.array([known.get(axis, 0.0) for axis in AXES])
         if memory.any():

@@ -1,4 +1,4 @@
-"""What rights a vehicle that floats."""
+"""Hydrostatic stiffness of a surface vehicle."""
 
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
