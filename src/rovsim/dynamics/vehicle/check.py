@@ -1,4 +1,4 @@
-"""Whether the parts of a vehicle file fit together."""
+"""Check that the parts of a vehicle file are consistent with each other."""
 
 from collections import Counter
 from pathlib import Path
@@ -10,16 +10,20 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.vehicle.file import Vehicle
 
-UNIT = 0.01  # how far the length of a direction may be from 1
+UNIT = 0.01  # tolerance of the length of a unit vector
 HANGING = ("heave", "roll", "pitch")  # axes on which weight and buoyancy act
 Finding = tuple[str, str, str]  # found, expected, remedy
 
 
 def check_vehicle(vehicle: Vehicle, where: Path | str) -> None:
-    """Refuse parts that do not fit together.
+    """Refuse a vehicle whose parts are not consistent.
+
+    Args:
+        vehicle: whose parts are checked.
+        where: its file, for the message.
 
     Raises:
-        BadInput: names the first.
+        BadInput: for the first fault.
     """
     for find in (_names, _mixer, _thrusters, _surfaces, _inertia, _buoyancy, _products):
         for found, expected, remedy in find(vehicle):

@@ -3,13 +3,13 @@
 A name is the axis of the force (X Y Z K M N) and two or three velocities (u v w p q r):
 
     Yuv: -28.6       Y = -28.6 u v
-    Nr|r|: -94.0     N = -94.0 r |r|        bars take the size
-    Yvv: -1310.0     the same as Yv|v|: twice the same velocity is v |v|, as drag is written
-    X|q||q|: -1.9    q^2, which pushes alike either way
-    Xuuu: -5.9       u u u
+    Nr|r|: -94.0     N = -94.0 r |r|        bars stand for the absolute value
+    Yvv: -1310.0     Y = -1310.0 v |v|      the same velocity twice, without bars, is drag: Yv|v|
+    X|q||q|: -1.9    X = -1.9 q^2           the same for both signs of q
+    Xuuu: -5.9       X = -5.9 u^3
 
-Signs are the source's: what brakes is negative. Forces of added mass (M_A and its Coriolis terms)
-are not among them: a source that writes Xwq, Yur or Nur may hold parts of those.
+Signs are those of the source: a coefficient of drag is negative. Forces of added mass (M_A and its
+Coriolis terms) are separate: in a source that has Xwq, Yur or Nur, these may contain parts of them.
 """
 
 import re
@@ -22,16 +22,16 @@ from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 
-SIZE = 6  # a factor of 6 + i is the size of velocity i
+SIZE = 6  # the factor 6 + i is the absolute value of velocity i
 NO_FACTOR = -1
 NAME = re.compile(r"([XYZKMN])((?:[uvwpqr]|\|[uvwpqr]\|){2,3})")
 
 
 def parse_product(name: str) -> tuple[int, int, int, int]:
-    """Axis of the force and its factors, as `Body.factors` has them.
+    """Parse a name into the axis of the force and three factors: a row (4) of `Body.factors`.
 
     Raises:
-        ValueError: no such name.
+        ValueError: not a name of a product.
     """
     found = NAME.fullmatch(name)
     if found is None:
@@ -62,7 +62,7 @@ Products = Annotated[dict[str, float], PlainValidator(_checked)]
 
 
 class CrossFlow(Coefficients):
-    """Forces of products of velocities through the water: cross-flow drag, hull and fin lift."""
+    """Forces of products of velocities in nu_r: cross-flow drag, lift of hull and fins."""
 
     id = "cross_flow"
     listed = False
@@ -76,11 +76,11 @@ class CrossFlow(Coefficients):
         self.products = dict(products or {})
 
     def neutral(self) -> Effect:
-        """No products."""
+        """The effect without products."""
         return CrossFlow()
 
     def enter(self, body: Body) -> None:
-        """Add the products."""
+        """Add the products to the body."""
         names = list(self.products)
         body.products = np.concatenate([body.products, [self.products[name] for name in names]])
         factors = np.array([parse_product(name) for name in names], dtype=np.int64)

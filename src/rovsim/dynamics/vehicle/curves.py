@@ -1,4 +1,4 @@
-"""Static force curves: the command of a thruster to its force at rest."""
+"""Static force curves: the force of a thruster at rest as a function of its command."""
 
 from typing import Annotated, Self
 
@@ -12,10 +12,15 @@ NonNegative = Annotated[float, Field(ge=0)]
 
 
 class Quadratic(Section):
-    """F = forward s^2 or -reverse s^2, N, s = (|c| - deadband) / (1 - deadband) of full command.
+    """F = forward s^2 or -reverse s^2, N, with s = (|c| - deadband) / (1 - deadband).
 
-    Thrust goes with the square of the propeller's speed (Fossen 2021, sec. 9.1, at rest); inside
-    the dead band nothing turns.
+    Thrust is proportional to the square of the propeller's speed (Fossen 2021, sec. 9.1, at rest).
+    Inside the dead band the propeller does not turn: s = 0.
+
+    Attributes:
+        forward: force at full command ahead, N.
+        reverse: absolute force at full command back, N.
+        deadband: in commands from 0 to 1.
     """
 
     forward: NonNegative
@@ -29,7 +34,7 @@ class Quadratic(Section):
 
 
 class Table(Section):
-    """Force in N at some commands; linear between them, held beyond the first and the last."""
+    """Forces, N, at some commands; linear between them, constant beyond the first and the last."""
 
     command: tuple[float, ...] = Field(min_length=2)
     force_: tuple[float, ...] = Field(min_length=2, alias="force")
@@ -48,10 +53,11 @@ class Table(Section):
 
 
 class Tables(Section):
-    """A table for each of some battery voltages, V; linear between them, held beyond.
+    """A table for each of some battery voltages, V; linear between them, constant beyond.
 
-    Where no voltage was logged, that of `nominal`; the highest of the tables unless given: a full
-    battery.
+    Attributes:
+        volts: the tables by voltage, V.
+        nominal: voltage where none was logged, V; None: the highest of the tables, a full battery.
     """
 
     volts: dict[PositiveFloat, Table] = Field(min_length=1)
@@ -59,18 +65,18 @@ class Tables(Section):
 
     @property
     def usual(self) -> float:
-        """The voltage where none was logged, V."""
+        """The voltage to use where none was logged, V."""
         return self.nominal or max(self.volts)
 
     @property
     def at_usual(self) -> Table:
-        """The table there."""
+        """The table at the usual voltage."""
         command = sorted({c for table in self.volts.values() for c in table.command})
         force = self.force(np.array(command), None)
         return Table(command=tuple(command), force=tuple(force.tolist()))
 
     def force(self, command: Array, voltage: Array | None) -> Array:
-        """Force in N of commands (m, ...) at battery voltages (m,), nominal if None."""
+        """Forces (m, ...), N, of commands (m, ...) at battery voltages (m,), V; None: nominal."""
         known = sorted(self.volts)
         forces = np.stack([self.volts[v].force(command) for v in known])
         if voltage is None:
@@ -84,9 +90,13 @@ class Tables(Section):
 
 
 class ForceCurve(Section):
-    """One of four ways to say what force a command in [-1, 1] makes, N.
+    """A force curve in one of four forms, of which exactly one is given.
 
-    `odd_polynomial` a_k: sum_k a_k c^(2k+1), equal both ways; `quadratic`; `table`; `tables`.
+    Attributes:
+        odd_polynomial: a_k, N, of F = sum_k a_k c^(2k+1), the same in both directions.
+        quadratic: two coefficients and a dead band.
+        table: forces at some commands.
+        tables: a table for each of some battery voltages.
     """
 
     odd_polynomial: tuple[float, ...] | None = Field(default=None, min_length=1)
@@ -102,11 +112,11 @@ class ForceCurve(Section):
 
     @property
     def at_nominal_voltage(self) -> "ForceCurve":
-        """The same where it does not ask for the voltage, else the table at the nominal one."""
+        """The same curve; if it depends on the voltage, its table at the nominal voltage."""
         return self if self.tables is None else ForceCurve(table=self.tables.at_usual)
 
     def force(self, command: Array, voltage: Array | None = None) -> Array:
-        """Force in N of commands (m, ...) in [-1, 1]; `voltage` (m,) V of the battery if known."""
+        """Forces (m, ...), N, of commands (m, ...) in [-1, 1]; `voltage` (m,) of the battery, V."""
         if self.tables is not None:
             return self.tables.force(command, voltage)
         other = self.quadratic or self.table

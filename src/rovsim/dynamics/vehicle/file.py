@@ -1,4 +1,4 @@
-"""A vehicle file: what stands in it, and the nominal effects it stands for."""
+"""The schema of a vehicle file, and the nominal effects that follow from it."""
 
 from typing import ClassVar, get_args
 
@@ -24,7 +24,7 @@ ALL: tuple[Axis, ...] = get_args(Axis)
 
 
 class Fluid(Section):
-    """Density in kg/m3 and gravity in m/s2."""
+    """The water: density, kg/m3; and gravity, m/s2."""
 
     density: PositiveFloat
     gravity: PositiveFloat
@@ -33,8 +33,8 @@ class Fluid(Section):
 class Moments(Section):
     """Moments and products of inertia about the centre of gravity, kg m2.
 
-    Ixy = sum of m x y and so on: they stand in the inertia matrix with a minus (Fossen 2021, eq.
-    3.25). A moment about an axis that is held may be left out.
+    Products are Ixy = sum of m x y and so on; in the inertia matrix they have a minus sign (Fossen
+    2021, eq. 3.25). The moment about an axis that is held may be left out.
     """
 
     Ixx: PositiveFloat | None = None
@@ -46,10 +46,17 @@ class Moments(Section):
 
 
 class DryVehicle(Section):
-    """Mass kg, inertia kg m2, centres m FRD from CO, displaced volume m3.
+    """Mass and buoyancy of the dry vehicle.
 
-    A vehicle that floats, or is held in heave, roll and pitch, may leave out what it displaces: it
-    is then neutrally buoyant, at its centre of gravity.
+    A vehicle that floats, or is held in heave, roll and pitch, may leave out the displaced volume
+    and the centre of buoyancy: it is then neutrally buoyant, at its centre of gravity.
+
+    Attributes:
+        mass: kg.
+        inertia: about the centre of gravity, kg m2.
+        center_of_gravity: (3) from CO, body axes FRD, m.
+        displaced_volume: m3.
+        center_of_buoyancy: (3) from CO, body axes FRD, m.
     """
 
     mass: PositiveFloat
@@ -60,9 +67,10 @@ class DryVehicle(Section):
 
 
 class Waterplane(Section):
-    """Stiffness of what floats about its rest: N/m, N m/rad, beside the moments of CG and CB.
+    """Hydrostatic stiffness of a floating vehicle: heave N/m, roll and pitch N m/rad.
 
-    Where CG and CB are one point, roll is rho g V GM_T (Fossen 2021, sec. 4.2), else rho g I_T.
+    It is in addition to the moments of weight at CG and buoyancy at CB. So roll is rho g I_T; or
+    rho g V GM_T where the file has CG and CB at the same point (Fossen 2021, sec. 4.2).
     """
 
     heave: NonNegative = 0.0
@@ -71,7 +79,19 @@ class Waterplane(Section):
 
 
 class Vehicle(Section):
-    """A vehicle file, as in conf/vehicle/."""
+    """A vehicle file, as in conf/vehicle/.
+
+    Attributes:
+        name: of the vehicle.
+        fluid: density and gravity.
+        rigid_body: mass, inertia and buoyancy.
+        hydrodynamics: added mass and damping.
+        thrusters: their places, force curves and mixer.
+        degrees_of_freedom: axes that move; the others are held at rest.
+        waterplane: stiffness of a floating vehicle; None if it is submerged.
+        cross_flow: coefficients of products of velocities, by their names.
+        surfaces: rudders and fins.
+    """
 
     described: ClassVar[str] = "docs/vehicles.md"
 
@@ -86,7 +106,7 @@ class Vehicle(Section):
     surfaces: tuple[Surface, ...] = ()
 
     def effects(self) -> tuple[Effect, ...]:
-        """The nominal physics as effects: what "the model" is until others are added."""
+        """The nominal physics as effects: the model before other effects are added."""
         further = (
             (self.waterplane is not None, lambda: _floating(self.waterplane)),
             (self.cross_flow, lambda: CrossFlow(self.cross_flow)),
@@ -113,7 +133,7 @@ class Vehicle(Section):
 
     @property
     def dry_mass(self) -> float:
-        """Its mass, kg, without water that it holds."""
+        """Dry mass, kg: without the water inside the vehicle."""
         return self.rigid_body.mass
 
     @property
@@ -138,9 +158,9 @@ class Vehicle(Section):
 
     @property
     def command_columns(self) -> tuple[str, ...]:
-        """What a log of thruster commands holds, in this order: thrusters, then surfaces.
+        """Names of the columns of a log of thruster commands: thrusters, then surfaces.
 
-        The angle of a thruster that turns follows it.
+        The command of an azimuth thruster is followed by its angle, NAME_angle.
         """
         units = self.thrusters.units
         own = [[u.name, f"{u.name}_angle"] if u.azimuth else [u.name] for u in units]
@@ -148,7 +168,7 @@ class Vehicle(Section):
 
     @property
     def angles(self) -> tuple[bool, ...]:
-        """Which of `command_columns` are angles in rad."""
+        """For each of `command_columns`, whether it is an angle in rad."""
         known = {unit.name for unit in self.thrusters.units}
         return tuple(name not in known for name in self.command_columns)
 
@@ -174,7 +194,7 @@ def _floating(waterplane: Waterplane | None) -> WaterplaneStiffness:
 
 
 class HeldAxes(Coefficients):
-    """Axes along and about which the vehicle does not move, whatever pushes."""
+    """Axes along or about which the vehicle does not move, whatever the forces."""
 
     id = "held_axes"
     listed = False
@@ -188,5 +208,5 @@ class HeldAxes(Coefficients):
         self.free = np.ones(6, bool) if free is None else free
 
     def enter(self, body: Body) -> None:
-        """Hold them."""
+        """Set which axes of the body move."""
         body.free = self.free

@@ -1,4 +1,4 @@
-"""Added mass and damping of a vehicle: six numbers on the diagonal, or whole matrices."""
+"""Added mass and damping of a vehicle file: six numbers on the diagonal, or whole matrices."""
 
 from typing import Annotated, Any
 
@@ -20,7 +20,7 @@ Numbers = tuple[float, ...] | tuple[tuple[float, ...], ...]
 
 
 def _six_or_matrix(value: Any) -> Numbers:
-    """Six numbers, or six rows of six, none of the diagonal below zero."""
+    """Check six numbers, or six rows of six, with a diagonal that is not negative."""
     try:
         a = np.array(value, dtype=float)
     except (TypeError, ValueError):
@@ -40,23 +40,23 @@ def _symmetric(value: Any) -> Numbers:
     return numbers
 
 
-# `Numbers`, but pydantic would look into them once more when it writes them
+# `Any` instead of `Numbers`: pydantic would check these once more when it writes them
 Diagonal = Annotated[Any, PlainValidator(_six_or_matrix)]
 Symmetric = Annotated[Any, PlainValidator(_symmetric)]
 
 
 def matrix(numbers: Numbers) -> Array:
-    """The matrix (6, 6) that six numbers, or six rows, stand for."""
+    """The matrix (6, 6) of six numbers on its diagonal, or of six rows."""
     a = np.array(numbers, dtype=float)
     return np.diag(a) if a.ndim == 1 else a
 
 
 class Hydrodynamics(Section):
-    """Added mass and damping; positive = inertia, drag.
+    """Added mass and damping: six numbers on the diagonal, or a matrix; positive = inertia, drag.
 
-    Of a matrix D of linear damping tau_i = -sum_j D_ij nu_j; of quadratic damping
-    tau_i = -sum_j D_ij |nu_j| nu_j: D_n(nu) of Fossen 2021, sec. 6.4, each column with its own
-    speed. `cross_flow`: other products of velocities.
+    A matrix D of linear damping stands for tau_i = -sum_j D_ij nu_j. One of quadratic damping
+    stands for tau_i = -sum_j D_ij |nu_j| nu_j: D_n(nu) of Fossen 2021, sec. 6.4, where each column
+    is multiplied by the speed of its own axis. `cross_flow` has other products of velocities.
     """
 
     added_mass: Symmetric
@@ -65,7 +65,7 @@ class Hydrodynamics(Section):
     cross_flow: Products = Field(default_factory=dict)
 
     def effects(self) -> tuple[Effect, ...]:
-        """The effects these numbers stand for; terms that are not there are none."""
+        """The effects of these numbers; couplings that are all zero have no effect."""
         mass, linear, quadratic = (
             matrix(n) for n in (self.added_mass, self.linear_damping, self.quadratic_damping)
         )

@@ -1,4 +1,4 @@
-"""Vehicles by their names in conf/vehicle/, or from a file."""
+"""Load vehicles by their names in conf/vehicle/, or from a file."""
 
 from functools import cache
 from pathlib import Path
@@ -13,24 +13,27 @@ from rovsim.dynamics.vehicle.file import Vehicle
 
 @cache
 def default_vehicle() -> str:
-    """Name of the vehicle where none is named: conf/default_vehicle.yaml says which."""
+    """Name of the vehicle to use where none is named, from conf/default_vehicle.yaml."""
     path = conf_file("default_vehicle.yaml")
-    assert path is not None  # it comes with rovsim
+    assert path is not None  # this file is part of rovsim
     return str(read_yaml(path)["vehicle"])
 
 
 def known_vehicle(name: str) -> Path | None:
-    """The file of a vehicle that has a name, None if there is none."""
+    """The file of a vehicle by its name in conf/vehicle/; None if there is none."""
     return conf_file(f"vehicle/{name}.yaml")
 
 
 def vehicle_file(name: str, *, named_in: Path | None = None) -> Path:
-    """The file of a vehicle: of a name in conf/vehicle/, or a path.
+    """Find the file of a vehicle.
 
-    `named_in`: the file that names it; a path is relative to the folder that this lies in.
+    Args:
+        name: a name in conf/vehicle/, or a path.
+        named_in: the file that names the vehicle; a path is relative to its folder. None: relative
+            to the working folder.
 
     Raises:
-        BadInput: there is none.
+        BadInput: no such vehicle or file.
     """
     folder = named_in.parent if named_in else Path()
     path = known_vehicle(name) or folder / name
@@ -56,10 +59,14 @@ def load_vehicle(name: str, *, named_in: Path | None = None) -> Vehicle:
 
 
 def build_vehicle(content: object, where: Path | str) -> Vehicle:
-    """The vehicle of a file's content.
+    """Build and check the vehicle that the content of a file describes.
+
+    Args:
+        content: what was read from the file.
+        where: the file, for messages.
 
     Raises:
-        BadInput: it does not describe one.
+        BadInput: the content does not describe a vehicle.
     """
     vehicle = checked(Vehicle, content, where)
     check_vehicle(vehicle, where)

@@ -1,4 +1,4 @@
-"""Rudders and fins: plates in the flow, turned by a command or fixed."""
+"""Control surfaces of a vehicle file: rudders and fins, turned by a command or fixed."""
 
 from copy import copy
 from typing import Annotated, Sequence
@@ -19,11 +19,18 @@ NO_WAKE = -1.0
 
 
 class Surface(Section):
-    """A control surface: position m and normal, FRD, at the angle zero; area m2.
+    """A control surface.
 
-    Ahead, a positive angle (column NAME, rad) lifts along `normal`. `lift_slope` per rad and
-    `drag`, of area and the square of the local speed; beyond `stall` rad lift falls.
-    `in_wake_of` a thruster: its jet adds to the flow.
+    Attributes:
+        name: its command column, an angle in rad.
+        position: (3) from CO, body axes FRD, m.
+        normal: (3) unit vector at the angle zero, body axes FRD. When the vehicle moves ahead, a
+            positive angle causes lift along it.
+        area: m2.
+        lift_slope: slope of the lift coefficient, 1/rad.
+        drag: drag coefficient of the profile.
+        stall: angle of attack beyond which the lift falls, rad.
+        in_wake_of: name of the thruster whose jet adds to the flow, if any.
     """
 
     name: str = Field(pattern=r"^[A-Za-z]\w*$")
@@ -37,7 +44,7 @@ class Surface(Section):
 
 
 class Surfaces(Coefficients):
-    """Control surfaces: lift and drag at the local velocity through the water."""
+    """Lift and drag of control surfaces at the local velocity relative to the water."""
 
     id = "surfaces"
     listed = False
@@ -64,20 +71,20 @@ class Surfaces(Coefficients):
         self.rows = np.array(rows, dtype=float).reshape(-1, JET + 1)
 
     def neutral(self) -> Effect:
-        """The same surfaces, which neither lift nor drag."""
+        """The same surfaces without lift and drag."""
         found = copy(self)
         found.rows = self.rows.copy()
         found.rows[:, HALF] = 0.0
         return found
 
     def enter(self, body: Body) -> None:
-        """Add the surfaces, lifting as they should."""
+        """Set the surfaces of the body, with a factor of 1 on their lift, and add their places."""
         body.surfaces, body.lifting = self.rows, np.ones(len(self.rows))
         body.places = np.concatenate([body.places, self.rows[:, :3]])
 
 
 def _row(one: Surface, units: Sequence[Thruster], density: float) -> list[float]:
-    """Constants of a surface as `Body.surfaces` has them."""
+    """The row (15) of a surface in `Body.surfaces`; columns as in `engine.types`."""
     normal = np.array(one.normal) / np.linalg.norm(one.normal)
     chord = AHEAD - (AHEAD @ normal) * normal
     chord = chord / np.linalg.norm(chord)
@@ -90,10 +97,11 @@ def _row(one: Surface, units: Sequence[Thruster], density: float) -> list[float]
 def _wake(
     one: Surface, units: Sequence[Thruster], density: float, chord: Array
 ) -> tuple[float, float]:
-    """Which thruster's jet it stands in, and what V^2 gains per newton (actuator disc).
+    """Index of the thruster whose jet a surface is in, and increase of V^2 per thrust, m2/s2 per N.
 
-    Far behind the disc V^2 = V_a^2 + 2 T / (rho A_disc). Where nobody says how large the propeller
-    is, its disc is as large as the surface (assumed).
+    Actuator disc: far behind it V^2 = V_a^2 + 2 T / (rho A_disc). If the propeller's diameter is
+    not given, the area of the disc is assumed to be that of the surface. The increase is negative
+    if the jet is directed against the chord.
     """
     if one.in_wake_of is None:
         return NO_WAKE, 0.0

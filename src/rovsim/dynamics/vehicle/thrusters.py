@@ -1,4 +1,4 @@
-"""Thrusters: where they push, along what, how hard for a command, and who mixes them."""
+"""Thrusters of a vehicle file: places, directions, force curves, and the mixer of demands."""
 
 from functools import cached_property
 from typing import Annotated
@@ -20,12 +20,18 @@ DOWN = np.array([0.0, 0.0, 1.0])
 
 
 class Thruster(Section):
-    """Position m and direction of positive thrust, FRD; spin = sign of the reaction moment.
+    """A thruster.
 
-    `force_curve`: its own, where it differs from that of the set. `azimuth`: it turns about the
-    body's z axis by the angle in a second command column, NAME_angle in rad, positive from ahead
-    to starboard; `direction` is that of the angle zero. `diameter` m of the propeller, where a
-    surface stands in its wake.
+    Attributes:
+        name: its command column.
+        spin: sign of the reaction moment about `direction` at positive thrust; 0: none.
+        position: (3) from CO, body axes FRD, m.
+        direction: (3) of positive thrust, a unit vector in body axes FRD; of an azimuth thruster
+            at the angle zero.
+        force_curve: its own, if it differs from that of the set.
+        azimuth: whether the thruster turns about the body's z axis. A second command column,
+            NAME_angle, has the angle in rad, positive from ahead to starboard.
+        diameter: of the propeller, m; used for a control surface in its wake.
     """
 
     name: Name
@@ -38,7 +44,7 @@ class Thruster(Section):
 
 
 class Mixer(Section):
-    """Thruster commands per unit of demand, axis by axis."""
+    """The mixer: for each axis, commands of all n thrusters per unit of demand."""
 
     surge: tuple[float, ...]
     sway: tuple[float, ...]
@@ -51,7 +57,11 @@ class Mixer(Section):
 class ThrusterSet(Section):
     """All thrusters, their common force curve, and the mixer from demands to commands.
 
-    Without a mixer no demand can be taken. `command_limit`: what the pilot stays within.
+    Attributes:
+        command_limit: largest absolute command that the pilot uses.
+        force_curve: of thrusters that have none of their own.
+        units: the thrusters.
+        mixer: without one, the vehicle cannot be driven by demands.
     """
 
     command_limit: PositiveFloat = 1.0
@@ -78,8 +88,17 @@ class ThrusterSet(Section):
 class Thrusters(Coefficients):
     """Thrusters with a static force curve: where they push, and how hard for a command.
 
-    A thruster that turns is two in the equation of motion: its force along the direction of the
-    angle zero, and a quarter turn to starboard of that. `count` n of them make `components` k.
+    In the equation of motion an azimuth thruster has two components: its force along the direction
+    of the angle zero, and a quarter turn to starboard of that. So n thrusters have k components,
+    first one of each thruster, then the second ones of azimuth thrusters.
+
+    Attributes:
+        layout: the section of the vehicle file.
+        count: n.
+        turning: (n,) whether each is an azimuth thruster.
+        directions: (k, 3) of the components, body axes.
+        positions: (k, 3) m.
+        spin: (k,) sign of the reaction moment.
     """
 
     id = "thrusters"
@@ -104,18 +123,18 @@ class Thrusters(Coefficients):
         self.spin = self._doubled(np.array([unit.spin for unit in units], dtype=float))
 
     def _doubled(self, values: Array) -> Array:
-        """Values of the components (k, ...), from those of the thrusters (n, ...)."""
+        """Values of the components (k, ...), of those of the thrusters (n, ...)."""
         return np.concatenate([values, values[self.turning]])
 
     def enter(self, body: Body) -> None:
-        """Set the allocation matrix B (6, k): each column is direction and moment (eq. 9.77)."""
+        """Set the allocation B (6, k): columns are directions and their moments (eq. 9.77)."""
         moments = np.cross(self.positions, self.directions)
         body.B = np.hstack([self.directions, moments]).T.copy()
         body.directions, body.spin = self.directions, self.spin
         body.places = self.positions[: self.count]
 
     def static_force(self, command: Array, voltage: Array | None = None) -> Array:
-        """Force in N of commands (..., n) in [-1, 1]; `voltage` (m,) V of the battery if known."""
+        """Forces (m, n), N, of commands (m, n) in [-1, 1]; `voltage` (m,) of the battery, V."""
         if self.common is not None:
             return self.common.force(command, voltage)
         forces = [c.force(command[..., k], voltage) for k, c in enumerate(self.curves)]
@@ -132,20 +151,20 @@ class Thrusters(Coefficients):
 
     @cached_property
     def curves(self) -> list[ForceCurve]:
-        """The curve of each thruster (n)."""
+        """The force curve of each thruster, n of them."""
         found = [unit.force_curve or self.layout.force_curve for unit in self.layout.units]
         return [curve for curve in found if curve is not None]
 
     @cached_property
     def common(self) -> ForceCurve | None:
-        """The curve that all of them share, if they do."""
+        """The force curve that all thrusters share; None if they differ."""
         same = self.curves and all(curve == self.curves[0] for curve in self.curves)
         return self.curves[0] if same else None
 
     def resolved(
         self, force: Array, cosine: Array | None = None, sine: Array | None = None
     ) -> Array:
-        """Forces of the components (m, k), of forces (m, n) and their cos and sin (m, a)."""
+        """Resolve forces (m, n) into components (m, k), with cos, sin (m, a) of azimuth angles."""
         if not self.turning.any():
             return force
         aside = force[:, self.turning]

@@ -1,8 +1,9 @@
-"""Numbers of a vehicle file whose size no vehicle has: another unit, most likely.
+"""Find implausible numbers in a vehicle file, which are most likely in another unit.
 
-Nothing is refused: a file may describe what was never built. Lengths are compared with that of the
-vehicle, the edge of a cube of water of its mass; published ones have radii of gyration of 0.2 to 2
-times it, and thrusters at most 5 times it away.
+They only cause warnings: a file may describe a vehicle that was never built. Lengths are compared
+with the vehicle's length, for which the edge of a cube of water of its mass is taken. Published
+vehicles have radii of gyration of 0.2 to 2 times this length, and thrusters at most 5 times this
+length away from CO.
 """
 
 from typing import Iterator
@@ -13,13 +14,13 @@ from rovsim.dynamics.vehicle.file import Vehicle
 
 GRAVITY = (1.0, 30.0)  # m/s2: from the Moon's to Jupiter's
 DENSITY = (500.0, 2000.0)  # kg/m3, of a liquid in which a vehicle swims
-CARRIED = 5.0  # times, or below 1/5: mass over that of the displaced water
+CARRIED = 5.0  # times: mass over that of the displaced water; or less than 1/5
 GYRATION = (0.03, 10.0)  # times the vehicle's length
 FAR = 30.0  # times the vehicle's length
 
 
 def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
-    """Sentences about numbers that seem to be in another unit; none where all may be right."""
+    """Sentences about numbers that seem to be in another unit; empty where all are plausible."""
     found = [*_water(vehicle), *_weight(vehicle), *_inertia(vehicle), *_places(vehicle)]
     return tuple(f"Vehicle file, {one}" for one in found)
 
@@ -37,7 +38,7 @@ def _weight(vehicle: Vehicle) -> Iterator[str]:
     if vehicle.floats or dry.displaced_volume is None:
         return
     if not DENSITY[0] <= vehicle.density <= DENSITY[1]:
-        return  # that is said
+        return  # `_water` reports that
     water = vehicle.density * dry.displaced_volume
     if not 1.0 / CARRIED <= dry.mass / water <= CARRIED:
         yield (
