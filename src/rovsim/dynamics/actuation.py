@@ -1,7 +1,7 @@
-"""The thrust path: logged commands to the mean force of each thruster over each step.
+"""The thrust path: from logged commands to the mean force of each thruster over each step.
 
 Order (docs/simulator.md): clock -> mixer (demands only) -> deadband -> force curve -> gain,
-asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) happens in the engine.
+asymmetry, sag -> lag. What depends on the vehicle's motion (advance loss) is in the engine.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -27,17 +27,17 @@ from rovsim.dynamics.effects.base import (
 from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
-AT_ONCE = 1 << 16  # steps whose thrust is found together: it takes twenty times the room of a step
+AT_ONCE = 1 << 16  # steps evaluated at once: this takes twenty times the memory of the result
 
 
 @dataclass(frozen=True, eq=False)
 class Thrust:
-    """At k instants or means over k steps: `force` (k, n) N, `wrench` (k, 6) given directly.
+    """Actuation at k instants or means over k steps: `force` (k, n), N, of n thrusters.
 
-    `demand` (k, 6), NaN where none was logged. `cosine`, `sine` (k, a) of the angle of each
-    thruster that turns, `angle` (k, s) rad of each control surface; None where a wrench is given.
-    `read` (k, c + q): where an effect reads them, commands as logged and mixed, then the channels
-    of `ThrustPath.channels`; None elsewhere.
+    `wrench` (k, 6): commanded directly. `demand` (k, 6): NaN if not logged. `cosine`, `sine` (k, a)
+    of the azimuth angles, `angle` (k, s), rad, of control surfaces; None if a wrench is commanded.
+    `read` (k, c + q): commands as logged and mixed, then `ThrustPath.channels`; None if no effect
+    reads them.
     """
 
     force: Array
@@ -49,12 +49,12 @@ class Thrust:
     read: Array | None = None
 
     def each(self, change: Callable[[Array], Array]) -> "Thrust":
-        """All of it changed alike."""
+        """Apply a function to all arrays."""
         return Thrust(**{name: change(part) for name, part in self._parts.items()})
 
     @staticmethod
     def joined(parts: "Sequence[Thrust]") -> "Thrust":
-        """Thrust over the steps of all parts, one after the other."""
+        """Concatenate parts along the steps."""
         if len(parts) == 1:
             return parts[0]
         names = parts[0]._parts
@@ -81,12 +81,12 @@ class ThrustPath:
         self.scalings = [e for e in ranked if isinstance(e, ThrustScaling)]
         self.dynamics = [e for e in ranked if isinstance(e, ThrusterDynamics)]
         self.readers = [e for e in ranked if isinstance(e, Wrench) and e.reads()]
-        # what their kernels read of the log beside commands
+        # logged channels that their kernels read in addition to commands
         self.channels = tuple(dict.fromkeys(name for e in self.readers for name in e.channels))
 
     @property
     def key(self) -> tuple:
-        """Equal where the same commands make the same thrust, whatever autopilots do beside it."""
+        """Equal for paths with the same thrust at the same commands, but for loops on board."""
         left = [autopilot.mixer_demand(np.eye(6)).tobytes() for autopilot in self.autopilots]
         acting = (
             *self.timings,
@@ -100,13 +100,13 @@ class ThrustPath:
         return (*read, *left, *((e.id, e.values.tobytes()) for e in acting))
 
     def effective_time(self, time: Array) -> Array:
-        """Instants at which lines logged at `time` take effect."""
+        """Instants (m,), s, at which commands logged at `time` (m,) take effect."""
         for timing in self.timings:
             time = timing.effective_time(time)
         return time
 
     def columns(self, kind: CommandKind) -> int:
-        """How many values a logged command has."""
+        """Number of columns of a logged command of this kind."""
         own = self.thrusters.count + int(self.thrusters.turning.sum()) + self.surfaces
         return own if kind == "thruster" else 6
 
@@ -126,7 +126,7 @@ class ThrustPath:
         return np.clip(value @ self.thrusters.mixing.T, -1.0, 1.0)
 
     def steering(self, value: Array, kind: CommandKind) -> tuple[Array, Array]:
-        """Angles in rad of thrusters that turn (m, a) and of surfaces (m, s): zero but by log."""
+        """Azimuth angles (m, a) and surface angles (m, s), rad; zero if not logged."""
         turning, count = int(self.thrusters.turning.sum()), len(value)
         if kind != "thruster":
             return np.zeros((count, turning)), np.zeros((count, self.surfaces))
@@ -154,9 +154,9 @@ class ThrustPath:
     def static(
         self, command: Array, t: Array, duration: float, voltage: Array | None = None
     ) -> Array:
-        """Static forces (m, n) in N of thruster commands (m, n) at times t (m,).
+        """Static forces (m, n), N, of thruster commands (m, n) at times t (m,), s, in the run.
 
-        `voltage` (m,) V of the battery, where it was logged.
+        `voltage` (m,) of the battery, V, if it was logged.
         """
         for transform in self.command_transforms:
             command = transform.thruster_command(command)
@@ -174,7 +174,7 @@ class ThrustPath:
         return self.thrusters.static_force(np.concatenate([-forwards, forwards]))
 
     def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
-        """Dynamic mean forces over steps, and the states to go on from."""
+        """Dynamic mean forces (k, n) of static ones over steps of h s, and the last states."""
         after: list = []
         for i, one in enumerate(self.dynamics if self.thrusters.count else ()):
             force, state = one.respond(force, h, states[i] if states else None)
@@ -190,9 +190,9 @@ class ThrustPath:
     ) -> Thrust:
         """Mean thrust over each step between `edges` (k+1,), s on the MoCap clock.
 
-        Before the first line its command holds, after the last one too. The static mean is exact
-        for held commands wherever a line falls inside a step; a lag takes it for the whole step.
-        `cuts`: of these steps, if they are kept.
+        The first command also holds before its line, the last one after it. For held commands the
+        static mean is exact, also if a line takes effect inside a step; a lag assumes it constant
+        over the step. `cuts`: a cache.
         """
         start, duration = commands.recording(edges)
         arrival = start + self.effective_time(commands.time - start)  # clocks agree at the start
@@ -216,11 +216,11 @@ class ThrustPath:
         between: Between,
         cuts: StepCuts | None = None,
     ) -> Thrust:
-        """Static mean thrust over each step, of lines by the time at which they take effect.
+        """Static mean thrust over each step, of lines whose time is that of taking effect.
 
-        `start` s and `duration` s are those of the recording; `cuts` as of `over_steps`.
+        `start` and `duration`, s, are those of the recording; `cuts`: see `over_steps`.
         """
-        steady = between == "held" and self._is_steady(lines)  # once for each line, not each piece
+        steady = between == "held" and self._is_steady(lines)  # evaluate lines, not pieces
         cut = (cuts or StepCuts()).at(lines.time, edges, steady)
         if not steady:
             value = _between(lines.time, lines.value, cut.middle, between)
@@ -228,9 +228,9 @@ class ThrustPath:
         return self.at(lines, start, duration).each(cut.average)
 
     def at(self, lines: Commands, start: float, duration: float) -> Thrust:
-        """Static thrust that each line makes by itself, at its time.
+        """Static thrust of each line at its time.
 
-        `start` s and `duration` s are those of the recording.
+        `start` and `duration`, s, are those of the recording.
 
         Raises:
             BadInput: the log lacks a channel that an effect reads, or its columns do not fit.
@@ -248,9 +248,9 @@ class ThrustPath:
         return Thrust(force, still, demand, np.cos(azimuth), np.sin(azimuth), angle, read)
 
     def _read_out(self, lines: Commands, command: Array | None = None) -> Array | None:
-        """Commands and angles as a log of thrusters has them, then channels; None where unread.
+        """Commands and angles in the order of a thruster log, then channels; None if not read.
 
-        `command` (m, n): what the thrusters are told, if they are told anything.
+        `command` (m, n): the thruster commands; None if a wrench is commanded.
         """
         if not self.readers:
             return None
@@ -263,14 +263,14 @@ class ThrustPath:
         return np.hstack([columns, *beside])
 
     def _is_steady(self, lines: Commands) -> bool:
-        """Whether the same command makes the same thrust at all times, and nothing else is read."""
+        """Whether the thrust depends on the command alone: not on time, voltage or channels."""
         timed = "voltage" in lines.auxiliary or any(not s.steady for s in self.scalings)
         timed = timed or bool(self.channels)
         return len(lines.time) > 0 and not timed
 
 
 def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
-    """Values (m, c) logged at `time`, at the instants `at`; zero where nothing was commanded."""
+    """Values (m, c) logged at `time`, at other instants: held or linear; zero if m = 0."""
     if not len(time):
         return np.zeros((len(at), value.shape[1]))
     if between == "held":
@@ -279,7 +279,7 @@ def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
 
 
 def _logged(lines: Commands, name: str) -> Array:
-    """A channel at the times of the lines."""
+    """A channel (m,) interpolated to the times of the lines."""
     logged = lines.auxiliary.get(name)
     if logged is not None:
         return np.interp(lines.time, logged.time, logged.value)
@@ -292,6 +292,6 @@ def _logged(lines: Commands, name: str) -> Array:
 
 
 def _voltage(lines: Commands) -> Array | None:
-    """Voltage (m,) of the battery at the times of the lines, where it was logged."""
+    """Voltage (m,) of the battery, V, at the times of the lines; None if it was not logged."""
     logged = lines.auxiliary.get("voltage")
     return None if logged is None else np.interp(lines.time, logged.time, logged.value)

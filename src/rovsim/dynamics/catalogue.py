@@ -17,7 +17,7 @@ from rovsim.dynamics.vehicle import Vehicle
 
 
 class Catalogue(Mapping[str, type[Effect]]):
-    """Effects by id, in the order of their ids; `files` are those that a user named."""
+    """Effect classes by id, sorted; `files` are those of a user's effects."""
 
     def __init__(self, found: Mapping[str, type[Effect]], files: Sequence[Path] = ()) -> None:
         self._by_id = dict(sorted(found.items()))
@@ -34,14 +34,14 @@ class Catalogue(Mapping[str, type[Effect]]):
 
     @property
     def wrenches(self) -> tuple[type[Wrench], ...]:
-        """Those that an engine is compiled for."""
+        """The wrench effects, for which engines are compiled."""
         return tuple(cls for cls in self.values() if issubclass(cls, Wrench))
 
     def on(self, vehicle: Vehicle) -> "Catalogue":
         """The same effects with the parameters and starts that they have on a vehicle.
 
         Raises:
-            BadInput: somebody's own effect fails on it.
+            BadInput: a user's effect fails on this vehicle.
         """
         there = {name: cls.on(vehicle) for name, cls in self.items()}
         for name in there.keys() - built_in().keys():
@@ -52,7 +52,7 @@ class Catalogue(Mapping[str, type[Effect]]):
         """The effect with this id.
 
         Raises:
-            BadInput: there is none; names the nearest.
+            BadInput: there is none; the message names the nearest id.
         """
         if name in self:
             return self[name]
@@ -65,10 +65,10 @@ class Catalogue(Mapping[str, type[Effect]]):
 
 
 def load_catalogue(files: Sequence[Path] = ()) -> Catalogue:
-    """The effects of this package, of installed packages, and of these files.
+    """Load the effects of this package, of installed packages, and of these files.
 
     Raises:
-        BadInput: a file or an entry point that cannot be used, or without a complete effect.
+        BadInput: a file or an entry point cannot be used, or has no complete effect.
     """
     found = dict(built_in())
     for where, content in _installed():
@@ -101,14 +101,14 @@ def built_in() -> Catalogue:
 def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:
     if getattr(cls, "id", None) and cls.listed:
         yield cls
-        return  # what is on top of it is the same effect, on some vehicle
+        return  # its subclasses are the same effect on some vehicle
     for inner in cls.__subclasses__():
         yield from _concrete(inner)
 
 
 @cache
 def _installed() -> list[tuple[str, Mapping[str, object]]]:
-    """What the entry points `rovsim.effects` name, a class or a module each, with its origin.
+    """Members of all modules or classes that entry points `rovsim.effects` name, with their origin.
 
     Raises:
         BadInput: one of them cannot be imported.

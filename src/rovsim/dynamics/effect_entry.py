@@ -1,4 +1,4 @@
-"""An effect as files name it: its name, and its parameters with what is known of them."""
+"""An effect as it stands in files: its id, and parameters with standard deviations and units."""
 
 from math import inf
 from typing import Annotated, Any, Iterable
@@ -10,12 +10,12 @@ from rovsim.core.schema import Number, Section
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 
-# Larger than anything that was ever fitted: no replay survives what is drawn from it.
+# Larger than anything that was ever fitted: a replay with values drawn from it would diverge.
 VAGUEST = 1e12  # a standard deviation
 
 
 class Value(Section):
-    """A parameter's value with what is known of it."""
+    """A parameter's value, its standard deviation and its unit; None: not known."""
 
     value: Number
     std: Annotated[Number, Field(ge=0.0, le=VAGUEST)] | None = None
@@ -23,12 +23,12 @@ class Value(Section):
 
 
 def _with_key(value: Any) -> Any:
-    """A bare number is a value nothing more is known of."""
+    """Accept a bare number as a value without standard deviation and unit."""
     return value if isinstance(value, (dict, Value)) else {"value": value}
 
 
 class EffectEntry(Section):
-    """One effect of a model file; a parameter is a number, or a `value` with `std` and `unit`."""
+    """An effect of a model file; a parameter is a number, or has `value`, `std` and `unit`."""
 
     effect: str
     parameters: dict[str, Annotated[Value, BeforeValidator(_with_key)]] = Field(
@@ -37,11 +37,11 @@ class EffectEntry(Section):
 
     @property
     def values(self) -> dict[str, float]:
-        """The values alone, by parameter."""
+        """The values by name of the parameter."""
         return {name: known.value for name, known in self.parameters.items()}
 
     def plain(self) -> dict[str, Any]:
-        """As it is written: numbers alone where nothing more is known."""
+        """The content for a file: bare numbers where neither std nor unit is known."""
         known = {
             name: v.value if v.std is None and v.unit is None else v.model_dump(exclude_none=True)
             for name, v in self.parameters.items()
@@ -50,11 +50,11 @@ class EffectEntry(Section):
 
 
 def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
-    """The effect that an entry describes.
+    """Build the effect that an entry describes.
 
     Raises:
-        BadInput: an unknown effect or parameter, a value out of range or between those that it may
-            have, another unit.
+        BadInput: an unknown effect or parameter, a value out of range, a value of a discrete
+            parameter that is not whole, or another unit.
     """
     found = catalogue.find(entry.effect)(**entry.values)
     _refuse_between(found, entry)
@@ -72,7 +72,7 @@ def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
 
 
 def _refuse_between(effect: Effect, entry: EffectEntry) -> None:
-    """Refuse what is no number of something, or of something that is not there."""
+    """Refuse values of discrete parameters that are not whole or above the largest possible."""
     for p in effect.parameters:
         value = entry.values.get(p.name, 0.0)
         if p.discrete and not (value.is_integer() and value <= p.highest):
@@ -87,12 +87,12 @@ def _refuse_between(effect: Effect, entry: EffectEntry) -> None:
 
 
 def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple[Effect, ...]:
-    """The effects that entries describe; see `build_effect`."""
+    """Build the effects that entries describe, see `build_effect`."""
     return tuple(build_effect(entry, catalogue) for entry in entries)
 
 
 def describe_effect(effect: Effect) -> EffectEntry:
-    """The entry of an effect: what differs from the default, and what was fitted."""
+    """The entry of an effect: parameters that were fitted or differ from their default."""
     given = effect.given()
     values = {
         p.name: Value(value=effect[p.name], std=effect.std[p.name], unit=p.unit)

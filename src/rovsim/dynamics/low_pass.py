@@ -1,7 +1,7 @@
-"""Low-passes by which a motion capture smooths the poses it reports, and what they smoothed.
+"""Low-passes by which a motion capture smooths the poses it reports, and their inverse.
 
-Filters are linear, so a pose and its derivatives pass them alike: (..., 7 k) channels of a pose
-(position and quaternion), its first derivative, …, in world axes.
+A linear filter acts on a pose and on its derivatives in the same way. So all are filtered as
+channels (..., 7 k): a pose (position m, quaternion), its first derivative, …, in world axes.
 """
 
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ from rovsim.core.rotations import (
 
 @dataclass(frozen=True)
 class LowPass:
-    """First-order low-passes one after the other, by their `time_constants` in s.
+    """First-order low-passes in series ("stages"), by their `time_constants`, s.
 
-    Software works sample by sample: y_k = a y_{k-1} + (1 - a) x_k with a = exp(-dt / T), which
-    delays slow motions by a dt / (1 - a), about T - dt / 2.
+    In discrete time: y_k = a y_{k-1} + (1 - a) x_k with a = exp(-dt / T), which delays slow motions
+    by a dt / (1 - a), about T - dt / 2.
     """
 
     time_constants: tuple[float, ...] = ()
@@ -33,13 +33,14 @@ class LowPass:
     def smooth(
         self, x: Array, dt: float | Array, first: Array | None = None, straight: bool = False
     ) -> Array:
-        """Channels (..., n, c), dt s apart, as they leave the last stage.
+        """Filter channels; returns the output (..., n, c) of the last stage.
 
         Args:
-            x: what enters.
-            dt: s between two samples, one or (n-1,).
-            first: (stages, ..., c) that left each stage at the first sample; None: it stood still.
-            straight: the software saw more samples, on straight lines between these.
+            x: (..., n, c) input.
+            dt: time between two samples, s: one number or (n-1,).
+            first: (stages, ..., c) output of each stage at the first sample; None: as after rest.
+            straight: whether the filter runs continuously on straight lines between the samples,
+                as if the software had a much higher rate.
         """
         for k, T in enumerate(self.time_constants):
             begin = x[..., 0, :] if first is None else first[k]
@@ -47,16 +48,23 @@ class LowPass:
         return x
 
     def pass_power(self, frequency: Array, dt: float) -> Array:
-        """Share (f,) of the power at each frequency (f,) Hz that leaves the last stage."""
+        """Power gain (f,) of all stages at each frequency (f,), Hz, for samples dt s apart."""
         a = np.exp(-dt / np.array(self.time_constants))[:, None]
         turn = np.cos(2.0 * np.pi * frequency * dt)
         return np.asarray(np.prod((1.0 - a) ** 2 / (1.0 - 2.0 * a * turn + a * a), axis=0))
 
     def stages(self, y: Array, dt: float) -> Array:
-        """What entered the first stage, and what left each (stages + 1, n, c), of outputs (n, c).
+        """Recover the input of the first stage and the outputs of all stages from the last output.
 
-        The exact inverse of `smooth`, but for the first two samples, before which it takes the
-        motion for straight.
+        This is the exact inverse of `smooth`, but for the first two samples, before which the
+        output is extrapolated on a straight line.
+
+        Args:
+            y: (n, c) output of the last stage.
+            dt: time between two samples, s.
+
+        Returns:
+            (stages + 1, n, c): the input, then the output of each stage.
         """
         found = [y]
         for T in reversed(self.time_constants):
@@ -65,9 +73,10 @@ class LowPass:
         return np.stack(found[::-1])
 
     def stages_of_derivatives(self, derivatives: Array) -> Array:
-        """The same (stages + 1, d, n, c) of an output and its derivatives (d, n, c): x = y + T y'.
+        """Recover the same (stages + 1, d, n, c) from an output and its derivatives (d, n, c).
 
-        For instants too far apart to tell a derivative; the next one is taken for zero.
+        x = y + T y', for samples too far apart for `stages`. The derivative after the last one
+        given is assumed to be zero.
         """
         found = [derivatives]
         for T in reversed(self.time_constants):
@@ -77,22 +86,22 @@ class LowPass:
 
 
 def _weigh_samples(step: float | Array) -> tuple[Array, Array, Array]:
-    """Weights of the output before, and of the inputs before and now; `step` in time constants."""
+    """Weights of the last output, the last and the present input; `step` in time constants."""
     kept = np.exp(-np.asarray(step))
     return kept, np.zeros_like(kept), 1.0 - kept
 
 
 def _weigh_lines(step: float | Array) -> tuple[Array, Array, Array]:
-    """The same where the input goes straight from sample to sample, and is seen all the time."""
+    """The same weights for a continuous input on straight lines between the samples."""
     kept = np.exp(-np.asarray(step))
     mean = (1.0 - kept) / step
     return kept, mean - kept, 1.0 - mean
 
 
 def _lag(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Array:
-    """y_k = kept y_{k-1} + before x_{k-1} + now x_k, from y_0 = first (..., c) on.
+    """Filter: y_k = kept y_{k-1} + before x_{k-1} + now x_k, with y_0 = first (..., c).
 
-    Weights of all samples alike, or of each but the first (n-1,).
+    Weights are numbers for all samples, or (n-1,) for all but the first.
     """
     if kept.ndim:
         return _lag_unevenly(x, first, kept, before, now)
@@ -113,12 +122,12 @@ def _lag_unevenly(x: Array, first: Array, kept: Array, before: Array, now: Array
 
 
 def _delayed(y: Array) -> Array:
-    """Each sample's predecessor (n, c); that of the first on a straight line."""
+    """The sample before each one (n, c); that of the first is extrapolated linearly."""
     return np.concatenate([2.0 * y[:1] - y[1:2], y[:-1]]) if len(y) > 1 else y
 
 
 def in_world(eta: Array, nu: Array, nu_dot: Array | None = None) -> Array:
-    """Channels (..., 14), or (..., 21) with accelerations: poses and derivatives in world axes.
+    """Channels (..., 14), or (..., 21) with `nu_dot`: poses and their derivatives in world axes.
 
     p' = R v, q' = q omega / 2 (Fossen 2021, eq. 2.78), and their derivatives.
     """
@@ -133,9 +142,9 @@ def in_world(eta: Array, nu: Array, nu_dot: Array | None = None) -> Array:
 
 
 def in_body(channels: Array) -> tuple[Array, ...]:
-    """Poses (..., 7), velocities (..., 6) and, of 21 channels, accelerations, all in body axes.
+    """Poses (..., 7), nu (..., 6) and, of 21 channels, nu_dot (..., 6): inverse of `in_world`.
 
-    The inverse of `in_world`; a quaternion that a filter made shorter is stretched again.
+    Quaternions, which a filter makes shorter, are normalised.
     """
     length = np.linalg.norm(channels[..., 3:7], axis=-1, keepdims=True)
     q, q_dot = channels[..., 3:7] / length, channels[..., 10:14] / length
@@ -145,17 +154,17 @@ def in_body(channels: Array) -> tuple[Array, ...]:
     if channels.shape[-1] == 14:
         return eta, nu
     v_dot = unrotate(q, channels[..., 14:17]) - np.cross(omega, v)
-    # of a length r that changes: q'' of the unit quaternion lacks 2 (r'/r) q'
+    # the length r of the filtered quaternion changes: subtract 2 (r'/r) q' for the unit quaternion
     growth = np.sum(q * q_dot, axis=-1, keepdims=True)
     omega_dot = body_rate_derivative(q, channels[..., 17:21] / length) - 2.0 * growth * omega
     return eta, nu, np.concatenate([v_dot, omega_dot], axis=-1)
 
 
 def unit(eta: Array) -> Array:
-    """Poses (..., 7) whose quaternion a filter made shorter."""
+    """Normalise the quaternions of poses (..., 7), which a filter makes shorter."""
     return np.concatenate([eta[..., :3], normalized(eta[..., 3:7])], axis=-1)
 
 
 def _pure(x: Array) -> Array:
-    """Quaternions (..., 4) without a real part."""
+    """Quaternions (..., 4) with zero real part and these vectors (..., 3)."""
     return np.concatenate([np.zeros_like(x[..., :1]), x], axis=-1)

@@ -1,4 +1,4 @@
-"""What the motion capture reports of a true motion: another body point, other axes, smoothed."""
+"""How the motion capture reports a true motion: of another point, in other axes, and smoothed."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,11 +14,17 @@ from rovsim.dynamics.low_pass import LowPass, in_body, in_world, unit
 
 @dataclass(frozen=True, eq=False)
 class MocapView:
-    """Seen pose = world o true pose o body, with two constant rigid transforms; then smoothed.
+    """Two constant rigid transforms, seen pose = world o true pose o body, and a low-pass.
 
-    `poses`, `twists`, `states` and the inverse are those of the transforms alone, at one instant;
-    what has to do with the low-pass takes a whole series. Where nothing is changed, arrays come
-    back as they are.
+    "True" is the motion of CO; "seen" is after the transforms; "reported" is after the low-pass as
+    well. `poses`, `twists`, `states` and `inverse` belong to the transforms alone, and hold for
+    each instant; `report`, `smooth` and `sharpen` apply the low-pass to a whole series. Where
+    nothing changes, the same array is returned.
+
+    Attributes:
+        world: transform on the world side.
+        body: transform on the body side.
+        low_pass: of the poses that are seen.
     """
 
     world: Rigid
@@ -27,7 +33,7 @@ class MocapView:
 
     @staticmethod
     def through(parts: Iterable[tuple[Rigid, Rigid]], low_pass: LowPass) -> "MocapView":
-        """All parts in order, the first one next to the vehicle."""
+        """Compose transforms (world, body) in order, the first one next to the vehicle."""
         world, body = NO_CHANGE.world, NO_CHANGE.body
         for outer, inner in parts:
             world, body = outer.after(world), body.after(inner)
@@ -41,16 +47,16 @@ class MocapView:
 
     @cached_property
     def key(self) -> bytes:
-        """The same for equal views."""
+        """Bytes that are equal for equal views."""
         return np.concatenate([*self.world, *self.body, self.low_pass.time_constants]).tobytes()
 
     @cached_property
     def inverse(self) -> "MocapView":
-        """From seen to true."""
+        """The view from seen to true poses, with the same low-pass."""
         return replace(self, world=self.world.inverse, body=self.body.inverse)
 
     def poses(self, eta: Array) -> Array:
-        """Poses (..., 7) as this view shows them."""
+        """Transform true poses (..., 7), position m and quaternion, to seen ones."""
         if self.identity:
             return eta
         place = eta[..., :3] + rotate(eta[..., 3:7], self.body.translation)
@@ -60,19 +66,20 @@ class MocapView:
 
     @cached_property
     def twist(self) -> Array:
-        """Matrix (6, 6) from a body velocity or acceleration to the one this view shows.
+        """Matrix (6, 6) from a true body velocity or acceleration to the seen one.
 
-        v + omega x r at the place r, turned into the axes there. The world side drops out.
+        v + omega x r at the seen point r, rotated into the seen body axes. The transform of the
+        world has no influence.
         """
         R, S = matrix(self.body.rotation).T, cross_matrix(self.body.translation)
         return np.block([[R, -R @ S], [np.zeros((3, 3)), R]])
 
     def twists(self, nu: Array) -> Array:
-        """Body velocities or accelerations (..., 6) as this view shows them."""
+        """Transform true body velocities or accelerations (..., 6) to seen ones."""
         return nu if self.identity else nu @ self.twist.T
 
     def states(self, state: Array) -> Array:
-        """States (..., 13) as this view shows them."""
+        """Transform true states (..., 13), pose and nu, to seen ones."""
         if self.identity:
             return state
         return np.concatenate([self.poses(state[..., :7]), self.twists(state[..., 7:])], axis=-1)
@@ -80,9 +87,13 @@ class MocapView:
     def report(
         self, state: Array, dt: float | Array, first: Array | None = None, straight: bool = False
     ) -> Array:
-        """States (..., n, 13) of a true motion, dt s apart, as they are reported.
+        """Reported states (..., n, 13) of a true motion (..., n, 13).
 
-        `dt` (n-1,), `first` (stages, ..., 14) and `straight`: see `LowPass.smooth`.
+        Args:
+            state: true states.
+            dt: time between two samples, s: one number or (n-1,).
+            first: (stages, ..., 14) initial output of each low-pass, see `LowPass.smooth`.
+            straight: see `LowPass.smooth`.
         """
         seen = self.states(state)
         if not self.low_pass.time_constants:
@@ -93,12 +104,12 @@ class MocapView:
             return np.concatenate(in_body(smoothed), axis=-1)
 
     def smooth(self, eta: Array, dt: float) -> Array:
-        """Poses (..., n, 7) that were seen, dt s apart, as they are reported; first still."""
+        """Reported poses (..., n, 7) of seen ones, dt s apart; at rest before the first."""
         smoothing = self.low_pass.time_constants
         return unit(self.low_pass.smooth(eta, dt)) if smoothing else eta
 
     def sharpen(self, eta: Array, dt: float) -> Array:
-        """Poses (n, 7) that were seen, of reported ones at the full rate, dt s apart."""
+        """Seen poses (n, 7) of reported ones, which must be at the full rate, dt s apart."""
         smoothing = self.low_pass.time_constants
         return unit(self.low_pass.stages(eta, dt)[0]) if smoothing else eta
 

@@ -1,4 +1,4 @@
-"""A model: a vehicle, effects, and perhaps a trained residual. They add."""
+"""A model: a vehicle, the effects that act on it, and perhaps a learned residual."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,35 +25,41 @@ from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.dynamics.uncertainty import Uncertainty
 from rovsim.dynamics.vehicle import Thrusters, Vehicle
 
-TRIES = 20  # draws of a model until one is possible
+TRIES = 20  # draws of a model, at most, until one has a possible body
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
     """Physical effects of a vehicle, and perhaps a learned residual on top of them.
 
-    `effects` are all that act: the nominal ones of the vehicle first (`nominal` puts them there),
-    then those that were added, in order. `uncertainty` of those added, where they were fitted.
+    Attributes:
+        name: of the model.
+        vehicle: the vehicle.
+        effects: all effects: the nominal ones of the vehicle first, as `nominal` puts them, then
+            the added ones in order.
+        residual: learned acceleration residual; None if there is none.
+        inert: whether the body velocity is constant whatever the forces: the baseline.
+        uncertainty: of the added effects; None where they were not fitted.
     """
 
     name: str
     vehicle: Vehicle
     effects: tuple[Effect, ...]
     residual: Residual | None = None
-    inert: bool = False  # keeps its body velocity whatever pushes: the baseline to beat
+    inert: bool = False
     uncertainty: Uncertainty | None = None
 
     def __add__(self, added: Effect) -> "Model":
         return self.with_effects((*self.effects, added))
 
     def with_effects(self, effects: Sequence[Effect]) -> "Model":
-        """The same with other effects; how sure these are is not known."""
+        """The same model with other effects, of unknown uncertainty."""
         return replace(self, effects=tuple(effects), uncertainty=None)
 
     def draw(self, random: np.random.Generator) -> "Model":
-        """The model as it may as well be; as it is where its uncertainty is not known.
+        """Draw the added effects from the model's uncertainty; unchanged where that is not known.
 
-        Values no body can have are drawn again.
+        Draws with an impossible body, such as negative inertia, are repeated.
         """
         if self.uncertainty is None:
             return self
@@ -70,7 +76,7 @@ class Model:
 
     @cached_property
     def added(self) -> tuple[Effect, ...]:
-        """What was added to the nominal effects of the vehicle."""
+        """The effects that were added to the nominal ones of the vehicle."""
         return self.effects[len(self.vehicle.effects()) :]
 
     @cached_property
@@ -84,7 +90,7 @@ class Model:
 
     @cached_property
     def possible(self) -> bool:
-        """Whether such a body can exist."""
+        """Whether such a body can exist, see `Body.possible`."""
         return self.body.possible
 
     @cached_property
@@ -104,12 +110,12 @@ class Model:
 
     @cached_property
     def thrust_path(self) -> ThrustPath:
-        """From commands to thruster forces."""
+        """The path from logged commands to thruster forces."""
         thrusters = next(e for e in self.effects if isinstance(e, Thrusters))
         return ThrustPath(thrusters, self.effects)
 
     def actuated(self, force: Array, demand: Array) -> Array:
-        """Wrench (k, 6) of thruster forces (k, n), and of loops that took demands (k, 6)."""
+        """Wrench (k, 6) of thruster forces (k, n), and of control loops on demands (k, 6)."""
         wrench = force @ self.body.B.T
         for loop in self.thrust_path.autopilots:
             wrench = wrench + loop.demanded_wrench(demand, np.diag(self.M))
@@ -117,12 +123,12 @@ class Model:
 
     @cached_property
     def wrenches(self) -> list[Wrench]:
-        """Effects evaluated at every instant."""
+        """Wrench effects, which are evaluated at every instant."""
         return [e for e in self.effects if isinstance(e, Wrench)]
 
     @cached_property
     def mocap_view(self) -> MocapView:
-        """What the motion capture makes of the true motion."""
+        """How the motion capture reports the true motion: frames and low-passes."""
         frames = [e for e in self.effects if isinstance(e, FrameMisalignment)]
         filters = [e for e in self.effects if isinstance(e, MeasurementFilter)]
         if not frames and not filters:
@@ -142,17 +148,17 @@ class Model:
 
 
 def nominal(vehicle: Vehicle) -> Model:
-    """The model every comparison starts from."""
+    """The model of the vehicle file alone, with which every comparison starts."""
     return Model(NOMINAL, vehicle, vehicle.effects())
 
 
 def zero_acceleration(vehicle: Vehicle) -> Model:
-    """The baseline: a vehicle that keeps its body velocity."""
+    """The baseline: a vehicle whose body velocity is constant."""
     return Model(ZERO_ACCELERATION, vehicle, vehicle.effects(), inert=True)
 
 
 def built_in_model(name: str, vehicle: Vehicle) -> Model:
-    """The one of `core.model_names.BUILT_IN` with this name."""
+    """The built-in model with this name, of `core.model_names.BUILT_IN`."""
     return {NOMINAL: nominal, ZERO_ACCELERATION: zero_acceleration}[name](vehicle)
 
 

@@ -1,4 +1,4 @@
-"""Model files, read and written: nothing else knows what stands in one."""
+"""Read and write model files: the only module that knows their schema."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,12 +21,12 @@ from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_
 from rovsim.results.fitted import Correlation, FittedNoise, Probability
 
 SCHEMA = "rovsim.model/1"
-# Noise, m/s2, rad/s2, m, rad, larger than was ever fitted: no replay survives what is drawn.
+# m/s2, rad/s2, m, rad: noise larger than was ever fitted; a replay with draws of it would diverge.
 WILDEST = 1e3
 
 
 class PossibilityEntry(Section):
-    """Effects that may act instead, and how likely they are."""
+    """Effects that may act instead of the model's, and their probability."""
 
     probability: Probability
     effects: tuple[EffectEntry, ...]
@@ -34,7 +34,7 @@ class PossibilityEntry(Section):
 
 
 class UncertaintyEntry(Section):
-    """How sure the effects of a model file are: see `rovsim.dynamics.uncertainty`."""
+    """Uncertainty of the effects of a model file: see `rovsim.dynamics.uncertainty`."""
 
     noise: FittedNoise
     correlation: Correlation = Correlation()
@@ -55,7 +55,7 @@ class UncertaintyEntry(Section):
 
 
 class ModelFile(Section):
-    """A model file as it stands on disk: data only."""
+    """The content of a model file, before effects and vehicle are built from it."""
 
     schema_: Literal["rovsim.model/1"] = Field("rovsim.model/1", alias="schema")
     vehicle: PathText | dict[str, Any]
@@ -76,11 +76,17 @@ class ModelFile(Section):
 def with_uncertainty(
     model: Model, entry: UncertaintyEntry, catalogue: Catalogue, where: object
 ) -> Model:
-    """The model whose added effects are known as an entry of the file `where` says.
+    """Give a model the uncertainty of its added effects that stands in a file.
+
+    Args:
+        model: whose effects were read from the file.
+        entry: the file's section.
+        catalogue: of the effects that may act instead.
+        where: the file, for messages.
 
     Raises:
-        BadInput: an effect that may act instead is unknown, a value out of range, or a correlation
-            is of none of the values.
+        BadInput: an effect that may act instead is unknown, a value is out of range, or a
+            correlation names a value that does not exist.
     """
     instead = tuple(
         (one.probability, Draws(build_effects(one.effects, catalogue), one.correlation))
@@ -108,16 +114,21 @@ def _describe_uncertainty(found: Uncertainty) -> UncertaintyEntry:
 
 
 def read_model(path: Path, catalogue: Catalogue) -> Model:
-    """Read a model file, of effects of this catalogue; the model is called by the file's stem.
+    """Read a model file with effects of this catalogue; the file's stem is the model's name.
 
     Raises:
-        BadInput: it is missing, or something in it is unknown or out of range.
+        BadInput: the file is missing, or something in it is unknown or out of range.
     """
     return build_model(read_yaml(path), path, catalogue)
 
 
 def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
-    """The model of a file's content.
+    """Build the model that the content of a file describes.
+
+    Args:
+        content: what was read from the file.
+        path: the file; others that it names are relative to its folder.
+        catalogue: of the effects that it may name.
 
     Raises:
         BadInput: something in it is unknown or out of range.
@@ -142,7 +153,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
 
 
 def _require_model(content: Any, path: Path) -> None:
-    """Refuse what says of itself that it is something else: one key that is wrong tells less."""
+    """Refuse a file whose `schema` says that it is something else, with a message of its own."""
     told = content.get("schema") if isinstance(content, dict) else None
     if not isinstance(told, str) or told == SCHEMA:
         return
@@ -157,10 +168,10 @@ def _require_model(content: Any, path: Path) -> None:
 
 
 def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
-    """A built-in model of this vehicle, or the model of a file, called by the file's stem.
+    """Load a built-in model of this vehicle by its name, or the model of a file by its path.
 
     Raises:
-        BadInput: no such file, or it does not describe a model.
+        BadInput: no such model or file, or the file does not describe a model.
     """
     if spec in BUILT_IN:
         return built_in_model(spec, vehicle)
@@ -175,7 +186,7 @@ def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
 
 
 def describe_model(model: Model) -> dict[str, Any]:
-    """The content of a model's file, without a residual."""
+    """The content of a model file: vehicle and effects, without residual and uncertainty."""
     name = model.vehicle.name
     known = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
     return {
@@ -186,7 +197,7 @@ def describe_model(model: Model) -> dict[str, Any]:
 
 
 def _described(vehicle: Vehicle) -> dict[str, Any]:
-    """What its file says."""
+    """The content of a vehicle's file."""
     return vehicle.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
 
@@ -196,9 +207,15 @@ def write_model(
     residual: StoredResidual | None = None,
     provenance: dict[str, Any] | None = None,
 ) -> None:
-    """Write a model file; `residual` describes arrays that lie beside it.
+    """Write a model file.
 
-    How sure a model is was not learned with a residual on top of it, and is left out then.
+    The uncertainty of a model holds without a learned residual, and is omitted if there is one.
+
+    Args:
+        model: to write.
+        path: of the file.
+        residual: describes the arrays of a learned residual, which are in files beside this one.
+        provenance: how the model came about.
     """
     content = describe_model(model)
     if residual:

@@ -1,4 +1,4 @@
-"""Steps cut where a line of a log takes effect, and means over them of what the log says."""
+"""Divide integration steps where logged lines take effect, and average logged values over them."""
 
 from typing import NamedTuple
 
@@ -8,13 +8,15 @@ from numpy import ndarray as Array
 
 from rovsim.core.run import latest
 
-KEPT = 4  # of a run: the commands as they come, a little later, and with another clock
+KEPT = 4  # cuts of a run: for commands as logged, a little later, and on another clock
 
 
 class StepCut(NamedTuple):
-    """Pieces of steps within which no line takes effect.
+    """Steps divided into pieces within which no logged line takes effect.
 
-    `middle` (p,) s of each; `mean` (k, m) averages over each step what m lines, or pieces, say.
+    Attributes:
+        middle: (p,) middle of each of p pieces, s.
+        mean: sparse (k, m) matrix of the averages over k steps, from values of m lines or pieces.
     """
 
     middle: Array
@@ -22,10 +24,13 @@ class StepCut(NamedTuple):
 
     @staticmethod
     def at(arrival: Array, edges: Array, by_line: bool) -> "StepCut":
-        """The steps between `edges` (k+1,) s, cut where lines (m,) arrive.
+        """Divide steps at the instants at which lines take effect.
 
-        `by_line`: what is averaged is known of each line, which holds until the next; else of each
-        piece.
+        Args:
+            arrival: (m,) instants at which the lines take effect, s.
+            edges: (k+1,) instants between the steps, s.
+            by_line: whether the values to average belong to lines, each of which holds until the
+                next one; otherwise they belong to pieces.
         """
         pieces = np.union1d(edges, arrival[(arrival > edges[0]) & (arrival < edges[-1])])
         middle = 0.5 * (pieces[1:] + pieces[:-1])
@@ -36,21 +41,22 @@ class StepCut(NamedTuple):
         return StepCut(middle, scipy.sparse.csr_array((share, source, bounds), shape))
 
     def average(self, x: Array) -> Array:
-        """Means (k, c) over the steps of what lines or pieces say (m, c)."""
+        """Means (k, c) over each step of values (m, c) of lines or pieces."""
         return np.asarray(self.mean @ x[: self.mean.shape[1]])
 
 
 class StepCuts:
-    """The cuts that were asked for last.
+    """A cache of the last few cuts of a run.
 
-    Most models let a command take effect when others do, and to cut takes longer than to average.
+    In most models commands take effect at the same instants, and cutting takes longer than
+    averaging.
     """
 
     def __init__(self) -> None:
         self._kept: tuple[tuple[Array, Array, bool, StepCut], ...] = ()
 
     def at(self, arrival: Array, edges: Array, by_line: bool) -> StepCut:
-        """As `StepCut.at`."""
+        """Return `StepCut.at` of the same arguments, from the cache if possible."""
         for known in self._kept:
             if known[2] is by_line and _alike(known[0], arrival) and _alike(known[1], edges):
                 return known[3]

@@ -1,4 +1,4 @@
-"""What a model leaves open: its values, the names of its effects, and what no model foresees."""
+"""Uncertainty of a fitted model: of its values, of which effects act, and unforeseeable noise."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -13,19 +13,22 @@ from rovsim.results.fitted import Correlation, FittedNoise
 
 @dataclass(frozen=True, eq=False)
 class Draws:
-    """Effects whose values are known to their standard deviations, and how these hang together.
+    """Effects with standard deviations of their values, and the correlation of these.
 
-    `effects` are all that were added to the vehicle's; what has no deviation stays as it is.
+    Attributes:
+        effects: all effects that were added to the vehicle's; values without a standard deviation
+            are taken as exact.
+        correlation: between values, which are named `effect.parameter`.
     """
 
     effects: tuple[Effect, ...]
     correlation: Correlation
 
     def refuse_strangers(self, where: object) -> None:
-        """Refuse a correlation with a value that no effect has, or that is known exactly.
+        """Refuse a correlation with a value that no effect has, or that has no standard deviation.
 
         Raises:
-            BadInput: names it, and the nearest that would do.
+            BadInput: with this name, and the nearest possible one.
         """
         known = [f"{effect.id}.{name}" for effect in self.effects for name in effect.std]
         for name in self.correlation.between:
@@ -38,7 +41,7 @@ class Draws:
                 )
 
     def draw(self, random: np.random.Generator) -> tuple[Effect, ...]:
-        """The effects at values drawn from a Gaussian, each kept inside its range."""
+        """Draw the effects' values from the Gaussian, each clipped to its range."""
         between = self.correlation.between
         drawn = _root(self.correlation) @ random.normal(size=len(between))
         errors = dict(zip(between, drawn, strict=True))
@@ -47,10 +50,13 @@ class Draws:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Of a model whose added effects were fitted.
+    """Uncertainty of a model whose added effects were fitted.
 
-    `noise` that was fitted with them; `own` its effects, `instead` other effects that explain the
-    same, each with its probability.
+    Attributes:
+        noise: of disturbances and readings, fitted together with the effects.
+        own: the model's own effects.
+        instead: other sets of effects that explain the same, each with its probability; the rest
+            is the probability of `own`.
     """
 
     noise: FittedNoise
@@ -58,14 +64,14 @@ class Uncertainty:
     instead: tuple[tuple[float, Draws], ...] = ()
 
     def draw(self, random: np.random.Generator) -> tuple[Effect, ...]:
-        """Added effects as they may as well be."""
+        """Draw which effects act, then their values."""
         share = [p for p, _ in self.instead]
         chosen = random.choice(1 + len(share), p=np.array([1.0 - sum(share), *share]))
         return [self.own, *(draws for _, draws in self.instead)][chosen].draw(random)
 
 
 def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator) -> Effect:
-    """One effect off by so many deviations; what is correlated with nothing errs by itself."""
+    """Add errors, in standard deviations, to an effect's values; draw errors not given."""
     off = {name: errors.get(f"{effect.id}.{name}", random.normal()) for name in effect.std}
     return effect.with_values(
         {
@@ -77,13 +83,13 @@ def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator)
 
 
 def _root(correlation: Correlation) -> Array:
-    """A matrix (k, k) whose square is the correlation; of what rounding left of it."""
-    values, vectors = np.linalg.eigh(correlation.lower)  # reads no more than that triangle
+    """A root A (k, k) of the correlation, A A' = C; eigenvalues below 0 by rounding are clipped."""
+    values, vectors = np.linalg.eigh(correlation.lower)  # eigh reads only the lower triangle
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def correlate(covariance: Array, names: Sequence[str]) -> Correlation:
-    """Of a covariance (k, k) of values called so, to nine digits."""
+    """The correlation of a covariance (k, k) of values with these names, to nine digits."""
     std = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     rows = np.clip(covariance / np.outer(std, std), -1.0, 1.0)
     return Correlation(
