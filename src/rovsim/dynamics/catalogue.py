@@ -99,6 +99,7 @@ def built_in() -> Catalogue:
 
 
 def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:
+    """Yield the listed subclasses that have an id, without those adapted to a vehicle."""
     if getattr(cls, "id", None) and cls.listed:
         yield cls
         return  # its subclasses are the same effect on some vehicle

@@ -112,6 +112,7 @@ def _lag(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Arra
 
 
 def _lag_unevenly(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Array:
+    """Filter as `_lag` does, with weights (n-1,) that differ between samples."""
     y = np.empty_like(x)
     y[..., 0, :] = first
     for k in range(len(kept)):

@@ -13,6 +13,7 @@ SCALES = {(0, 0): 2.0, (0, 1): 0.5, (1, 0): 0.5, (1, 1): 0.1}
 
 
 def _pair(i: int, j: int, suffix: str, symbol: str) -> Parameter:
+    """The parameter of the force along axis i by motion along axis j."""
     power = "2" if suffix else ""
     force, per = ("N", "N m")[i // 3], (f"s{power}/m{power}", f"s{power}/rad{power}")[j // 3]
     name = f"{AXES[i]}_from_{AXES[j]}{suffix}"

@@ -73,7 +73,7 @@ class CubicDamping(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """Against the motion of each axis."""
+        """Drag against the motion through the water along each axis."""
         u, v, w, a, b, c = at.nu_r
         return (
             -p.surge * u * u * u,

@@ -77,14 +77,17 @@ def _find_kinds(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 
 def _holds(value: Any, kind: type) -> bool:
+    """Whether a value is a tuple of elements of a type."""
     return isinstance(value, tuple) and all(isinstance(one, kind) for one in value)
 
 
 def _is_name(text: str) -> bool:
+    """Whether a text can be the name of a field of a named tuple."""
     return text.isidentifier() and not keyword.iskeyword(text) and not text.startswith("_")
 
 
 def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, str]]:
+    """Yield faults of one parameter; `names` are those of all parameters."""
     texts = all(isinstance(text, str) and text for text in (p.name, p.unit, p.symbol))
     values = [getattr(p, name) for name in NUMBERS]
     if not texts or not all(isinstance(value, Real) for value in values):

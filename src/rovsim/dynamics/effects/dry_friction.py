@@ -37,7 +37,7 @@ class DryFriction(Wrench):
 
     @staticmethod
     def wrench(at, p):
-        """Against the motion of each axis."""
+        """Friction against the motion along each axis."""
         u, v, w, a, b, c = at.nu_r
         return (
             rub(p.surge, u),

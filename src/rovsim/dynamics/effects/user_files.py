@@ -76,6 +76,7 @@ def check_effects(
 
 
 def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
+    """Refuse a class that is incomplete, or has wrong declarations, a taken id or a bad kernel."""
     if not issubclass(cls, tuple(TRIALS)):
         raise refused("acts nowhere", where, "a class on top of Wrench or another kind")
     missing = [name for name in ("id", *TEXTS) if not isinstance(getattr(cls, name, None), str)]

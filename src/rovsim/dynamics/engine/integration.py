@@ -1,9 +1,9 @@
 """Numerical integration of the equation of motion, compiled by Numba.
 
 `extra` is the wrench of a model's effects, see `equation`. `data` is an exported learned residual,
-or None: Numba then does not compile its evaluation, which takes longer than everything else.
-`place` or `site`: what `site_of` returns. `body` and `own` are the constants and the parameters of
-one set, `p` and `bodies` those of all.
+or None: Numba then does not compile its evaluation, which takes longer than everything else. In
+entries, `bodies` and `p` are of all parameter sets, and `site` is `SiteArrays`. In the functions
+that they call, `body` and `p` are of one set, and `site` or `place` is from `site_of`.
 """
 
 from math import exp, sqrt
@@ -52,7 +52,7 @@ def renormalised(x):
 def runge_kutta(extra, t, x, h, body, p, step, correction, ramp, site):
     """One classical Runge-Kutta 4 step of h s; returns the state and the mean nu (Nystroem).
 
-    `correction` (6) is an additional acceleration, `ramp` (6) its change over the step.
+    `correction` (6) is an additional acceleration, the mean over the step, `ramp` (6) its change.
     """
     k1 = slope(extra, t, x, body, p, step, add6(correction, -0.5, ramp), site)
     k2 = slope(extra, t + 0.5 * h, moved(x, 0.5 * h, k1), body, p, step, correction, site)

@@ -142,6 +142,11 @@ def _attached(wrenches: tuple[Any, ...], channel: int) -> Any:
 
 
 def _module(kind: str, text: str, wrenches: tuple[Any, ...]) -> ModuleType:
+    """Import the module of a source text, from a file in the cache that is written if missing.
+
+    Its name is a digest of the text and of the files of effects outside this package, so that
+    another version of them makes another module.
+    """
     files = {str(inspect.getsourcefile(wrench)) for wrench in wrenches}
     foreign = sorted(f for f in files if not Path(f).is_relative_to(DYNAMICS))
     name = f"rovsim_{kind}_{digest(text.encode(), *(Path(f).read_bytes() for f in foreign))}"
@@ -153,6 +158,7 @@ def _module(kind: str, text: str, wrenches: tuple[Any, ...]) -> ModuleType:
 
 
 def _imported(name: str, path: Path) -> ModuleType:
+    """Import a file as a module of this name."""
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
     assert spec.loader is not None
@@ -206,5 +212,6 @@ def _name(wrench: Any, known: Sequence[Any]) -> str:
 
 
 def _alias(wrench: Any, known: Sequence[Any]) -> str:
+    """The `as` clause of the import of a class, where two have the same name; else empty."""
     name = _name(wrench, known)
     return "" if name == wrench.__name__ else f" as {name}"

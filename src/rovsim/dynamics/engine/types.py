@@ -171,8 +171,8 @@ class Inputs(NamedTuple):
         demand: (k, 6) pilot demands in [-1, 1].
         row: (m,) which of the r variants belongs to each of m parameter sets.
         duration: (k,) length of the recording that the step belongs to, s.
-        ramp: (r, k, 6) change of the wrench from the begin of a step to its end, N and N m; empty
-            if it is constant over a step.
+        ramp: (r, k, 6) change of the wrench from the beginning of a step to its end, N and N m;
+            empty if it is constant over a step.
     """
 
     wrench: Array

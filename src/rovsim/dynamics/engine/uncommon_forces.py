@@ -30,7 +30,7 @@ def float_up(waterplane, depth, down):
     Args:
         waterplane: stiffness in heave N/m, roll and pitch N m/rad.
         depth: of CO below its position at rest, m.
-        down: (3) the NED z axis in body axes. Roll and pitch are assumed to be small.
+        down: (3) the NED z axis in body axes. The Euler angles roll and pitch are taken as small.
     """
     x, y, z = down
     roll, pitch = atan2(y, z), atan2(-x, sqrt(y * y + z * z))

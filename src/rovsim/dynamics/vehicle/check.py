@@ -31,6 +31,7 @@ def check_vehicle(vehicle: Vehicle, where: Path | str) -> None:
 
 
 def _names(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield names that two command columns share, and a surface with the reserved name `all`."""
     for name, count in Counter(vehicle.command_columns).items():
         if count > 1:
             found = f"{count} command columns are called {name}"
@@ -40,6 +41,7 @@ def _names(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _mixer(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield rows of the mixer without one number per thruster."""
     count, mixer = len(vehicle.thrusters.units), vehicle.thrusters.mixer
     for axis in AXES if mixer else ():
         row = getattr(mixer, axis)
@@ -49,6 +51,7 @@ def _mixer(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield thrusters with a bad direction or without a force curve."""
     for unit in vehicle.thrusters.units:
         length = float(np.linalg.norm(unit.direction))
         if abs(length - 1.0) > UNIT:
@@ -67,6 +70,7 @@ def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _surfaces(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield surfaces with a bad normal, or in the wake of a thruster that cannot have one."""
     jets = [unit.name for unit in vehicle.thrusters.units if not unit.azimuth]
     for one in vehicle.surfaces:
         normal = np.array(one.normal)
@@ -80,6 +84,7 @@ def _surfaces(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield moments of inertia that are missing for axes that move."""
     moments = {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}
     for axis, name in moments.items():
         if axis in vehicle.degrees_of_freedom and getattr(vehicle.rigid_body.inertia, name) is None:
@@ -89,6 +94,7 @@ def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _buoyancy(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield numbers of the buoyancy that are missing for a submerged vehicle."""
     if vehicle.floats or not set(HANGING) & set(vehicle.degrees_of_freedom):
         return
     for name in ("displaced_volume", "center_of_buoyancy"):
@@ -98,6 +104,7 @@ def _buoyancy(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def _products(vehicle: Vehicle) -> Iterator[Finding]:
+    """Yield products of velocities that the file has in two places."""
     for name in vehicle.cross_flow:
         if name in vehicle.hydrodynamics.cross_flow:
             found = f"'{name}' stands in cross_flow and in hydrodynamics.cross_flow"

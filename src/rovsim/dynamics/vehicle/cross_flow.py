@@ -48,6 +48,7 @@ def parse_product(name: str) -> tuple[int, int, int, int]:
 
 
 def _checked(value: Any) -> dict[str, float]:
+    """Validate coefficients by name, for pydantic."""
     if not isinstance(value, dict):
         raise ValueError("coefficients by name, such as {Yuv: -28.6}")
     for name, number in value.items():

@@ -33,6 +33,7 @@ def _six_or_matrix(value: Any) -> Numbers:
 
 
 def _symmetric(value: Any) -> Numbers:
+    """Check six numbers, or a matrix of six rows that is symmetric."""
     numbers = _six_or_matrix(value)
     a = matrix(numbers)
     if np.abs(a - a.T).max() > 1e-6 * np.abs(a).max():
@@ -83,8 +84,10 @@ class Hydrodynamics(Section):
 
 
 def _by_axis(a: Array) -> dict[str, float]:
+    """The diagonal of a matrix (6, 6), by axis."""
     return dict(zip(AXES, np.diag(a).tolist(), strict=True))
 
 
 def _couplings(a: Array, suffix: str) -> dict[str, float]:
+    """The off-diagonal elements of a matrix (6, 6), by parameter of `CoupledDamping`."""
     return {f"{AXES[i]}_from_{AXES[j]}{suffix}": a[i, j] for i, j in DRAG_PAIRS}

@@ -26,6 +26,7 @@ def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
 
 
 def _water(vehicle: Vehicle) -> Iterator[str]:
+    """Yield implausible density and gravity."""
     density, gravity = vehicle.fluid.density, vehicle.fluid.gravity
     if not DENSITY[0] <= density <= DENSITY[1]:
         yield f"fluid.density: {density:g} is that of no water. In kg/m3?"
@@ -34,6 +35,7 @@ def _water(vehicle: Vehicle) -> Iterator[str]:
 
 
 def _weight(vehicle: Vehicle) -> Iterator[str]:
+    """Yield an implausible ratio of the mass to that of the displaced water."""
     dry = vehicle.rigid_body
     if vehicle.floats or dry.displaced_volume is None:
         return
@@ -48,6 +50,7 @@ def _weight(vehicle: Vehicle) -> Iterator[str]:
 
 
 def _inertia(vehicle: Vehicle) -> Iterator[str]:
+    """Yield moments of inertia with an implausible radius of gyration."""
     dry, size = vehicle.rigid_body, _length(vehicle)
     for axis, name in {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}.items():
         moment = getattr(dry.inertia, name)
@@ -62,6 +65,7 @@ def _inertia(vehicle: Vehicle) -> Iterator[str]:
 
 
 def _places(vehicle: Vehicle) -> Iterator[str]:
+    """Yield places that are implausibly far from CO."""
     dry = vehicle.rigid_body
     named = {
         "rigid_body.center_of_gravity": dry.center_of_gravity,
