@@ -1,4 +1,4 @@
-"""Functions of state, place and time that an unknown force may follow, tested on the remainder."""
+"""Test whether what a fit leaves follows a function of state, place or time."""
 
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
@@ -16,22 +16,32 @@ from rovsim.dynamics.low_pass import LowPass
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 from rovsim.estimation.observer.sandwich import find_inflation
 
-# The measured velocity at an instant holds some noise of the readings around it, and so would agree
-# with the innovation there; a little earlier it does not, and a vehicle changes little meanwhile.
+# The velocity measured at an instant shares noise with the readings around it, and so would be
+# correlated with their innovations. A little earlier it is not, and the motion changes little.
 EARLIER = 0.2  # s
 MEMORIES = (0.5, 2.0)  # s
-INDEPENDENT = 1e-6  # of a column's power: less is what was fitted already
+INDEPENDENT = 1e-6  # of a column's power: if less is left, the fitted parameters explain it already
 
 
 def earlier_states(run: ObservedRun) -> Array:
-    """States (n, 13) measured `EARLIER` s before each reading; zero where nothing was measured."""
+    """States (n, 13) measured `EARLIER` s before each of n readings; zero where none was measured.
+
+    A state is the position in m NED, the quaternion body to world, and the body velocity (FRD) in
+    m/s and rad/s.
+    """
     past = max(1, round(EARLIER / run.period))
     at = np.clip(run.innovation_samples - past, 0, len(run.motion.time) - 1)
     return np.nan_to_num(run.motion.state[at])
 
 
 def tabulate(run: ObservedRun) -> dict[str, Array]:
-    """Values (n,) of all functions at the readings of one run, by the name a person reads."""
+    """Evaluate all functions at the n readings of a run.
+
+    Places are relative to their mean over the run, and time runs from -1 to 1.
+
+    Returns:
+        Values (n,) by a name that a person can read.
+    """
     state = earlier_states(run)
     nu, R, place = state[:, 7:], matrix(state[:, 3:7]), state[:, :3] - np.mean(state[:, :3], axis=0)
     t = 2.0 * run.time / max(run.time[-1], 1e-9) - 1.0 if len(run.time) else run.time
@@ -44,7 +54,7 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
         table[f"attitude ({name})"] = x - np.mean(x)
     for name, x in zip(("north", "east", "down"), np.swapaxes(R, 1, 2)[:, :, 0].T, strict=True):
         table[f"heading ({name})"] = x
-    # a flow or a force that differs from place to place, in the axes of a body that turns
+    # a flow or a force that differs from place to place, seen in the axes of a body that turns
     for heading, side in product(("north", "east"), repeat=2):
         along = table[f"place along {side}"] * table[f"heading ({heading})"]
         table[f"place along {side} times heading ({heading})"] = along
@@ -52,7 +62,7 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
 
 
 def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
-    """Values (n,) of functions of the velocities (n, 6) alone."""
+    """Evaluate functions of the body velocities (n, 6) alone; values (n,) by name."""
     table = {}
     for i, axis in enumerate(AXES):
         v = nu[:, i]
@@ -65,7 +75,7 @@ def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
             table[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
     for i, j in combinations(range(6), 2):
         table[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
-    for i, j in permutations(range(6), 2):  # drags and moments that a cross-flow changes
+    for i, j in permutations(range(6), 2):  # drag and moments that change with a cross-flow
         table[f"{AXES[i]} velocity times {AXES[j]} speed"] = nu[:, i] * np.abs(nu[:, j])
         table[f"{AXES[i]} velocity times {AXES[j]} speed squared"] = nu[:, i] * nu[:, j] ** 2
     return table
@@ -91,7 +101,14 @@ class Dependence:
 def find_dependence(
     residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
 ) -> Iterator[Structure]:
-    """Functions that the remainder follows beyond chance, each with one factor for all runs."""
+    """Yield the functions that the remainder follows beyond chance.
+
+    Each function has a single factor, common to all runs.
+
+    Args:
+        residual: what a fit leaves on one axis.
+        tables: values (n_run,) of all functions, of each run.
+    """
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
     for one in list_dependences(residual, tables):
         yield from residual.weigh(one.name, size=one.size, statistic=one.statistic, limit=limit)
@@ -100,7 +117,11 @@ def find_dependence(
 def list_dependences(
     residual: AxisResidual, tables: Sequence[Mapping[str, Array]]
 ) -> Iterator[Dependence]:
-    """How far the remainder follows each of the functions, whether that is beyond chance or not."""
+    """Yield how far the remainder follows each function, whether or not that may be chance.
+
+    Functions that the fitted parameters explain already are left out. For the arguments see
+    `find_dependence`.
+    """
     target, fitted = np.concatenate(residual.white), residual.fitted
     basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
     blocks = number_blocks(residual.runs) if residual.of_channels else None
@@ -113,17 +134,17 @@ def list_dependences(
         if power < INDEPENDENT * whole or size == 0.0:
             continue
         factor = float(own @ target) / power
-        # only the part counts that no fitted parameter could have taken
+        # only the part counts that no fitted parameter could have explained
         part = abs(factor) * size * np.sqrt(power / whole)
         statistic = factor**2 * power
         if blocks is not None:
-            # errors that last longer than the noise model says agree with many functions by chance
+            # errors that last longer than the noise model says follow many functions by chance
             statistic /= find_inflation(own * (target - factor * own), power, blocks)
         yield Dependence(name, statistic, part, 1.0 - power / whole)
 
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
-    """A velocity (n,) through a first-order lag of `memory` s, in each stretch anew."""
+    """Filter a velocity (n,) by a first-order lag of `memory` s, from zero in each stretch."""
     lag, out = LowPass((memory,)), np.empty_like(v)
     for first, last in run.innovation_segments:
         stretch = v[first:last, None]

@@ -27,7 +27,7 @@ MATTERS = 0.25  # of the disturbance's standard deviation: less changes no score
 # sums of channels err together: what is left is not quite white. Of development recordings replayed
 # with the true model, three of 36 had a structure at 1.0 to 1.3 times the limit of white noise.
 CHANNELS = 1.5  # times the limit, where channels were measured and not full poses
-NOTICED = 1.0  # standard deviations: to remove a smaller push would cost more than it does harm
+NOTICED = 1.0  # standard deviations: removing a smaller push would cost more than it does harm
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,15 @@ class AxisResidual:
 
     @property
     def _margin(self) -> float:
+        """Factor of the limits that chance allows, as what is left of channels is not white."""
         return CHANNELS if self.of_channels else 1.0
 
     def respond(self, pushes: Sequence[Array]) -> Array:
-        """How pushes (n_run,) in m/s2 or rad/s2 would show in the whitened innovations (n,)."""
+        """Filter pushes (n_run,) of each run, m/s2 or rad/s2, as the innovations would show them.
+
+        Returns:
+            The response (n,) in the whitened settled innovations of all runs, one after the other.
+        """
         each = zip(pushes, self.filters, self.runs, strict=True)
         return np.concatenate([respond(push, f, run) for push, f, run in each])
 
@@ -107,7 +112,16 @@ class AxisResidual:
 
 
 def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
-    """How a push (n,) on one axis, m/s2 or rad/s2, shows in a run's whitened innovations (m,)."""
+    """Filter a push on one axis as the innovations of a run would show it.
+
+    Args:
+        push: acceleration (n,) at all readings of the run, m/s2 or rad/s2.
+        f: filter of that axis.
+        run: the run.
+
+    Returns:
+        The response (m,) in the whitened innovations of the settled readings.
+    """
     b, a = f.response
     out = np.empty(len(run.time))
     for first, last in run.innovation_segments:
@@ -118,7 +132,7 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
 def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     """Split what a fit leaves by axis, and remove what gaps in the command log may have caused.
 
-    Axes that some readings do not show are left out, for their filters run at another rate.
+    Axes that were not in every reading are left out, as their filters run at another rate.
     """
     J = bank.whiten(fit.linearised.J, fit.noise)
     white = _split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
@@ -144,6 +158,7 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
 
 
 def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
+    """Split whitened innovations (6, n) of all runs into those (6, n_run) of each run."""
     counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
     return np.split(white, counts, axis=-1)
 

@@ -1,9 +1,9 @@
 """Test whether what the best model leaves still depends on something.
 
-Unknown forces on each axis are tried: functions of state, place and time, periodic forces (also
-such as grow with the speed squared), sudden pushes and single kicks. The filter of the axis says
-how each would show in the innovations. A force that explains more than chance allows, and enough to
-matter, is physics that the catalogue does not have.
+Unknown forces are tried on each axis: functions of state, place and time, periodic forces (of
+constant amplitude, or growing with the speed squared), sudden pushes and single kicks. The filter
+of the axis says how each would show in the innovations. A force that explains more than chance
+allows, and enough to matter, is physics that the catalogue does not have.
 """
 
 from rovsim.diagnosis.structure.regressors import find_dependence, tabulate
@@ -15,7 +15,12 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 
 
 def find_structure(fit: Fit, bank: FilterBank) -> list[Structure]:
-    """Structures in the innovations of a fit that are beyond chance, the most surprising first."""
+    """Find structures beyond chance in the innovations of a fit, the most surprising first.
+
+    Args:
+        fit: whose innovations are tested.
+        bank: filters of the runs that it was fitted to.
+    """
     tables = [tabulate(run) for run in bank.runs]
     structures: list[Structure] = []
     for residual in split_by_axis(fit, bank):

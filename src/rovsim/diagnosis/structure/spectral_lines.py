@@ -1,9 +1,10 @@
-"""Pushes that come back: spectral lines, alone or with overtones, even or growing with speed².
+"""Test for periodic pushes: spectral lines, with or without overtones.
 
-Bins of uneven length have no Fourier transform of their own, so that lines are fitted (Lomb 1976,
-Astrophys. Space Sci. 39; Scargle 1982, ApJ 263, eq. 10): under noise twice the power is chi-square
-with two degrees of freedom on any clock. The sums over readings come from a transform on a clock
-so fine that every reading has its own place.
+Their amplitude is constant, or grows with the speed squared. Readings at uneven times have no
+Fourier transform, so sines and cosines are fitted (Lomb 1976, Astrophys. Space Sci. 39; Scargle
+1982, ApJ 263, eq. 10): of white noise, twice the power is chi-square with two degrees of freedom
+at any times of the readings. The sums over readings are computed by a Fourier transform on a clock
+so fine that every reading has a step of its own.
 """
 
 from dataclasses import dataclass
@@ -21,13 +22,14 @@ from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Struc
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
-# s: the steps between which bins begin, and of frames at 100 Hz. Where readings lie between them
-# a line of 5 Hz loses 0.8 % of its power: sinc(5 * 0.01)^2 (uniform rounding).
+# s: step of the fine clock. Bins begin at such steps, and frames at 100 Hz are one step apart.
+# Where readings lie between steps, a line of 5 Hz loses 0.8 % of its power: sinc(5 * 0.01)^2
+# (uniform rounding).
 FINE = 0.01
-# Steps of frequency, two for each that the longest run tells apart: a line is looked at beside the
-# 32 such nearest to it, of which it and its leakage fill a few.
+# Steps of frequency, two for each that the longest run resolves. A line is compared with the 32
+# frequencies on either side, of which it and its leakage fill a few.
 NEIGHBOURS = 65
-SINGULAR = 1e-6  # of the largest: sine and cosine are one column there
+SINGULAR = 1e-6  # of the largest determinant: with less, sine and cosine are the same column
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 
 Envelope = Callable[[ObservedRun], Array]
@@ -35,9 +37,13 @@ Envelope = Callable[[ObservedRun], Array]
 
 @dataclass(frozen=True, eq=False)
 class Periodogram:
-    """Chi-square (r, f) of each `frequency` (f,) Hz in each run, whatever its phase there.
+    """Lomb-Scargle periodogram of r runs at f frequencies.
 
-    `usable` (u,) frequencies may be the lowest of a comb; `samples` all readings, by weight.
+    Attributes:
+        power: chi-square (r, f) that a line explains in each run, at its best phase there.
+        frequency: (f,) Hz, evenly spaced from 0.
+        usable: indices (u,) of the frequencies that may be the fundamental of a comb.
+        samples: sum of the squared envelope over all readings: their number, where it is constant.
     """
 
     power: Array
@@ -52,10 +58,10 @@ class Periodogram:
 
     @cached_property
     def beyond_noise(self) -> Array:
-        """The same (f,) where the noise is not quite white: by what frequencies nearby have.
+        """Chi-square (f,) of all runs, relative to the level of the neighbouring frequencies.
 
-        Noise that lasts longer than its model has it raises all slow frequencies alike, and is no
-        line. A level below that of white noise is chance.
+        Noise that is correlated for longer than its model says raises all low frequencies alike,
+        and is no line. The level is that of white noise at least, as less is chance.
         """
         first = self.usable[0] if len(self.usable) else 0
         level = np.ones_like(self.total)
@@ -65,7 +71,13 @@ class Periodogram:
 
 
 def find_lines(residual: AxisResidual) -> Iterator[Structure]:
-    """One frequency for all runs, with or without overtones; perhaps growing with speed squared."""
+    """Yield periodic pushes beyond chance, for each comb and envelope.
+
+    The frequency is the same in all runs, the phase is not.
+
+    Args:
+        residual: what a fit leaves on one axis.
+    """
     for growth, envelope in ENVELOPES.items():
         spectrum = _measure_power(residual, envelope)
         for comb in COMBS:
@@ -75,7 +87,14 @@ def find_lines(residual: AxisResidual) -> Iterator[Structure]:
 def _judge_comb(
     residual: AxisResidual, spectrum: Periodogram, comb: Sequence[int], growth: str
 ) -> Iterator[Structure]:
-    """The strongest fundamental with these overtones."""
+    """Yield the strongest fundamental with these overtones, if it is beyond chance.
+
+    Args:
+        residual: what a fit leaves on one axis.
+        spectrum: of that axis.
+        comb: multiples of the fundamental, the fundamental (1) first.
+        growth: words that say how the amplitude grows.
+    """
     within = spectrum.usable[spectrum.usable * comb[-1] < len(spectrum.frequency)]
     beyond_noise = sum(spectrum.beyond_noise[m * within] for m in comb)
     best = int(np.argmax(beyond_noise))
@@ -95,7 +114,13 @@ def _judge_comb(
 
 
 def _push_power(spectrum: Periodogram, lines: Sequence[int], residual: AxisResidual) -> float:
-    """Mean square of the push, m2/s4 or rad2/s4, whose lines these are in the innovations."""
+    """Mean square of the push, m2/s4 or rad2/s4, that causes lines in the innovations.
+
+    Args:
+        spectrum: of the innovations of one axis.
+        lines: indices of the frequencies.
+        residual: of that axis, whose filters say how a push shows.
+    """
     total = 0.0
     for power, f, run in zip(spectrum.power, residual.filters, residual.runs, strict=True):
         z = np.exp(2j * np.pi * spectrum.frequency[lines] * run.period)
@@ -105,6 +130,7 @@ def _push_power(spectrum: Periodogram, lines: Sequence[int], residual: AxisResid
 
 
 def _measure_power(residual: AxisResidual, envelope: Envelope) -> Periodogram:
+    """Compute the periodogram of an axis, for lines whose amplitude follows an envelope."""
     longest = max(run.time[-1] for run in residual.runs)
     highest = 0.5 / min(run.period for run in residual.runs)
     count = next_fast_len(2 * int(longest / FINE + 1.0))  # twice as dense as its length gives
@@ -118,20 +144,23 @@ def _measure_power(residual: AxisResidual, envelope: Envelope) -> Periodogram:
 
 
 def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
-    """Chi-square (count // 2,) that a line of k / (count FINE) Hz explains, whatever its phase.
+    """Fit a line at each frequency, at its best phase.
 
     Args:
-        white: readings (n,) of unit variance.
-        envelope: how strong the line is at each.
-        time: of each, s.
-        count: steps of FINE s, at least those of the readings.
+        white: whitened innovations (n,) of unit variance.
+        envelope: relative amplitude (n,) of the line at each.
+        time: of each (n,), s.
+        count: steps of the fine clock, at least up to the last reading.
+
+    Returns:
+        Chi-square (count // 2,) that lines explain; the frequency of line k is k / (count FINE) Hz.
     """
     at = np.round(time / FINE).astype(int)
     seen, power = np.zeros((2, count))
     np.add.at(seen, at, white * envelope)
     np.add.at(power, at, envelope**2)
     line = np.fft.fft(seen)[: count // 2]
-    # of the products of sine and cosine: half of what they are at zero and at twice the frequency
+    # sums of products of sine and cosine follow from those at zero and at twice the frequency
     double = np.fft.fft(power)[(2 * np.arange(count // 2)) % count]
     total = np.sum(power)
     cosine, sine, both = (total + double.real) / 2, (total - double.real) / 2, -double.imag / 2
@@ -142,11 +171,12 @@ def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
 
 
 def _even(run: ObservedRun) -> Array:
+    """Constant amplitude at the settled readings."""
     return np.ones(run.settled.sum())
 
 
 def _speed_squared(run: ObservedRun) -> Array:
-    """Speed squared at the settled readings, of unit mean square."""
+    """Amplitude that grows with the speed squared, at the settled readings; mean square 1."""
     at = np.clip(run.innovation_samples[run.settled], 0, len(run.motion.time) - 1)
     found = np.sum(np.nan_to_num(run.motion.state_nu[at, :3]) ** 2, axis=1)
     return found / np.sqrt(np.mean(found**2))

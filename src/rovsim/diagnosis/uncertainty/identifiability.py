@@ -26,7 +26,7 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
 
 
 def find_doubtful(fit: Fit) -> int | None:
-    """The term that is the likeliest to be absent, by its number; None where all are surely there.
+    """Index of the term that is the likeliest to be absent; None where all are surely there.
 
     Terms that are only known together with others are not considered: without one, the others
     would seem sure.
