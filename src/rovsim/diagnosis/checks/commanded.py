@@ -1,4 +1,4 @@
-"""What the vehicle could have been told, and never was in the runs: nothing is known of it."""
+"""Find thrusters, surfaces or axes that the runs never commanded: nothing is known of these."""
 
 from typing import Sequence
 
@@ -9,13 +9,19 @@ from rovsim import AXES
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.estimation.observer.usable_runs import UsableRuns
 
-RESTING = 0.01  # of a command or a demand, N, N m, rad: 4 us of a pulse, the rounding of a log
+# Of a normalised command or demand, N, N m or rad: 4 us of a pulse, about what a log rounds to.
+RESTING = 0.01
 
 
 def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
-    """Thrusters and surfaces by name, or axes where these are commanded, that stayed at rest.
+    """List what stayed at rest in all runs: thrusters and surfaces, or axes if these are commanded.
 
-    Axes in which nothing moved are told as that; runs without any commands tell of none.
+    Axes along which the vehicle did not move are left out, as a diagnosis reports them by
+    themselves. Where no run has commands, nothing is listed.
+
+    Args:
+        usable: train runs.
+        vehicle: says which thrusters and axes there are.
     """
     logs = [run.motion.commands for run in usable.runs if len(run.motion.commands.time)]
     if not logs:
@@ -29,11 +35,12 @@ def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
 
 
 def _pushed(vehicle: Vehicle, kind: str) -> Array:
-    """Axes (6,) that a command of that kind can push."""
+    """Mask (6,) of the axes that commands of a kind can push."""
     if kind == "wrench" or vehicle.thrusters.mixer is None:
         return np.ones(len(AXES), bool)
     return np.asarray(vehicle.thrusters.mixing().any(axis=0))
 
 
 def _named(names: Sequence[str], which: Array) -> tuple[str, ...]:
+    """Names whose place in a mask (n,) is set."""
     return tuple(name for name, yes in zip(names, which, strict=True) if yes)

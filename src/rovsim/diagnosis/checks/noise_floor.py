@@ -1,9 +1,9 @@
-"""The noise floor: what a perfect model would score.
+"""The noise floor: the error that a perfect model would have.
 
-Its errors come from three sources, all drawn at random here: the disturbance that pushes the
-vehicle while the model does not know of it, the noise of the state it starts from, and the noise of
-the velocity it is compared with, both after the filter. Sizes and correlation time are those of
-`noise.py`, fitted to the train runs.
+It has three sources, which are drawn at random here: the disturbance that pushes the vehicle and
+that no model knows, the noise of the measured state from which a window starts, and the noise of
+the measured velocity with which the model is compared. The latter two have passed the filter of the
+measurement. Sizes and correlation times are those of `noise.py`, fitted to the train runs.
 """
 
 from dataclasses import dataclass
@@ -21,11 +21,16 @@ from rovsim.evaluation.scores import Moments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 
-DRAWS = 8  # of noise and disturbance, along all test runs; their errors are pooled
+DRAWS = 8  # of noise and disturbance along each test run; their errors are pooled
 
 
 class NoiseFloor(NamedTuple):
-    """The `windows_2s` error (see scores.normalize) of a perfect model, in so many windows."""
+    """The error of a perfect model.
+
+    Attributes:
+        error: in windows of 2 s, normalised by `scores.normalize`; None where no axis moved.
+        windows: how many there were in the runs.
+    """
 
     error: float | None
     windows: int
@@ -38,9 +43,18 @@ def simulate_noise_floor(
     signals: SignalSettings,
     seed: int = 0,
 ) -> NoiseFloor | None:
-    """What a perfect model would score on these runs, of which there is one at least.
+    """Simulate the error of a perfect model.
 
-    None where only parts of the pose were measured: how their noise passes is not known here.
+    Args:
+        model: whose motion stands for that of the vehicle.
+        runs: at least one run.
+        noise: disturbance, and noise of the readings.
+        signals: the filter of the measurement.
+        seed: of the draws.
+
+    Returns:
+        The noise floor; None where only parts of the pose were measured, as this function does not
+        know how the noise of these passes the filter.
     """
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
     squares, count, windows, measured = np.zeros(6), 0, 0, Moments.nothing()
@@ -56,7 +70,14 @@ def simulate_noise_floor(
 
 @dataclass(frozen=True, eq=False)
 class _PerfectModel:
-    """A model to which only chance is unknown: the disturbance and the noise of the readings."""
+    """A model that errs by chance alone: by the disturbance and the noise of the readings.
+
+    Attributes:
+        model: the model.
+        noise: disturbance, and noise of the readings.
+        signals: the filter of the measurement.
+        random: draws both.
+    """
 
     model: Model
     noise: Noise
@@ -64,7 +85,7 @@ class _PerfectModel:
     random: np.random.Generator
 
     def errors(self, run: ObservedRun) -> Array:
-        """Its errors (n, 6) on one run, all draws."""
+        """Velocity errors (n, 6) in the windows of one run, of all draws, m/s and rad/s."""
         windows, measured = Windows(run), run.motion.state
         draws = self.noise.draws(run, self.random)
         pushes = self._push(draws, run)
@@ -82,14 +103,18 @@ class _PerfectModel:
         return (predicted - happened - read).reshape(-1, 6)
 
     def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
-        """Wrench (draws, k, 6) of the disturbance over the integration steps."""
+        """Draw the disturbance of k integration steps: a wrench (draws, k, 6), N and N m."""
         pushed = draws.draw_disturbance(np.diff(run.grid), DRAWS)
         if self.noise.drift:
             pushed += self._drift(run, self.noise.drift.rate)
         return np.asarray(pushed @ self.model.M.T)
 
     def _drift(self, run: ObservedRun, rate: float) -> Array:
-        """Accelerations (draws, k, 6) by a current that wanders, over the integration steps."""
+        """Draw a wandering current: its accelerations (draws, k, 6), m/s2 and rad/s2.
+
+        The current is a random walk in the horizontal plane, whose `rate` is the standard deviation
+        in m/s after 1 s.
+        """
         push = push_by_current(self.model, run, np.zeros((len(run.time), 2)))
         at, steps = run.grid[:-1] - run.edges[0], np.diff(run.grid)
         here = np.stack([[np.interp(at, run.time, a) for a in own.T] for own in push])  # (2, 6, k)

@@ -1,10 +1,11 @@
-"""Effects that these runs could not show, were they there: what was not measured, or never moved.
+"""Find effects that the runs could not show, as too little was measured, moved or commanded.
 
-Every tried effect has columns: how it would change what the filter could not foresee. Where a
-change worth looking for would often gain less likelihood than its parameter costs, nothing can be
-said.
-A loop on board takes demands from the mixer, so that thrusters may hardly push at all: beside one,
-what acts through them is looked at anew.
+Every tried effect has columns: how much it would change the innovations of the filter. If a change
+of a size worth looking for would often raise the likelihood by less than the penalty of its
+parameter, the search could not find the effect, and nothing can be said about it.
+
+A control loop on board changes what the mixer is told, so that thrusters may hardly push at all.
+If such a loop was accepted, effects that act through thrusters are judged once more beside it.
 """
 
 from typing import Sequence
@@ -23,17 +24,24 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.sensitivities import CandidateColumns
 
 DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
-OF_SIZE = ("N", "kg")  # units of what a larger vehicle has more of
-USUAL = 2.5  # scales of a threshold: ESCs stop at 0.06; that a band of 0.3 would show tells nothing
-LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # without a log of them, not observable
+OF_SIZE = ("N", "kg")  # how units begin of parameters that grow with the size of a vehicle
+# Scales of a threshold. ESCs stop at 0.06: that a deadband of 0.3 would show says nothing of that.
+USUAL = 2.5
+LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # not observable where nobody logged them
 
 
 def list_not_observable(
     selection: SearchResult, catalogue: Catalogue, vehicle: Vehicle
 ) -> tuple[str, ...]:
-    """Ids of the tried effects that the runs cannot show, in the order of the catalogue.
+    """List the ids of effects that the runs cannot show, in the order of the catalogue.
 
-    Those that need a part which the vehicle does not have are not among them.
+    Effects of parts that the vehicle does not have are left out, and so are accepted effects and
+    their rivals.
+
+    Args:
+        selection: the result of a search.
+        catalogue: all effects.
+        vehicle: the vehicle.
     """
     workspace = selection.workspace
     runs = workspace.bank.runs
@@ -51,16 +59,22 @@ def list_not_observable(
             name for name, effect in catalogue.items() if issubclass(effect, StochasticCurrent)
         }
     silent -= {term.id for term in selection.best.hypothesis.terms}
-    silent -= {rival.effect for rival in selection.named_rivals}  # tried in the place of a name
+    silent -= {rival.effect for rival in selection.named_rivals}  # tried instead of an accepted one
     return tuple(name for name in catalogue.on(vehicle) if name in silent)
 
 
 def find_shown(
     sizes: Array, blocks: Sequence[CandidateColumns], penalty: float, larger: float
 ) -> dict[str, bool]:
-    """Of each effect, whether a column, `sizes` (c,) long at one scale, surely is worth it.
+    """Tell of each effect whether the runs would show it.
 
-    `larger`: than what the scales are for, that many times, is the vehicle.
+    They would if a change worth looking for surely raises the likelihood by more than the penalty.
+
+    Args:
+        sizes: lengths (c,) of the whitened columns, for a change of each parameter by one scale.
+        blocks: which columns belong to which effect.
+        penalty: of a parameter, in twice the log likelihood.
+        larger: how many times heavier the vehicle is than the one that the scales are meant for.
     """
     needed = np.sqrt(penalty) + DETECTION_STDS
     shown: dict[str, bool] = {}
@@ -72,7 +86,11 @@ def find_shown(
 
 
 def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, float]]:
-    """The columns by any of which an effect shows, and how many scales are worth looking for."""
+    """List the columns by any of which an effect shows, each with the scales worth looking for.
+
+    None where the effect was tried with an unusually large threshold: that it would show there does
+    not say that it would show with a usual one.
+    """
     candidate = block.candidate
     if block.secant is not None:
         given = candidate.start.given()
@@ -88,7 +106,7 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
 
 
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:
-    """Effects that act on commands of a kind that nobody logged."""
+    """Find the ids of effects that act on a kind of commands that nobody logged."""
     means = list_means(runs, vehicle)
     needed = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
     return {

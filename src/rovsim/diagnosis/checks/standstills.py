@@ -1,8 +1,8 @@
-"""Stretches in which the vehicle stands still although the model would move.
+"""Find stretches in which the vehicle stands still although the model would move.
 
-Held by hand before it is let go, lying on the floor, hanging on the crane: no model describes it,
-and whoever fits one to it fits the hand. A wrong model errs as much while the vehicle moves, and
-then nothing is said.
+A vehicle may be held by hand before it is let go, lie on the floor or hang on the crane. No effect
+of a model describes that, and a fit would be distorted by it. A wrong model errs as much while the
+vehicle moves; in that case no standstill is reported.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from rovsim.results.diagnosis import Standstill
 from rovsim.simulation.samples import Samples
 
 STILL = 0.5 * EXCITED  # m/s, rad/s: slower than any axis that counts as moved
-SHORTEST = 1.0  # s; a vehicle that turns back stands still for less
+SHORTEST = 1.0  # s; a vehicle that reverses its motion stands still for less
 GAINED = 3.0 * EXCITED  # m/s, rad/s that the model would gain: far more than noise
 BLOCKS = (
     0.5,
@@ -29,21 +29,28 @@ BLOCKS = (
     4.0,
     8.0,
     16.0,
-)  # s over which accelerations are averaged, as long as a standstill
-MIN_BLOCKS = 10  # blocks of a length
-USUAL = 95.0  # percentile of what the model misses while the vehicle moves
-BEYOND = 3.0  # times that it misses where the vehicle stands
-# Share of what it does there that it does elsewhere; it then misses at most that share of it.
+)  # s over which errors are averaged while vehicles move; a standstill is compared with its length
+MIN_BLOCKS = 10  # blocks of a length; if there are fewer, shorter blocks are used
+USUAL = 95.0  # percentile of the model's error while the vehicle moves
+BEYOND = 3.0  # times that percentile: a standstill has a larger error
+# Vehicles follow the model if, where its acceleration is more than SHOWN of that at the standstill,
+# the median error is less than FOLLOWED of it.
 SHOWN, FOLLOWED = 0.5, 0.75
-LONG = 0.2  # s in all for which it does
-TINY = 1e-9  # m/s, rad/s: keeps ratios finite where a model misses nothing
+LONG = 0.2  # s in all for which the model accelerates so much, at least
+TINY = 1e-9  # m/s2, rad/s2: keeps ratios finite where a model has no error
 
 Spans = list[tuple[float, float]]
 
 
 @dataclass(frozen=True, eq=False)
 class _Rest:
-    """A stretch in which nothing moves, s; means (6,) of what the model misses there."""
+    """A stretch in which the vehicle does not move.
+
+    Attributes:
+        begin: s.
+        end: s.
+        missed: mean error of the model's acceleration (6,), a_real - a_sim, m/s2 and rad/s2.
+    """
 
     begin: float
     end: float
@@ -51,9 +58,14 @@ class _Rest:
 
 
 class _Moving(NamedTuple):
-    """What a model does and misses (n, 6) while vehicles move, and how long (n,) s each holds.
+    """Accelerations and errors of a model at n samples at which vehicles move, m/s2 and rad/s2.
 
-    `blocks` (b, 6): means of what it misses over `length` (b,) s.
+    Attributes:
+        a_sim: acceleration (n, 6) of the model.
+        a_res: its error (n, 6), a_real - a_sim.
+        step: duration (n,) of each sample, s.
+        blocks: means of the error (b, 6) over b blocks, of every length in `BLOCKS`.
+        length: of each block (b,), s.
     """
 
     a_sim: Array
@@ -63,23 +75,27 @@ class _Moving(NamedTuple):
     length: Array
 
     def usual(self, lasts: float) -> Array:
-        """What it misses at most, usually, (6,) over blocks of up to that many s."""
+        """Usual upper limit (6,) of the error's mean over blocks, the longest up to `lasts` s.
+
+        Infinite where there are no blocks.
+        """
         fits = [x for x in BLOCKS if x <= lasts and np.sum(self.length == x) >= MIN_BLOCKS]
         own = self.blocks[self.length == max(fits, default=BLOCKS[0])]
         return np.percentile(np.abs(own), USUAL, axis=0) if len(own) else np.full(6, np.inf)
 
     def followed(self, axis: int, size: float) -> bool:
-        """Whether vehicles followed a model that accelerates about as much on an axis."""
+        """Whether vehicles follow the model where it accelerates by about `size` on an axis."""
         sim, res = np.abs(self.a_sim[:, axis]), np.abs(self.a_res[:, axis])
         large = sim > SHOWN * size
         return self.step[large].sum() > LONG and bool(np.median(res[large] / sim[large]) < FOLLOWED)
 
 
 def find_standstills(runs: Iterable[tuple[Motion, Samples]]) -> tuple[Standstill, ...]:
-    """The longest stretch of each run in which it stands although the model would move.
+    """Find the longest stretch of each run in which it stands still although the model would move.
 
     Args:
-        runs: motions, and what the model does and misses at their states; one is held at a time.
+        runs: motions, and the model's accelerations and errors at their states. Only one run is
+            held in memory at a time.
     """
     rests: dict[str, tuple[list[_Rest], Spans]] = {}
     each: list[_Moving] = []
@@ -97,6 +113,7 @@ def find_standstills(runs: Iterable[tuple[Motion, Samples]]) -> tuple[Standstill
 
 
 def _list_rests(motion: Motion, samples: Samples, still: Array) -> Iterator[_Rest]:
+    """Yield the stretches of a mask of still samples (n,) that last long enough."""
     measured, time = find_measured(motion.measured), motion.time[samples.index]
     for a, b in find_stretches(still):
         begin, end = float(time[a]), float(time[b - 1])
@@ -105,6 +122,7 @@ def _list_rests(motion: Motion, samples: Samples, still: Array) -> Iterator[_Res
 
 
 def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
+    """Collect the samples of a mask (n,), and average the errors over blocks of each length."""
     time = motion.time[samples.index]
     step = np.diff(time, append=time[-1:])
     step = np.minimum(step, np.median(step)) if len(step) else step  # not across gaps
@@ -121,7 +139,19 @@ def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
 
 
 def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> Standstill | None:
-    """The longest standstill of a run; those near each other are one."""
+    """Judge the rests of one run.
+
+    Rests that are closer to each other than the longer of them lasts are one.
+
+    Args:
+        run: id of the run.
+        rests: its stretches without motion.
+        spans: begin and end of what can be used of it, s.
+        moving: what the model does while vehicles move, in all runs.
+
+    Returns:
+        The longest standstill; None where none of the rests is one.
+    """
     candidates: list[tuple[_Rest, int, float]] = []
     for rest in rests:
         if (axis := _find_axis(rest, moving)) is None:
@@ -146,7 +176,10 @@ def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> S
 
 
 def _find_axis(rest: _Rest, moving: _Moving) -> int | None:
-    """The axis on which the model fails far more than elsewhere; None where it does on none."""
+    """Index of the axis on which the model errs far more than elsewhere; None where there is none.
+
+    The model must gain speed there, and vehicles must follow it elsewhere.
+    """
     missed, lasts = np.abs(rest.missed), rest.end - rest.begin
     usual = np.maximum(moving.usual(lasts), TINY)
     beyond = np.where(missed * lasts > GAINED, missed / usual, 0.0)
@@ -156,7 +189,7 @@ def _find_axis(rest: _Rest, moving: _Moving) -> int | None:
 
 
 def _list_spans(motion: Motion) -> Spans:
-    """What of a run can be used, s; gaps that are bridged do not count."""
+    """Begin and end of each stretch of a run that can be used, s; short gaps are ignored."""
     spans: Spans = []
     for a, b in motion.segments():
         first, last = float(motion.time[a]), float(motion.time[b - 1])
@@ -167,6 +200,6 @@ def _list_spans(motion: Motion) -> Spans:
 
 
 def _without(spans: Spans, begin: float, end: float) -> Spans:
-    """Spans without a stretch of them."""
+    """Take the stretch from `begin` to `end` out of spans, s; short remains are left out."""
     parts = [x for a, b in spans for x in ((a, min(b, begin)), (max(a, end), b))]
     return [(round(a, 2), round(b, 2)) for a, b in parts if b - a >= SHORTEST]

@@ -1,8 +1,8 @@
-"""Values so far from the vehicle file that a unit is likelier to be wrong than the file.
+"""Find values so far from the vehicle file that a wrong unit is likelier than a wrong file.
 
-How far files are off is known in proportion, from published sets
-(`estimation/file_effects.py`), so distances are those of logarithms. What a file states as
-little is off by a scale of the parameter at least.
+How far files usually are off is known as a relative error (`estimation/file_effects.py`), so values
+are compared by their logarithms. Where a file states a small value, the scale of the parameter
+counts as its usual error at least.
 """
 
 from typing import Iterator, Sequence
@@ -16,13 +16,21 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.file_effects import GAIN, ONE_GAIN, SHARE, spread_of_file
 from rovsim.estimation.observer.hypothesis import Term
 
-WIDTHS = 10.0  # such distances of two files: a factor of 20 of drag or added mass, 2.7 of thrust
+WIDTHS = 10.0  # usual relative errors: a factor of 20 of drag or added mass, 2.7 of thrust
 
 
 def list_absurd(base: Model, terms: Sequence[Term]) -> list[str]:
-    """Values that no vehicle file is off by, as `effect.parameter` and how large each is.
+    """List values that no vehicle file is wrong by, as half sentences.
 
-    Less drag or added mass than stated is none: a file may well state too much of one of several.
+    Drag or added mass that is much less than stated is not listed: a file may well state too much
+    of one of several values.
+
+    Args:
+        base: says what the vehicle file states.
+        terms: accepted effects at their fitted values.
+
+    Returns:
+        For each value, `effect.parameter` and how large it is.
     """
     return [
         one for term in terms for told in (_tell_gain, _tell_stated) for one in told(base, term)
@@ -30,13 +38,15 @@ def list_absurd(base: Model, terms: Sequence[Term]) -> list[str]:
 
 
 def _tell_gain(base: Model, term: Term) -> Iterator[str]:
+    """Yield the common gain of the thrusters, if it is absurdly far from 1 either way."""
     for name in ONE_GAIN if term.id == ThrusterGain.id else ():
-        gain = term.effect[name]  # below zero: reversed, another fault
+        gain = term.effect[name]  # negative: reversed thrusters, which is another fault
         if abs(np.log(max(abs(gain), 1e-12))) > WIDTHS * GAIN:
             yield f"{term.id}.{name} is {minus(f'{gain:.2g}')}"
 
 
 def _tell_stated(base: Model, term: Term) -> Iterator[str]:
+    """Yield the values of a term that are absurdly far above what the file states."""
     stated = base.body.stated.get(term.id, np.zeros(len(term.effect.parameters)))
     for parameter, own in zip(term.effect.parameters, stated.tolist(), strict=True):
         total = own + term.effect[parameter.name]
@@ -48,6 +58,7 @@ def _tell_stated(base: Model, term: Term) -> Iterator[str]:
 
 
 def _highest(base: Model, term: Term, parameter: Parameter) -> float:
+    """Highest value of a parameter, in its unit, that is not absurd."""
     share = SHARE[term.id]
     spread = spread_of_file(base, type(term.effect), parameter) * parameter.scale
     return spread / share * float(np.exp(WIDTHS * share))
