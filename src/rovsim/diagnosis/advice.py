@@ -1,4 +1,4 @@
-"""What to record next, so that the next diagnosis is surer."""
+"""Advise what to record next, so that the next diagnosis is surer."""
 
 from typing import Sequence
 
@@ -16,7 +16,7 @@ FIX_SCALE = (
     "how far a known weight heels the vehicle (for its centre of buoyancy)."
 )
 
-# By axes: what to record where nothing was, and the columns of docs/formats.md.
+# What to record where none of an axis' motion was measured, with the columns of docs/formats.md.
 CHANNELS = (
     (
         ("surge", "sway"),
@@ -54,13 +54,13 @@ def advise(
     joint: Sequence[Sequence[str]],
     catalogue: Catalogue,
 ) -> str:
-    """A few sentences.
+    """Advise in a few sentences what to record, or to check, next.
 
     Args:
         diagnosis: of the train runs.
-        groups: effects that cannot be told apart.
-        joint: parameters, as `effect.parameter`, that are known only together.
-        catalogue: what the effects are, and what reveals each.
+        groups: ids of effects that cannot be told apart, each group by itself.
+        joint: parameters, as `effect.parameter`, that are only known together, in groups, too.
+        catalogue: says what reveals each effect.
     """
     if not diagnosis.enough:
         return _begin_again(diagnosis)
@@ -94,7 +94,7 @@ def advise(
 
 
 def _begin_again(diagnosis: TrainDiagnosis) -> str:
-    """What is needed before anything can be judged."""
+    """Say what is needed where there was too little to judge anything."""
     if diagnosis.usable.lost:
         return AWAY
     if not diagnosis.usable.runs:
@@ -106,13 +106,13 @@ def _begin_again(diagnosis: TrainDiagnosis) -> str:
 
 
 def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
-    """What to check first where a value is absurd."""
+    """Say what to check first, if a fitted value is absurdly far from the vehicle file."""
     absurd = list_absurd(diagnosis.base, [one.term for one in diagnosis.selected])
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
 def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
-    """What to move, to command and to measure that nobody did."""
+    """Say which axes to move, what to command and what to measure, where nobody did."""
     parts = []
     if still := diagnosis.usable.still:
         parts.append(
@@ -129,11 +129,12 @@ def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
 
 
 def _revealed(names: Sequence[str], catalogue: Catalogue) -> str:
+    """What reveals each of these effects, in sentences of the catalogue."""
     return " ".join(text for name in names if (text := catalogue[name].revealed_by))
 
 
 def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequence[str]) -> str:
-    """How to tell values apart: by what reveals the effect that most of them belong to."""
+    """Say how to tell values apart: by what reveals the effect to which most of them belong."""
     owners = [name.split(".")[0] for group in joint for name in group]
     most = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
@@ -142,6 +143,7 @@ def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequ
 
 
 def _confirm(diagnosis: TrainDiagnosis) -> str:
+    """Say what would make the least important accepted effect surer, or that nothing is needed."""
     if not diagnosis.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
     weakest = min(diagnosis.selected, key=lambda one: one.error_reduction)
@@ -150,6 +152,11 @@ def _confirm(diagnosis: TrainDiagnosis) -> str:
 
 
 def _how(effect: type[Effect], parameters: Sequence[str]) -> str:
-    """What reveals an effect; where a user's own does not say, a flight that is planned for it."""
+    """Say what reveals an effect, or how to plan a flight, where a user's effect does not say.
+
+    Args:
+        effect: its class.
+        parameters: those that the flight should tell, as `effect.parameter`.
+    """
     command = f"rovsim design campaign=DIR model=FILE 'know=[{','.join(parameters)}]'"
     return effect.revealed_by or f"plan a flight with `{command}`."

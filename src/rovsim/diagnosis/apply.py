@@ -1,4 +1,4 @@
-"""A model file from a diagnosis."""
+"""Make a model with the effects that a diagnosis found, as `rovsim add` writes it."""
 
 from pathlib import Path
 from typing import Collection, Container, NamedTuple, Sequence
@@ -21,9 +21,13 @@ from rovsim.results.fitted import FittedEffect
 
 
 class Added(NamedTuple):
-    """A model with effects of a diagnosis, their ids, and whether its base was `diagnosed`.
+    """A model with effects of a diagnosis.
 
-    `one_by_one`: several, some of whose values were found without the others.
+    Attributes:
+        model: the base with these effects.
+        names: ids of the effects.
+        diagnosed: whether the base is the model that was diagnosed.
+        one_by_one: whether there are several effects, some of which were fitted without the others.
     """
 
     model: Model
@@ -39,13 +43,19 @@ def add_effects(
     effects: Sequence[str] | None,
     catalogue: Catalogue,
 ) -> Added:
-    """The base model and the effects named, or selected, with their fitted values.
+    """Add effects of a diagnosis to a model, at their fitted values.
 
-    Where the catalogue has the effect that the diagnosis proposes, it and what is beside it.
+    Args:
+        diagnosis: the diagnosis.
+        source: its file, for messages.
+        to: the model file to which the effects are added.
+        effects: ids of the effects. If None, all selected ones; or the proposed law and the effects
+            beside it, if the catalogue has that law.
+        catalogue: all effects, the user's own included.
 
     Raises:
-        BadInput: an effect the diagnosis has no values for, that is named twice or that the base
-            has already, or values no model can have.
+        BadInput: the diagnosis has no values for an effect, an effect is named twice, the base has
+            it at these values already, or no model can have the values.
     """
     known = catalogue if effects is None else dict.fromkeys(effects)
     chosen = choose_effects(diagnosis, known)
@@ -66,7 +76,7 @@ def add_effects(
 
 
 def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) -> None:
-    """Refuse a name that a diagnosis has no values for, and one that comes twice."""
+    """Refuse effects for which a diagnosis has no values, and effects that are named twice."""
     for k, name in enumerate(names):
         if name not in fitted:
             raise unlisted(name, fitted, found=f"has no values for '{name}'", where=source)
@@ -80,7 +90,7 @@ def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) ->
 
 
 def _refuse_again(effects: Sequence[Effect], base: Model, to: str) -> None:
-    """Refuse an effect that the base has at the very same values: it would act twice."""
+    """Refuse an effect that the base has at exactly these values: it would act twice."""
     there = [(one.id, one.given()) for one in base.added if one.given()]
     for effect in effects:
         if (effect.id, effect.given()) in there:
@@ -93,7 +103,7 @@ def _refuse_again(effects: Sequence[Effect], base: Model, to: str) -> None:
 
 
 def was_diagnosed(base: Model, diagnosis: Diagnosis) -> bool:
-    """Whether a diagnosis is of that model."""
+    """Whether a model is the one that was diagnosed."""
     return describe_model(base) == diagnosis.base
 
 
@@ -105,9 +115,18 @@ def add_uncertainty(
     source: Path,
     catalogue: Catalogue,
 ) -> Model:
-    """The base with effects as they were fitted, and how sure a diagnosis is of them.
+    """Add to a model how sure the diagnosis is of its effects.
 
-    Of a model that it did not end with nothing is known.
+    This is known only if the model is what the diagnosis ended with: the base that was diagnosed
+    and all selected effects. Any other model is returned as it is.
+
+    Args:
+        model: the base with effects at their fitted values.
+        names: ids of these effects.
+        base: the model without them.
+        diagnosis: the diagnosis.
+        source: its file, for messages.
+        catalogue: the effects that the vehicle can have.
     """
     posterior, whole = diagnosis.posterior, sorted(one.effect for one in diagnosis.selected)
     if posterior is None or sorted(names) != whole or not was_diagnosed(base, diagnosis):
@@ -130,7 +149,7 @@ def add_uncertainty(
 
 
 def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedEffect, ...]:
-    """The selected effects; where the law that was proposed is known, it and those beside it."""
+    """Choose the selected effects; if a proposed law is `known`, it and the effects beside it."""
     law = diagnosis.unexplained.proposal
     if law is None or law.effect not in known:
         return diagnosis.selected
@@ -138,7 +157,7 @@ def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedE
 
 
 def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEntry]:
-    """Fitted effects of a diagnosis as entries of a model file."""
+    """Convert fitted effects of a diagnosis into entries of a model file."""
     return [
         checked(
             EffectEntry,
@@ -153,11 +172,11 @@ def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEnt
 
 
 def extend(base: Model, effects: Sequence[Effect]) -> Model:
-    """The base with further effects, called new.
+    """Add further effects to a model, and name the result "new".
 
     Raises:
-        BadInput: values no model can have.
+        BadInput: no model can have these values.
     """
     model = base.with_effects((*base.effects, *effects)).called("new")
-    _ = model.M  # refuse a model that cannot move
+    _ = model.M  # raises if the inertia matrix is impossible
     return model

@@ -31,7 +31,7 @@ from rovsim.results.ladder import Ladder, Step
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run
 
-# Share of the time that is over when a stage begins: means of the campaigns of conf/tank.
+# Share of the whole time after which a stage begins: means over the campaigns of conf/tank.
 STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88, "scoring": 0.95}
 
 
@@ -75,7 +75,7 @@ def diagnose_campaign(
         settings: how the diagnosis decides, and how runs are filtered and replayed.
         catalogue: the effects that may be missing.
         stage: is told the name of each step as it begins.
-        failing: is told under which conditions the base fails, as soon as that is known.
+        failing: is told under which conditions the base fails, as soon as these are known.
     """
     stage("reading")
     searched, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
@@ -98,7 +98,10 @@ def diagnose_campaign(
 def _look(
     base: Model, runs: Runs, settings: DiagnosisSettings
 ) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
-    """Find where the base fails, and where vehicles stand still; each run is sampled once."""
+    """Find under which conditions the base fails, and where vehicles stand still although it moves.
+
+    Each run is sampled once for both.
+    """
     search = ConditionSearch(base, set(runs.splits.values()), settings)
 
     def sampled() -> Iterator[tuple[Motion, Samples]]:
@@ -137,6 +140,7 @@ def _climb(
 
 
 def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:
+    """Models of the ladder: the base, one effect more each, and the proposed law, if any."""
     return [*diagnosis.models(), *([diagnosis.proposed.model] if diagnosis.proposed else [])]
 
 
@@ -161,6 +165,6 @@ def _floor(
     )
     if floor is None or floor.error is None:
         return None
-    # what was reached is itself drawn by chance: a root mean square of w windows
+    # the error reached varies by chance, too: it is a root mean square over w windows
     chance = 1.0 / np.sqrt(2.0 * floor.windows)
     return None if floor.error > (1.0 + chance) * reached else floor.error

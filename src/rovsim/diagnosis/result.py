@@ -1,4 +1,4 @@
-"""A diagnosis as `diagnosis.json` holds it."""
+"""Turn a diagnosis into the content of `diagnosis.json`."""
 
 from dataclasses import dataclass
 from typing import Mapping, Sequence
@@ -47,14 +47,16 @@ LISTED = 10  # effects of the ranking
 
 @dataclass(frozen=True, eq=False)
 class CampaignContext:
-    """What a campaign shows beside the diagnosis of its train runs.
+    """What is reported beside the diagnosis of the train runs.
 
     Attributes:
-        where: conditions in which the base fails.
-        ladder: the base, the effects one after the other, and the noise floor, on the test runs.
-        looked_at: how much of the train runs.
-        standstills: of train runs, where the model would move.
-        away: test runs in which the base runs away.
+        where: conditions under which the base fails.
+        ladder: errors on the test runs: of the base, with one effect more each, and of a perfect
+            model.
+        looked_at: how much of the train runs was used.
+        standstills: stretches of train runs in which the vehicle stands still although the base
+            would move.
+        away: ids of the test runs in which the base diverges.
     """
 
     where: Sequence[ConditionShare]
@@ -65,9 +67,14 @@ class CampaignContext:
 
 
 def report(diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catalogue) -> Diagnosis:
-    """What is written of a diagnosis; `catalogue`: what the effects are.
+    """Put together `diagnosis.json`.
 
-    With it the file of the model that was diagnosed, so that `rovsim add` needs nothing else.
+    It includes the model that was diagnosed, so that `rovsim add` needs no other file.
+
+    Args:
+        diagnosis: of the train runs.
+        context: what else is reported.
+        catalogue: says what reveals each effect.
     """
     alike = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
@@ -106,7 +113,7 @@ def report(diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catal
 
 
 def _list_joint(diagnosis: TrainDiagnosis) -> list[list[str]]:
-    """Parameters known only together, but for those that the common scale holds together."""
+    """Group parameters that are only known together, unless just the common scale relates them."""
     if diagnosis.fit is None:
         return []
     scaled = set(diagnosis.scale.parameters) if diagnosis.scale else set()
@@ -114,13 +121,19 @@ def _list_joint(diagnosis: TrainDiagnosis) -> list[list[str]]:
 
 
 def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
+    """Report the common scale of all forces, where it is unknown."""
     if scale is None:
         return None
     return ScaleOfForces(std=rounded(scale.std), parameters=scale.parameters)
 
 
 def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
-    """Errors in windows of 2 s (docs/signals.md); None where there is nothing to score."""
+    """Normalised errors in windows of 2 s (docs/signals.md); None where no test run can be scored.
+
+    Args:
+        ladder: of the test runs.
+        selected: number of selected effects.
+    """
     errors = [rounded(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
         nominal=errors[0], with_effects=errors[selected], noise_floor=rounded(ladder.noise_floor)
@@ -128,6 +141,7 @@ def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
 
 
 def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
+    """Report an effect, with standard deviations by parameter name, in their units."""
     return FittedEffect(
         effect=one.term.id,
         parameters=describe_values(one.term, std),
@@ -137,13 +151,16 @@ def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
 
 
 def _listed(diagnosis: TrainDiagnosis) -> list[Ranked]:
-    """The first effects of the ranking, and those selected."""
+    """List the first effects of the ranking, and the selected ones wherever they stand in it."""
     named = {one.term.id for one in diagnosis.selected}
     return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in named]
 
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
-    """Groups of effects that explain the data about equally well; groups that meet are one."""
+    """Group effects that explain the runs about equally well.
+
+    Groups that share an effect are one.
+    """
     pairs = [(r.effect, r.instead_of) for r in rivals if r.deviance_difference < MIN_LR_APART]
     names = sorted({name for pair in pairs for name in pair})
     near = np.zeros((len(names), len(names)), bool)
@@ -155,7 +172,7 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
 
 
 def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
-    """What no effect of the catalogue explains."""
+    """Report what no effect of the catalogue explains, and a law for it, where one was found."""
     if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE)
     if diagnosis.verdict != "unexplained":
@@ -172,6 +189,7 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
 
 
 def _hint(structures: Sequence[Structure]) -> str:
+    """Say on which axes something is left, and what it depends on; the most surprising first."""
     first = structures[0]
     also = {s.axis: s.what for s in reversed(structures) if s.axis != first.axis}  # the first each
     hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
@@ -181,7 +199,7 @@ def _hint(structures: Sequence[Structure]) -> str:
 
 
 def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
-    """How the values hang together, and what else may act, by the odds of each name."""
+    """Report how the values are correlated, and which rivals may act instead, by their odds."""
     if diagnosis.fit is None:
         return None
     near = [
@@ -204,7 +222,7 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
 
 
 def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
-    """All effects of a fit that its vehicle does not have by itself."""
+    """List all effects of a fit that are not part of the vehicle itself."""
     h = fit.hypothesis
     known: list[tuple[Term, dict[str, float]]] = [(Term(one, ()), {}) for one in h.base.added]
     known += [(term, find_std(fit, i)) for i, term in enumerate(h.terms)]
@@ -214,6 +232,7 @@ def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
 
 
 def _noise(diagnosis: TrainDiagnosis) -> FittedNoise:
+    """Report the noise of the fit: the disturbance on each axis, and the errors of the readings."""
     if diagnosis.fit is None:
         return FittedNoise()
     noise = diagnosis.fit.noise

@@ -1,4 +1,4 @@
-"""How a diagnosis decides."""
+"""Settings of a diagnosis: how it decides, and how runs are filtered and replayed."""
 
 from typing import Annotated
 
@@ -14,11 +14,15 @@ MostSeconds = Annotated[float, Field(ge=60)]
 class SearchSettings(Section):
     """How effects are chosen.
 
-    `false_alarm` is the chance of naming an effect where none is missing, per addition. `relevant`:
-    an effect without which no axis' error in 2 s windows is larger by this share is left out,
-    however sure it is: at that size the laboratory's clocks and roundings look like effects.
-    Of train runs that last longer than `most_seconds` together, those parts are looked at that tell
-    most. The search ends where the evidence ends; `most_effects` guards against one that does not.
+    Attributes:
+        false_alarm: chance of accepting an effect where none is missing, for each addition.
+        draws: of noise alone, from which the best gain by chance is estimated.
+        trials: how many candidates are refitted for each addition or swap, at least.
+        most_effects: a limit for a search that would not end; usually the evidence ends it.
+        relevant: share of the error in 2 s windows. An effect without which the error of no axis is
+            larger by this share is left out, however sure it is: at that size, the laboratory's
+            clocks and roundings look like effects.
+        most_seconds: of train runs that last longer together, only the most telling parts are used.
     """
 
     false_alarm: Annotated[float, Field(gt=0, lt=1)] = 0.003
@@ -30,7 +34,12 @@ class SearchSettings(Section):
 
 
 class DiagnosisSettings(SimulationSettings):
-    """All that a diagnosis depends on but the runs and the model."""
+    """All that a diagnosis depends on, except for the runs, the model and the catalogue.
+
+    Attributes:
+        search: how effects are chosen.
+        seed: of all random draws.
+    """
 
     search: SearchSettings = SearchSettings()
     seed: int = Field(0, ge=0)

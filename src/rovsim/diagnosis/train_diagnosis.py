@@ -1,4 +1,4 @@
-"""What was found on the train runs of a campaign."""
+"""The diagnosis of the train runs of a campaign: all that was found on them."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -21,12 +21,21 @@ from rovsim.results.fitted import Correlation
 class TrainDiagnosis:
     """What was found on the train runs.
 
-    `usable` runs; `fit` of the base and all selected effects, None where there was too little to
-    judge, and the `correlation` of its values; `structures` that are left, and whether validation
-    `refused` effects that explain something; `scale` of all forces, where it is unknown;
-    `not_observable` effects that the runs could not show; `proposed`: a law for what is left, where
-    one holds; `stand_ins`: names that it, or half a law, makes unnecessary or others;
-    `disturbance`: the force in time, where none does.
+    Attributes:
+        base: the model that was diagnosed.
+        usable: the runs that could be used, and what was neither moved nor measured in them.
+        fit: of the base and all selected effects; None where there was too little to judge.
+        correlation: of the fitted values.
+        selected: accepted effects, first the one that removes most error.
+        ranking: every effect as the only addition to the base.
+        rivals: effects that could stand in the place of selected ones.
+        structures: what the remainder still depends on.
+        refused: whether hold-out validation removed effects that explain something.
+        scale: common factor of all forces and inertias; None where it is known.
+        not_observable: ids of effects that the runs could not show.
+        proposed: a law for what is left; None where no law holds.
+        stand_ins: ids of selected effects that a law makes unnecessary or changes, proposed or not.
+        disturbance: what is left as a force in time, where no law holds.
     """
 
     base: Model
@@ -46,12 +55,16 @@ class TrainDiagnosis:
 
     @property
     def enough(self) -> bool:
-        """Whether there was enough to judge anything."""
+        """Whether there was enough data to judge anything."""
         return self.fit is not None
 
     @property
     def verdict(self) -> Verdict:
-        """One of the four of the contract."""
+        """The verdict, as `diagnosis.json` has it.
+
+        `unexplained` where something is left but noise; else `missing_effects` where effects were
+        selected; else `adequate`, unless an axis did not move or the model diverged in a run.
+        """
         if not self.enough:
             return "insufficient_data"
         if self.structures or self.refused:
@@ -67,7 +80,7 @@ class TrainDiagnosis:
         return list_not_commanded(self.usable, self.base.vehicle)
 
     def models(self) -> list[Model]:
-        """The base, then one model more for each selected effect."""
+        """The base, then models with one selected effect more each."""
         found = [self.base]
         for one in self.selected:
             found.append((found[-1] + one.term.effect).called(f"+{one.term.id}"))
