@@ -1,4 +1,4 @@
-"""Do the bands of a model hold what they promise, on runs that took no part in it?"""
+"""Coverage: how much of the measurement lies inside the bands that a model predicts."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -12,12 +12,15 @@ from rovsim.simulation.windows import last_predicted
 
 
 def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
-    """How much of the measured velocity of one run lies inside a band.
+    """Measure how much of the measured velocity of one run lies inside a band.
 
     Args:
         motion: the run.
-        band: of the same windows.
-        spans: first sample or bin of each window, and its last one.
+        band: of the velocity that the model predicts in the windows.
+        spans: of each window, the sample or bin at which it begins, and its end.
+
+    Returns:
+        Shares and mean width by axis, over all samples and over the last one of each window.
     """
     known = np.isfinite(band.nu).all(axis=(0, 2)) & motion.usable
     inside = (motion.nu >= band.nu[0]) & (motion.nu <= band.nu[1])
@@ -33,5 +36,5 @@ def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
 
 
 def _mean(values: Array) -> Array:
-    """Over the first axis (n, 6); NaN where there is nothing."""
+    """Mean (6,) over the first axis of `values` (n, 6); NaN where n is zero."""
     return values.mean(axis=0) if len(values) else np.full(6, np.nan)

@@ -1,12 +1,13 @@
-"""Who pushes how much, when: every effect's share of the generalized force, and what is missing.
+"""Force budget: the generalized force of every part of a model along a run, and what is missing.
 
-The force of a part is what the right-hand side of the equation of motion gains when the part is put
-in, one part after the other; so a new effect shows up by itself, and the parts add up to M nu_dot:
+Parts are put into the equation of motion one after the other. The force of a part is by how much
+it changes the right-hand side, so that also a new effect has a force, and all parts add up:
 
     M nu_dot = Coriolis + weight and buoyancy + added-mass Coriolis + damping + thrusters + effects
 
-Inertia stands on the left, so of an effect that changes it only Coriolis and weight are seen here.
-Where two effects multiply (a current and a damping), the later one is charged with the product.
+Inertia is on the left-hand side. Of an effect that changes it, only the changes of the Coriolis
+force and of the weight are seen here. Where two effects multiply (a current and a damping), the
+product counts as force of the later one.
 """
 
 from dataclasses import replace
@@ -32,8 +33,8 @@ from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
 RESIDUAL = "learned residual"
-# Parts of the vehicle's own effects, in the order in which they are put in; one that is not listed
-# comes last, under its id.
+# Names of the vehicle's own effects as parts, in the order in which they are put in. An effect that
+# is not listed comes after them, under its id.
 NOMINAL = {
     "net_buoyancy": RESTORING,
     "buoyancy_center": RESTORING,
@@ -49,7 +50,13 @@ NOMINAL = {
 
 
 def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> ForceBudget:
-    """Budget of a model's forces at the measured states of a run."""
+    """Compute the forces of a model's parts at the measured states of a run.
+
+    Args:
+        model: the model.
+        motion: the run.
+        how: measurements were filtered, and commands are held.
+    """
     found = sample_run(model, motion, how)
     parts: dict[str, Array] = {}
     before = np.zeros((len(motion.time), 6))
@@ -64,7 +71,10 @@ def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> For
 def _cumulative(
     model: Model, motion: Motion, settings: ReplaySettings
 ) -> Iterator[tuple[str, Array]]:
-    """Generalized force (n, 6) as parts are put in one by one, each under its part's name."""
+    """Put in parts one by one; yield the name of each, and the force (n, 6) of all so far.
+
+    Forces are in N and N m, FRD at CO.
+    """
     neutral = [effect.neutral() for effect in model.effects]
     bare = _with(model, neutral)
     none = drive_as_measured(bare, motion, settings).idle()
@@ -74,7 +84,7 @@ def _cumulative(
     own = len(model.effects) - len(model.added)
     for k in sorted(range(own), key=lambda k: _place(model.effects[k])):
         effect = model.effects[k]
-        if neutral[k] is not effect:  # else it is in from the start
+        if neutral[k] is not effect:  # else every vehicle has it, so it is in from the start
             neutral[k] = effect
             name = NOMINAL.get(effect.id, effect.id)
             yield name, _force(_with(model, neutral), motion, none)
@@ -87,19 +97,20 @@ def _cumulative(
 
 
 def _place(effect: Effect) -> int:
-    """Where an effect of the vehicle stands in the order of parts."""
+    """Position of an effect of the vehicle in the order of parts."""
     return list(NOMINAL).index(effect.id) if effect.id in NOMINAL else len(NOMINAL)
 
 
 def _with(model: Model, effects: Sequence[Effect]) -> Model:
-    """The model of these effects alone, without a learned residual."""
+    """The model with these effects alone, without a learned residual."""
     return replace(model, effects=tuple(effects), residual=None)
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
+    """M nu_dot (n, 6) of a model at the measured states, under the logged commands."""
     return accelerate_as_logged(model, motion, settings) @ model.M.T
 
 
 def _force(model: Model, motion: Motion, drive: Drive) -> Array:
-    """M nu_dot (n, 6) of a model at the measured states."""
+    """M nu_dot (n, 6) of a model at the measured states, driven by `drive`."""
     return accelerate_as_measured(model, motion, drive) @ model.M.T

@@ -1,4 +1,4 @@
-"""How the error of a model grows with the time since the anchor of a window."""
+"""How the velocity error of a model grows with the time since the start of a window."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -39,7 +39,7 @@ class GrowthScore:
         known &= (member >= 0) & (member < self._bins)
         count = np.bincount(member[known], minlength=self._bins)
         self._count += count[:, None] * find_measured(motion.measured)
-        with np.errstate(over="ignore"):  # of a model that diverged: infinite
+        with np.errstate(over="ignore"):  # infinite, if the model diverged
             squares = np.square((prediction.nu - motion.nu)[known])
         np.add.at(self._squares, member[known], blank(motion.measured, squares, 0.0))
 

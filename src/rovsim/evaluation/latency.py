@@ -1,4 +1,4 @@
-"""How long one prediction takes, as a control loop would feel it: one call at a time."""
+"""Latency: how long one prediction takes, called one at a time as a control loop would."""
 
 import gc
 from collections.abc import Callable
@@ -25,15 +25,15 @@ def time_calls(
 ) -> Latency:
     """Time `call` on one query after the other.
 
-    Python's garbage collector runs once before and not during the calls, so that the numbers
-    are those of the prediction; a loop that leaves it on can be later by the collector's pause.
+    Python's garbage collector runs once before the calls and not during them, so that the numbers
+    are those of the prediction. In a loop that leaves it on, a call may take longer by its pause.
 
     Args:
         call: from features (1, d) to accelerations (1, m).
         queries: features (n, d), used in turn.
         calls: how often to call, at most.
-        warmup: calls before the clock starts; fewer where they take a tenth of `seconds`.
-        points: what the predictor looks at, for the record.
+        warmup: calls before the clock starts; fewer if they take more than a tenth of `seconds`.
+        points: number of training points that the predictor uses, for the record.
         seconds: no further call is started after this long; at least one is timed.
     """
     rows = [queries[i : i + 1] for i in range(len(queries))]
@@ -58,7 +58,14 @@ def time_calls(
 
 
 def _timed(call: Callable[[Array], Array], rows: list[Array], calls: int, limit: int) -> Array:
-    """Nanoseconds of each call."""
+    """Time calls one after the other; nanoseconds (k,) of each.
+
+    Args:
+        call: what is timed.
+        rows: its arguments, used in turn.
+        calls: how many, at most.
+        limit: nanoseconds after which no further call is started.
+    """
     took = np.zeros(max(calls, 1), dtype=np.int64)
     end = perf_counter_ns() + limit
     for i in range(len(took)):
@@ -74,6 +81,7 @@ def _timed(call: Callable[[Array], Array], rows: list[Array], calls: int, limit:
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
+    """Collect garbage once, and keep the collector off inside the `with` block."""
     was = gc.isenabled()
     gc.collect()
     gc.disable()
@@ -87,7 +95,10 @@ def _no_collection() -> Iterator[None]:
 def time_both_ways(
     residual: Residual, queries: Array, calls: int, warmup: int, seconds: float
 ) -> BothWays:
-    """Latency of a trained residual's library call and of its exported predictor, side by side."""
+    """Time a trained residual both as a call of its library and as its exported predictor.
+
+    For the arguments see `time_calls`.
+    """
     from rovsim.learning.learner import library_of
 
     def timed(call: Callable[[Array], Array]) -> Latency:

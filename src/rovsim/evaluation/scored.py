@@ -46,23 +46,23 @@ class Scored:
 
     @property
     def comparison(self) -> Comparison:
-        """`comparison.json`."""
+        """Errors by model and run, as `comparison.json`."""
         models = {name: ModelErrors(runs=one.runs) for name, one in self._models.items()}
         return Comparison(models=models)
 
     @property
     def growth(self) -> Growth:
-        """`growth.json`."""
+        """Growth of the error of each model, as `growth.json`."""
         return Growth(models={name: one.growth.curve for name, one in self._models.items()})
 
     @property
     def steps(self) -> list[Step]:
-        """A step of the ladder for each model, on the test runs."""
+        """The step of each model on the ladder, on the test runs."""
         return [one.step.step for one in self._models.values()]
 
 
 def score(motion: Motion, replay: Replay) -> RunErrors:
-    """All metrics of one model on one run."""
+    """Compute all metrics of one model on one run."""
     one = _Score(replay.model, replay.longest)
     one.add(motion, replay.horizons.items())
     return one.runs[motion.run.id]
@@ -74,6 +74,8 @@ def _find_longest(replays: Mapping[str, Mapping[str, Replay]]) -> float:
 
 
 class _Score:
+    """Collects the errors of one model; `longest` s is its longest horizon."""
+
     def __init__(self, model: str, longest: float) -> None:
         self.runs: dict[str, RunErrors] = {}
         self.growth, self.step = GrowthScore(longest), StepScore(model)

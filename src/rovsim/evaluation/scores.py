@@ -58,7 +58,7 @@ def subtract(motion: Motion, prediction: Prediction) -> Errors:
 
 
 def _find_posed(measured: Measured | None) -> tuple[bool, bool]:
-    """Whether the whole position, and the whole attitude, was measured."""
+    """Tell whether the whole position, and whether the whole attitude, was measured."""
     if measured is None:
         return True, True
     return bool(measured.coordinates.all()), bool(measured.axes[3:].all())
@@ -134,6 +134,7 @@ class Sums:
 
 
 def _mean(total: Array | float, count: Array | int) -> Array:
+    """Mean of `count` values that add up to `total`; NaN where the count is zero."""
     nothing = np.full(np.shape(total), np.nan)
     return np.divide(total, count, out=nothing, where=np.asarray(count) > 0)
 
@@ -148,12 +149,12 @@ def rms(x: Array, count: Array | None = None) -> Array:
 
     `count` (...): how many of the n were measured, where all others are zero.
     """
-    with np.errstate(over="ignore"):  # of a model that diverged: infinite
+    with np.errstate(over="ignore"):  # infinite, if the model diverged
         return root_mean(np.square(x).sum(axis=0), len(x) if count is None else count)
 
 
 def summarize(errors: Errors) -> Metrics:
-    """The metrics of one set of errors."""
+    """Compute the metrics of the errors of one run."""
     return Sums.of(errors).metrics()
 
 

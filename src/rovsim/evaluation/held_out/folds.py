@@ -1,4 +1,4 @@
-"""Leave one run out: the same runs, split anew."""
+"""Leave one run out: split the same runs anew, with one run to test and all others to train."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -10,6 +10,11 @@ Run = TypeVar("Run", Motion, Poses, Recording)
 
 
 def held_out(run: Run, test: str) -> Run:
-    """The run as it is, in the fold of the run `test`: that one is for test, any other to train."""
+    """Label a run for the fold that holds out one run: "test" for that run, "train" for others.
+
+    Args:
+        run: any run, unchanged but for its split.
+        test: id of the run that is held out.
+    """
     split = "test" if run.run.id == test else "train"
     return replace(run, run=replace(run.run, split=split))

@@ -1,4 +1,4 @@
-"""Four mistakes of the thesis' public code, repeated on purpose: what each of them costs."""
+"""Repeat four mistakes of the thesis' public code on purpose, to see what each of them costs."""
 
 from dataclasses import replace
 from typing import Callable, Sequence
@@ -20,7 +20,7 @@ from rovsim.simulation.settings import SimulationSettings
 
 ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
 SHARE = "share of the residual acceleration that is predicted"
-# What was done, and what `right` and `wrong` measure.
+# For each mistake, what was done, and which number is compared without it and with it.
 PITFALLS = {
     "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
     "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
@@ -28,11 +28,11 @@ PITFALLS = {
     "scaled twice": ("features scaled before they reach a GP that scales them", SHARE),
 }
 SAID = 0.1  # s, the bin that the public code replays with
-FAR = 1e6  # standard deviations from all that was seen: there a process has no data either
+FAR = 1e6  # standard deviations from all training data: there a Gaussian process knows no data
 
 
 def on_wrong_clock(motion: Motion) -> Motion:
-    """A binned run as if each bin lasted as long as is said; its commands move along."""
+    """Change the clock of a binned run as if each bin lasted `SAID` s; its commands move along."""
     edges = np.append(motion.time, motion.end)
     said = motion.time[0] + SAID * np.arange(len(edges))
     arrival = np.interp(motion.commands.time, edges, said)
@@ -46,13 +46,21 @@ def on_wrong_clock(motion: Motion) -> Motion:
 
 
 def replay_error(model: Model, motion: Motion, how: SimulationSettings) -> float | None:
-    """Velocity RMSE of an open-loop replay, each axis in units of how much it moves, their mean."""
+    """Normalised velocity RMSE of an open-loop replay (`scores.normalize`)."""
     found = replay(model, motion, how).horizons[OPEN_LOOP]
     return normalize(measured_spread([motion]), rms(subtract(motion, found).nu))
 
 
 def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:
-    """Share of residual accelerations Y (n, 6) foretold, mean over axes; below 0: worse."""
+    """Share of the residual acceleration that is predicted, mean over axes.
+
+    Below zero, predictions are worse than none.
+
+    Args:
+        predict: from features (n, d) to residual accelerations (n, 6).
+        X: features (n, d).
+        Y: residual accelerations (n, 6), m/s2 and rad/s2.
+    """
     return float(np.mean(1.0 - np.mean((Y - predict(X)) ** 2, axis=0) / np.mean(Y**2, axis=0)))
 
 
@@ -63,17 +71,21 @@ def measure_pitfalls(
     learners: dict[str, LearnerSettings],
     how: SimulationSettings,
 ) -> dict[str, Cost]:
-    """Each mistake that can be made on one held-out run: `right` and `wrong`.
+    """Measure the cost of each mistake that can be made on one held-out run.
 
-    The clock, if there are bins, by `replay_error`; the others by what is `explained`; copies only
-    where there are runs of both controls to learn from.
+    The wrong clock is only tried on a binned run, and measured by `replay_error`; the other
+    mistakes are measured by what is `explained`. Copied runs are only tried where there are train
+    runs of both controls.
 
     Args:
-        model: a model without a residual.
+        model: a model without a learned residual.
         runs: the training runs, of both controls.
-        test: the run they are judged on.
+        test: the held-out run.
         learners: settings of `knn` and `gp`.
-        how: the signal chain, and how runs are replayed.
+        how: measurements are filtered, and runs are replayed.
+
+    Returns:
+        The number without the mistake (`right`) and with it (`wrong`), by name of the mistake.
     """
     found = {m.run.id: sample_run(model, m, how) for m in runs}
     asked = sample_run(model, test, how)
@@ -104,9 +116,11 @@ def measure_pitfalls(
 
 
 def _X(one: Samples, residual: Trained) -> Array:
+    """Features (n, d) of the samples of a run, as a residual takes them."""
     return one.features(residual.features)
 
 
 def _trained(runs: Sequence[Samples], learner: LearnerSettings) -> Trained:
+    """Train a residual on the samples of some runs."""
     X = np.concatenate([s.features(learner.features) for s in runs])
     return train(X, np.concatenate([s.a_res for s in runs]), learner, seed=0)

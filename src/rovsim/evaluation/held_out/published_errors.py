@@ -1,8 +1,8 @@
-"""Errors on held-out runs beside those that others published for the same runs.
+"""Compare errors on held-out runs with those that others published for the same runs.
 
-A cell is one run, axis and metric. Its mark is the smallest published error of any model and
-variant. On an axis whose demand never moved, the mark is the larger of that and the error of a
-vehicle that keeps its velocity: to stay still there is no feat of a model.
+A cell is one run, axis and metric. Its mark is the error to beat: the smallest published one of any
+model and variant. On an axis whose demand never changed, the mark is the larger of that and the
+error of a model that keeps its velocity, as it is no merit of a model to stay still there.
 """
 
 import csv
@@ -29,7 +29,7 @@ from rovsim.results.published_errors import (
     Standing,
 )
 
-COUNTED = ("acceleration_rmse", "velocity_mae")  # a model is judged by these
+COUNTED = ("acceleration_rmse", "velocity_mae")  # metrics by which a model is judged
 METRICS = (*COUNTED, "velocity_rmse")
 PUBLISHED = "published "  # in front of the names of others' models
 COLUMNS = ("run", "variant", "model", "axis", *METRICS)
@@ -37,7 +37,15 @@ COLUMNS = ("run", "variant", "model", "axis", *METRICS)
 
 @dataclass(frozen=True)
 class Published:
-    """Errors (m/s2, rad/s2, m/s, rad/s) by metric of somebody's model on one axis of one run."""
+    """Published errors of a model on one axis of one run.
+
+    Attributes:
+        run: id of the run.
+        variant: of the model, as its authors call it.
+        model: its name.
+        axis: surge to yaw.
+        errors: by metric, m/s2 or rad/s2 for accelerations and m/s or rad/s for velocities.
+    """
 
     run: str
     variant: str
@@ -47,7 +55,7 @@ class Published:
 
 
 def read_published(path: Path) -> list[Published]:
-    """Read published errors: a csv with the columns `COLUMNS`; further ones are left alone.
+    """Read published errors from a csv with the columns `COLUMNS`; other columns are ignored.
 
     Raises:
         BadInput: the file, a column or a number is missing or makes no sense.
@@ -65,6 +73,11 @@ def read_published(path: Path) -> list[Published]:
 
 
 def _entry(row: Mapping[str, str], where: str) -> Published:
+    """Read one row; `where` names its line, for a message.
+
+    Raises:
+        BadInput: the axis or a number makes no sense.
+    """
     try:
         errors = {metric: float(row[metric]) for metric in METRICS}
     except (TypeError, ValueError):
@@ -80,9 +93,10 @@ def _entry(row: Mapping[str, str], where: str) -> Published:
 
 
 def find_demanded(commands: Commands) -> dict[str, bool]:
-    """Axes whose demand moved in a run.
+    """Tell of each axis whether its demand changed in a run.
 
-    Thruster commands do not tell axes apart: all count as moved, which makes no mark easier.
+    Thruster commands do not tell axes apart. All axes then count as demanded, which makes no mark
+    easier to beat.
     """
     if commands.kind == "thruster":
         return dict.fromkeys(AXES, True)
@@ -94,12 +108,12 @@ def compare_published(
     comparisons: Mapping[str, Comparison],
     moved: Mapping[str, Mapping[str, bool]],
 ) -> PublishedErrors:
-    """`published_errors.json`: every cell, and how each model stands.
+    """Compare our errors with published ones, as `published_errors.json`.
 
     Args:
-        published: what others reached.
-        comparisons: by held-out run, the `comparison.json` in which it was held out.
-        moved: by run, the axes whose demand moved.
+        published: errors of others.
+        comparisons: by id of the held-out run, the errors of our models on it.
+        moved: by id of the run, whether the demand of each axis changed.
 
     Raises:
         BadInput: nobody published anything for any of the runs.
@@ -136,11 +150,12 @@ def compare_published(
 
 
 def _of(published: Sequence[Published], run: str, axis: str) -> list[Published]:
+    """Published errors on one axis of one run."""
     return [p for p in published if (p.run, p.axis) == (run, axis)]
 
 
 def _errors(comparison: Comparison, run: str, axis: str, metric: str) -> dict[str, float | None]:
-    """Errors of our models in the open loop; None where a model left the finite numbers."""
+    """Open-loop errors of our models, by name; None where a model diverged."""
     return {
         name: model.runs[run].open_loop.by_axis(metric)[axis]
         for name, model in comparison.models.items()
@@ -156,7 +171,19 @@ def _cell(
     axis: str,
     metric: str,
 ) -> PublishedCell | None:
-    """One cell; None without a published error, or where nothing was measured."""
+    """Compare errors in one cell.
+
+    Args:
+        theirs: published errors on this axis of this run.
+        ours: errors of our models, by name.
+        moved: whether the demand of each axis changed.
+        run: id of the run.
+        axis: surge to yaw.
+        metric: one of `METRICS`.
+
+    Returns:
+        The cell; None without a published error, or where nothing was measured.
+    """
     still = ours.get(ZERO_ACCELERATION)
     if not theirs or still is None:
         return None
@@ -180,9 +207,12 @@ def _cell(
 
 
 def stand(ratios: Sequence[float | None]) -> Standing:
-    """Cells below the mark, and the geometric mean of error / mark.
+    """Count the cells in which a model beats the mark, and average its ratios.
 
-    A model without a value in a cell is not below it, and its mean is None.
+    A model without a value in a cell does not beat it, and has no mean.
+
+    Args:
+        ratios: error over mark, of each cell; None where the model has no value.
     """
     values = np.array([np.inf if ratio is None else ratio for ratio in ratios])
     with np.errstate(divide="ignore"):
@@ -197,7 +227,7 @@ def stand(ratios: Sequence[float | None]) -> Standing:
 
 
 def _stand(name: str, cells: Sequence[PublishedCell]) -> ModelStanding:
-    """How one model stands in the counted metrics, and by metric and axis."""
+    """Tell how one model stands: in the counted metrics together, by metric, and by axis."""
     own = [cell for cell in cells if name in cell.ratios]
     counted = [cell for cell in own if cell.metric in COUNTED]
 
