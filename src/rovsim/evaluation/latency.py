@@ -33,7 +33,7 @@ def time_calls(
         queries: features (n, d), used in turn.
         calls: how often to call, at most.
         warmup: calls before the clock starts; fewer if they take more than a tenth of `seconds`.
-        points: number of training points that the predictor uses, for the record.
+        points: number of points that the predictor uses, for the record.
         seconds: no further call is started after this long; at least one is timed.
     """
     rows = [queries[i : i + 1] for i in range(len(queries))]

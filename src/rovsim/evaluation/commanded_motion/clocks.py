@@ -1,4 +1,4 @@
-"""A motion that does not follow its commands, or too late or too early."""
+"""Tell where a motion does not follow its commands, or follows them too late or too early."""
 
 from typing import Sequence
 
@@ -7,28 +7,35 @@ from numpy import ndarray as Array
 
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, CrossCorrelation
 
-# A thruster answers within tenths of a second, a radio or an autopilot adds as much again; the peak
-# of the correlation is known to about a tenth of a second.
+# Lags of a motion whose clock is right. A thruster answers within tenths of a second, a radio or an
+# autopilot adds as much again, and the correlation tells the lag to about a tenth of a second.
 EARLIEST, LATEST = -0.25, 0.6  # s
-# Of periodic commands a peak some seconds away may be as high as that of the true lag.
+# Under periodic commands, a peak some seconds away may be as high as that at the true lag.
 CLEARER, AWAY = 0.03, 1.0  # correlation by which it must be higher, s beyond the usual lags
 QUARTER = 900.0  # s: time zones differ by whole quarters of an hour
-LOOSE = 60.0  # s by which clocks that were set by hand differ beside it
-DAY = 86400.0  # s: no time zones are further apart
+LOOSE = 60.0  # s by which clocks that were set by hand may differ beside the time zone
+DAY = 86400.0  # s: no two time zones are further apart
 THERE = "to the times of the commands (`commands_shift_s` in the run)"
-FITTED = 0.5  # s: from further away a fit of `input_delay` does not come back
+FITTED = 0.5  # s: a fit of `input_delay` does not correct a larger offset
 
 
-# Of runs with one offset of their clocks, the lags of the best correlation lie within this.
+# The best lags of runs whose clocks have the same offset differ by less than this.
 SCATTER = 0.4  # s
 
 
 def tell_following(found: CrossCorrelation, axes: Array, start: float | None = None) -> str:
-    """That a motion hardly follows its commands, or too late or too early; else nothing.
+    """Say that a motion hardly follows its commands, or follows them too late or too early.
 
-    Body axes being `axes` (3, 3). Where commanded axes were not measured, a low likeness of the
-    others tells nothing. `start`: when the motion's own file says that it began, local time as s
-    since 1970.
+    Where not all commanded axes were measured, a low correlation of the others tells nothing.
+
+    Args:
+        found: the correlation of the motion with its commands.
+        axes: body axes of the file (3, 3), see `CrossCorrelation.along`.
+        start: when the motion began according to its own file, local time in s since 1970; None
+            where it does not say.
+
+    Returns:
+        A half sentence; empty where nothing is wrong.
     """
     score, lag = found.best(axes)
     if score < MIN_CORRELATION and found.unseen:
@@ -46,9 +53,15 @@ def tell_following(found: CrossCorrelation, axes: Array, start: float | None = N
 def tell_together(
     found: Sequence[CrossCorrelation], axes: Array, start: float | None = None
 ) -> str:
-    """That the clocks of all runs differ by the same, within what a correlation leaves open.
+    """Say that the clocks of all runs have the same offset, as far as a correlation can tell.
 
-    `start` as in `tell_following`, of any of them.
+    Args:
+        found: the correlation of each run.
+        axes: body axes of the files (3, 3).
+        start: when one of the motions began, see `tell_following`.
+
+    Returns:
+        A half sentence; empty where the clocks are right, or there are fewer than two runs.
     """
     if len(found) < 2:
         return ""
@@ -60,7 +73,7 @@ def tell_together(
 
 
 def is_off(found: CrossCorrelation, axes: Array) -> bool:
-    """Whether a motion comes clearly later or earlier than thrusters answer."""
+    """Whether a motion follows its commands clearly later, or earlier, than thrusters answer."""
     score, lag = found.best(axes)
     beyond = max(EARLIEST - lag, lag - LATEST)
     usual = (found.lag >= EARLIEST) & (found.lag <= LATEST)
@@ -69,7 +82,15 @@ def is_off(found: CrossCorrelation, axes: Array) -> bool:
 
 
 def _by_start(lag: float, start: float) -> str:
-    """A clock since 1970 beside one since the start, by when that was; nothing where it is not."""
+    """Say that commands count from 1970 and the motion from its start, if `start` agrees with that.
+
+    Args:
+        lag: by which the motion comes after its commands, s.
+        start: when the motion began according to its own file, local time in s since 1970.
+
+    Returns:
+        What to do; empty where the offset is another one.
+    """
     zone = QUARTER * round((start + lag) / QUARTER)
     if abs(lag) < DAY or abs(zone) > DAY or not EARLIEST <= lag + start - zone <= LATEST:
         return ""
@@ -82,6 +103,13 @@ def _by_start(lag: float, start: float) -> str:
 
 
 def _tell(score: float, lag: float, start: float | None) -> str:
+    """Say how far clocks differ and what to do about it: a time zone, another epoch, or any offset.
+
+    Args:
+        score: correlation of motion and commands at that lag.
+        lag: by which the motion comes after its commands, s.
+        start: when the motion began, see `tell_following`.
+    """
     if start is not None and (told := _by_start(lag, start)):
         return told
     how = "after" if lag > 0 else "before"

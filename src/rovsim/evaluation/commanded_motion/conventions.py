@@ -1,7 +1,8 @@
-"""Attitudes that were written by other rules than they are read by, beside the positions.
+"""Find out whether attitudes and positions of a file follow another convention than assumed.
 
-Each other reading (inverse rotations, angles of another sign or order, positions along swapped
-axes) gives another motion of the body; what was commanded shows best in the right one.
+Poses can be read in other ways: as inverse rotations, with angles of another sign or order, or with
+positions along swapped axes. Each reading gives another body velocity. The commands are correlated
+best with that of the right reading.
 """
 
 from dataclasses import dataclass, replace
@@ -22,13 +23,13 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.measurement.rough_motion import ResampledPoses, of_poses
 
-# Correlations by which another reading must be better: in all, and of the speeds by themselves. Of
-# the 52 right runs of the practice campaigns no reading is better in the speeds by 0.03.
+# Correlations by which another reading must be better: over all axes, and over the linear ones
+# alone. In the 52 right runs of the practice campaigns, no reading is better by 0.03 over these.
 BETTER, FASTER = 0.12, 0.05
-AS_GOOD, AS_FAST = 0.1, 0.02  # within which two readings are both told
+AS_GOOD, AS_FAST = 0.1, 0.02  # likewise: readings that differ by less are both reported
 ANGLES = ("roll", "pitch", "yaw")
 OWN = "Rz(yaw) Ry(pitch) Rx(roll)"
-ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY")  # turns one after the other, each about the new axis
+ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY")  # intrinsic rotations, each about the rotated axis
 UNTURNED = tuple(map(tuple, np.eye(3).tolist()))
 EAST_NORTH_UP = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))  # of north, east, down
 LINEAR = np.arange(6) < 3
@@ -36,7 +37,14 @@ LINEAR = np.arange(6) < 3
 
 @dataclass(frozen=True)
 class OtherReading:
-    """What would make the motion more like its commands: `score` against `own` as it was read."""
+    """Another reading of poses, in which the motion follows its commands better.
+
+    Attributes:
+        score: mean correlation with this reading.
+        own: mean correlation as the poses were read.
+        said: what is read otherwise, for a sentence.
+        remedy: what to do about the file, in sentences.
+    """
 
     score: float
     own: float
@@ -52,7 +60,14 @@ class OtherReading:
 
 
 class _Reading(NamedTuple):
-    """Poses read otherwise: with what, and what to do about the file."""
+    """Poses in another reading.
+
+    Attributes:
+        attitude: quaternions (n, 4), body to world.
+        position: (n, 3), m.
+        said: what is read otherwise, for a sentence.
+        remedy: what to do about the file, in sentences.
+    """
 
     attitude: Array
     position: Array
@@ -61,7 +76,12 @@ class _Reading(NamedTuple):
 
 
 class _Likeness(NamedTuple):
-    """Correlation over all excited axes, and over those of the speeds alone."""
+    """Mean correlation of a motion with its commands.
+
+    Attributes:
+        whole: over all excited axes.
+        linear: over surge, sway and heave, where excited.
+    """
 
     whole: float
     linear: float
@@ -74,10 +94,18 @@ def find_convention(
     lag: float = 0.0,
     angles: bool = True,
 ) -> OtherReading | None:
-    """A reading of poses in which what is `caused` (times, FRD velocities) shows clearly better.
+    """Find another reading of poses in which the motion follows its commands clearly better.
 
-    `axes`: the body axes (3, 3) that are possible; `lag` s by which the motion comes later;
-    `angles`: whether the file's z is vertical, so that roll, pitch and yaw mean something.
+    Args:
+        poses: as they were read.
+        caused: times (m,) in s, and the body velocities (m, 6) FRD that the commands should cause.
+        axes: the body axes (3, 3) that are possible, see `CrossCorrelation.along`.
+        lag: by which the motion comes after its commands, s.
+        angles: whether the z axis of the file is vertical, so that roll, pitch and yaw are angles
+            of the vehicle.
+
+    Returns:
+        The best reading; None where none is clearly better.
     """
     shift = 0.0 if EARLIEST <= lag <= LATEST else lag
     commanded = Commanded(poses.time, *caused, shift, LATEST)
@@ -96,7 +124,15 @@ def find_convention(
 
 
 def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherReading | None:
-    """The best of those that are clearly better, and the simplest one that does as well."""
+    """Describe the readings that are clearly better and about as good as the best of them.
+
+    Args:
+        own: likeness of the poses as they were read.
+        scored: other readings and their likeness, the simplest first.
+
+    Returns:
+        At most two readings in one, the simplest ones; None where none is clearly better.
+    """
     enough = max(own.whole + BETTER, MIN_CORRELATION)
     better = [
         (found, reading)
@@ -117,7 +153,7 @@ def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherRead
 
 
 def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
-    """Other readings, simple ones first."""
+    """Yield other readings of poses, simple ones first."""
     yield _Reading(
         conjugate(poses.attitude),
         poses.position,
@@ -133,6 +169,7 @@ def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
 
 
 def _of_positions(poses: ResampledPoses, axes: tuple[tuple[float, ...], ...]) -> _Reading:
+    """Read positions along swapped or mirrored axes: the rows of the matrix `axes` (3, 3)."""
     told = ", ".join(
         minus(f"{'-' if row[k := int(np.argmax(np.abs(row)))] < 0 else ''}{'xyz'[k]}")
         for row in axes
@@ -147,6 +184,7 @@ def _of_positions(poses: ResampledPoses, axes: tuple[tuple[float, ...], ...]) ->
 
 
 def _of_angles(poses: ResampledPoses) -> Iterator[_Reading]:
+    """Yield readings with angles of other signs, quarter turns added, then of other orders."""
     angles = to_euler(poses.attitude)
     signs = [(np.array(s), turns) for s in product((1.0, -1.0), repeat=3) for turns in range(4)]
     for sign, turns in sorted(signs, key=lambda pair: (pair[1] > 0, -pair[0].sum())):
@@ -164,6 +202,12 @@ def _of_angles(poses: ResampledPoses) -> Iterator[_Reading]:
 
 
 def _of_signs(sign: Array, turns: int) -> tuple[str, str]:
+    """Describe a reading with angles of other signs: what is read otherwise, and what to do.
+
+    Args:
+        sign: of roll, pitch and yaw (3,), 1 or -1.
+        turns: quarter turns that are added to yaw.
+    """
     turned = [name for name, s in zip(ANGLES, sign, strict=True) if s < 0.0]
     names = " and ".join(filter(None, [", ".join(turned[:-1]), turned[-1]]))
     said = f"the sign{'s' * (len(turned) > 1)} of {names} turned"
@@ -178,7 +222,7 @@ def _of_signs(sign: Array, turns: int) -> tuple[str, str]:
 
 
 def _composed(order: str, angles: Array) -> Array:
-    """Attitudes (n, 4) of roll, pitch and yaw (n, 3), turned in another order."""
+    """Quaternions (n, 4) of roll, pitch and yaw (n, 3), rad, rotated in another order."""
     known = np.isfinite(angles).all(axis=1)
     found = np.full((len(angles), 4), np.nan)
     chosen = angles[known][:, ["XYZ".index(axis) for axis in order]]

@@ -1,4 +1,4 @@
-"""Cross-correlation of a measured and a commanded motion: along which axes, and how late."""
+"""Cross-correlate measured and commanded velocities: along which axes they agree, and how late."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -15,24 +15,28 @@ from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step
 
 REACH = 10.0  # s by which clocks that share a start may differ
-SHORTEST = 8.0  # s: over a few swings of a vehicle anything looks like anything
-OVERLAP = 0.5  # share of the shorter recording that must lie beside the other
+SHORTEST = 8.0  # s: in less, a vehicle swings so few times that any two motions are correlated
+OVERLAP = 0.5  # share of the shorter recording that must overlap with the other
 AFTER = 2.0  # s for which a motion goes on after its last command
 SPARSE = 1e-9  # of motions of size 1: less is rounding
 FEW = 64  # lags up to which plain sums are faster than Fourier transforms
-# Mean correlations: of runs with their own commands 0.42 to 0.99, of runs with those of others at
-# most 0.30 (public tank runs, practice campaigns: docs/your_own_recordings.md).
+# Mean correlation. Runs reach 0.42 to 0.99 with their own commands, and at most 0.30 with those of
+# other runs (public tank runs, practice campaigns: docs/your_own_recordings.md).
 MIN_CORRELATION = 0.38
 AHEAD = 1.3  # times the correlation of the next best
 
 
 @dataclass(frozen=True, eq=False)
 class CrossCorrelation:
-    """Correlations (l, 6, 6) of measured along file axes with commanded along FRD, by lag (l,) s.
+    """Correlations of measured with commanded velocities at l lags.
 
-    A positive lag: the motion comes after its commands. `excited` (6,): the axes that the commands
-    move enough to be seen; `unseen`: whether they move others that nobody measured.
-    `strength`: measured over commanded speed, 1 for the right vehicle.
+    Attributes:
+        lag: (l,) s, ascending; positive if the motion comes after its commands.
+        correlation: of each measured velocity along the axes of the file with each commanded one
+            along FRD, (l, 6, 6).
+        excited: mask (6,) of the measured axes that the commands move enough to be seen.
+        strength: ratio of measured and commanded speed, about 1 for the right vehicle.
+        unseen: whether commands move further axes that nobody measured.
     """
 
     lag: Array
@@ -43,30 +47,31 @@ class CrossCorrelation:
 
     @property
     def overlaps(self) -> bool:
-        """Whether enough of both lie beside each other at any lag: else nothing can be said."""
+        """Whether the recordings overlap enough at any lag; if not, nothing can be said."""
         return bool(self.correlation.any())
 
     def along(self, axes: Array) -> Array:
-        """Mean correlation (l,) over the excited axes, the file's body axes being `axes` (3, 3).
+        """Mean correlation (l,) over the excited axes.
 
-        `axes` takes FRD components into those of the file.
+        Args:
+            axes: matrix (3, 3) that takes FRD components to those along the body axes of the file.
         """
         if not self.excited.any():
             return np.zeros(len(self.lag))
         linear = np.einsum("ij,lij->lj", axes, self.correlation[:, :3, :3])
-        # a mirrored body turns the other way about its mirrored axes
+        # angular velocity is an axial vector: under a mirroring, its sign changes as well
         angular = np.einsum("ij,lij->lj", axes * np.linalg.det(axes), self.correlation[:, 3:, 3:])
         return np.hstack([linear, angular])[:, self.excited].mean(axis=1)
 
     def best(self, axes: Array) -> tuple[float, float]:
-        """Highest mean correlation along these axes, and its lag in s."""
+        """Highest mean correlation along axes (3, 3), and its lag in s, interpolated."""
         score = self.along(axes)
         k = int(np.argmax(score))
         return float(score[k]), float(self.lag[k] + _vertex(score, k) * (self.lag[1] - self.lag[0]))
 
 
 def _vertex(score: Array, k: int) -> float:
-    """Where between its neighbours the highest value lies, in steps from k."""
+    """Offset of the maximum from its sample k, in steps, by a parabola through three samples."""
     if not 0 < k < len(score) - 1:
         return 0.0
     before, here, after = score[k - 1 : k + 2]
@@ -76,7 +81,7 @@ def _vertex(score: Array, k: int) -> float:
 
 @cache
 def orientations() -> tuple[tuple[tuple[float, ...], ...], ...]:
-    """The 48 matrices that swap and turn axes; those with determinant -1 mirror."""
+    """The 48 matrices (3, 3) that permute axes and change signs; half of them mirror."""
     found = []
     for order in permutations(range(3)):
         for signs in product((1.0, -1.0), repeat=3):
@@ -87,26 +92,26 @@ def orientations() -> tuple[tuple[tuple[float, ...], ...], ...]:
 
 
 def rotations() -> list[Array]:
-    """The 24 of them that do not mirror."""
+    """The 24 of the `orientations` that do not mirror."""
     return [a for o in orientations() if np.linalg.det(a := np.array(o)) > 0]
 
 
 def cross_correlate(
     measured: Velocities, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
 ) -> CrossCorrelation:
-    """Compare measured velocities with commanded ones: see `Commanded`."""
+    """Correlate measured velocities with commanded ones; for the arguments see `Commanded`."""
     return Commanded(measured.time, time, commanded, shift, reach).correlate(measured)
 
 
 class Commanded:
-    """Commanded velocities, laid out once for all motions that they are compared with.
+    """Commanded velocities, prepared once for all motions that are compared with them.
 
     Args:
-        clock: (n,) even times of the measured motions in s.
-        time: (m,) of the commanded velocities in s.
-        commanded: (m, 6) along FRD.
-        shift: added to the commanded times first, in s.
-        reach: the longest lag in s.
+        clock: evenly spaced times (n,) of the measured motions, s.
+        time: times (m,) of the commanded velocities, s.
+        commanded: velocities (m, 6) FRD, m/s and rad/s.
+        shift: added to the commanded times first, s.
+        reach: the longest lag, s, beside that shift.
     """
 
     def __init__(
@@ -120,7 +125,7 @@ class Commanded:
         other = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
         inside &= finite_rows(other)
         other = np.where(inside[:, None], other - _mean(other[inside]), 0.0)
-        # the measured stands `k` steps into the commanded: lag = (count - k) * step
+        # measured velocities begin `k` steps after the commanded ones: lag = (count - k) * step
         lags = len(other) - len(clock) + 1
         self.lag = step * (count - np.arange(lags)) + shift
         self.seen = inside.sum()
@@ -130,7 +135,7 @@ class Commanded:
         )
 
     def correlate(self, measured: Velocities) -> CrossCorrelation:
-        """Compare them with a motion."""
+        """Correlate a measured motion with the commanded velocities."""
         here = np.isfinite(measured.nu).any(axis=0)
         nu = np.where(here, measured.nu, 0.0)
         table = self._correlations(nu, finite_rows(nu))
@@ -142,7 +147,12 @@ class Commanded:
         return CrossCorrelation(self.lag[::-1], table[::-1], excited, strength, unseen)
 
     def _correlations(self, nu: Array, whole: Array) -> Array:
-        """Correlations (l, 6, 6) at all lags; NaN where few rows overlap."""
+        """Correlations (l, 6, 6) at all lags, with the lags descending; NaN where few rows overlap.
+
+        Args:
+            nu: measured velocities (n, 6).
+            whole: mask (n,) of the rows without unknown values.
+        """
         a = np.where(whole[:, None], nu - _mean(nu[whole]), 0.0)
         seen = whole[:, None].astype(float)
         few = self.known.sums(seen)[:, 0, 0] < OVERLAP * min(whole.sum(), self.seen)
@@ -152,7 +162,10 @@ class Commanded:
 
 
 def _strength(nu: Array, commanded: Array, excited: Array) -> float:
-    """How fast the vehicle was, over how fast the commands would make it (body axes apart)."""
+    """Ratio of the measured speed and the speed that commands would cause, whatever the axes are.
+
+    Linear velocities are compared, or angular ones where no linear axis is excited.
+    """
     axes = slice(0, 3) if excited[:3].any() else slice(3, 6)
     measured = np.sqrt(np.nansum(np.nanvar(nu[:, axes], axis=0)))
     caused = np.sqrt(np.sum(commanded[:, axes].var(axis=0)))
@@ -160,7 +173,12 @@ def _strength(nu: Array, commanded: Array, excited: Array) -> float:
 
 
 class _Windows:
-    """Sums of products with every stretch of the columns `long` (m, c), for few lags."""
+    """Sums of products with columns (m, c) at every lag, by plain sums: fast for few lags.
+
+    Args:
+        long: columns (m, c).
+        short: length n of the columns that they are multiplied with.
+    """
 
     def __init__(self, long: Array, short: int) -> None:
         self.rows = np.ascontiguousarray(sliding_window_view(long, short, axis=0))
@@ -171,7 +189,10 @@ class _Windows:
 
 
 class _Spectra:
-    """The same for many lags, by Fourier transforms."""
+    """Sums of products with columns (m, c) at every lag, by Fourier transforms: fast for many lags.
+
+    For the arguments see `_Windows`.
+    """
 
     def __init__(self, long: Array, short: int) -> None:
         self.lags, self.length = len(long) - short + 1, scipy.fft.next_fast_len(len(long), True)
@@ -185,4 +206,5 @@ class _Spectra:
 
 
 def _mean(x: Array) -> Array:
+    """Mean of each column of `x` (n, c); zero where n is zero."""
     return x.mean(axis=0) if len(x) else np.zeros(x.shape[1])

@@ -1,4 +1,4 @@
-"""What speaks against a run as its campaign describes it: axes, conventions, tank, clocks."""
+"""Find what contradicts how a campaign describes a run: axes, conventions, tank or clocks."""
 
 from typing import Iterator
 
@@ -22,24 +22,30 @@ from rovsim.evaluation.commanded_motion.predicted import can_push_sideways, caus
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.rough_motion import ResampledPoses, even_poses, of_poses, velocities
 
-LONGEST = 120.0  # s of commands that are looked at
-HANGS = -0.5  # cosine of the tilt: 120 degrees
-OUTSIDE, SHARE = 0.5, 0.5  # m beyond a wall, of the frames: no error of a calibration
-STOPPED, OFTEN = 2.0, 5.0  # s after a log that had a line each step: of its longest step
-# Likeness of vehicles that slip and turn by their speed: axis by axis, perfect models of a torpedo
-# and of a ship that steers reach 0.8 along wrong axes, of a catamaran 0.98 along the right ones.
+LONGEST = 120.0  # s of commands that are considered
+HANGS = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle hangs upside down
+OUTSIDE, SHARE = 0.5, 0.5  # m beyond a wall, share of the frames: more than a wrong calibration
+STOPPED, OFTEN = 2.0, 5.0  # s, and times the longest step of a log, by which it ends too early
+# Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
+# of a ship that steers reach 0.8 along wrong axes, and of a catamaran 0.98 along the right ones.
 CLEAR = 0.9
 MOVES = ("surge", "sway", "heave")
 
 
 def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
-    """Sentences about a run that can be used; none where nothing speaks against it."""
+    """List what contradicts the description of a run, in sentences; empty if nothing does.
+
+    Args:
+        recording: of the run, as its campaign describes it.
+        vehicle: the vehicle.
+    """
     upside_down = list(_upside_down(recording, vehicle))
     found = [] if upside_down else list(_unlike(recording, vehicle))
     return (*upside_down, *found, *_out_of_tank(recording), *_log_that_ends(recording))
 
 
 def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
+    """Remark a vehicle that is upside down most of the time, although its weight would right it."""
     if not recording.found.any() or not righting(vehicle)[3] > 0.0:
         return
     upright = matrix(recording.attitude[recording.found])[:, 2, 2]
@@ -51,6 +57,7 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 
 def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
+    """Remark a motion unlike its commands: another convention, other axes or another clock."""
     caused = _caused(recording, vehicle)
     if caused is None:
         return
@@ -82,9 +89,20 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 def _read_otherwise(
     poses: ResampledPoses, signs: Array, caused: tuple[Array, Array], lag: float, best: float
 ) -> str:
-    """Another convention of attitudes, where it tells more than other axes (`best`) do."""
+    """Describe another convention of attitudes, if it is better than merely other axes.
+
+    Args:
+        poses: in NED and FRD, as they were read.
+        signs: of the axes of the file relative to NED (3,).
+        caused: times (m,) in s, and the body velocities (m, 6) FRD that commands should cause.
+        lag: by which the motion comes after its commands, s.
+        best: highest correlation along any axes.
+
+    Returns:
+        A half sentence; empty if no convention is better.
+    """
     turn = half_turn(signs)
-    # back along the axes of the file, where its columns are
+    # poses along the axes of the file again, as in its columns
     own = ResampledPoses(
         poses.time, poses.position * signs, multiply(turn, multiply(poses.attitude, turn))
     )
@@ -97,9 +115,12 @@ def _first(pair: tuple[float, Array]) -> float:
 
 
 def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
-    """Times and the body velocities that the commands would cause; None where there are few."""
+    """Times (n,) in s and body velocities (n, 6) FRD that the commands would cause.
+
+    None where there are too few commands, or the run is too short.
+    """
     commands = recording.commands
-    # what `use` leaves out is not found, and may last longer than what is looked at
+    # stretches that `use` leaves out are not found, and may last longer than `LONGEST`
     seen = recording.time[recording.found] if recording.found.any() else recording.time
     if len(commands.time) < 2 or np.ptp(seen) < SHORTEST:
         return None
@@ -108,7 +129,7 @@ def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | Non
 
 
 def _told(axes: Array) -> str:
-    """What each commanded direction shows as, where it is another."""
+    """Say in which direction a vehicle moves for each commanded one, where these are different."""
     seen = []
     for name, column in zip(MOVES, axes.T, strict=True):
         k = int(np.argmax(np.abs(column)))
@@ -119,6 +140,7 @@ def _told(axes: Array) -> str:
 
 
 def _out_of_tank(recording: Recording) -> Iterator[str]:
+    """Remark a path that lies mostly outside of the tank."""
     position, walls = recording.position[recording.found], recording.site.tank
     if not len(position):
         return
@@ -137,7 +159,10 @@ def _out_of_tank(recording: Recording) -> Iterator[str]:
 
 
 def _log_that_ends(recording: Recording) -> Iterator[str]:
-    """Remark commands that stop before the recording does, unless they rest or come rarely."""
+    """Remark a log of commands that ends before the recording, unless its last command is zero.
+
+    Logs with rare lines may end that much earlier.
+    """
     time, end = recording.commands.time, float(recording.time[-1])
     if len(time) < 2 or not np.any(recording.commands.value[-1]):
         return

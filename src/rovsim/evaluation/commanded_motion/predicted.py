@@ -1,6 +1,7 @@
-"""The velocity that the logged commands should cause: each axis by itself, from rest.
+"""Predict roughly which velocity logged commands should cause: each axis by itself, from rest.
 
-Good enough to tell axes, clocks and files by correlation; no replay (no Coriolis, no gaps).
+This is good enough to tell axes, clocks and files by correlation. It is no replay: Coriolis forces
+and gaps of the recording are ignored.
 """
 
 from typing import NamedTuple
@@ -17,22 +18,31 @@ from rovsim.measurement.rough_motion import STEP
 from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.drive import Drive
 
-BEFORE, AFTER = 1.0, 3.0  # s around the commands
+BEFORE, AFTER = 1.0, 3.0  # s that are predicted before the first and after the last command
 
 
 def wrench(vehicle: Vehicle, commands: Commands) -> Array:
-    """Static body wrench (m, 6) of each logged line: N, N m, FRD."""
+    """Static wrench (m, 6) of the thrusters at each of m logged commands, N and N m, FRD."""
     model = nominal(vehicle)
     return Drive.by(model, model.thrust_path.at(commands, 0.0, 1.0), 1.0).wrench
 
 
 def can_push_sideways(vehicle: Vehicle) -> bool:
-    """Whether its thrusters push it sideways; else it slips and turns as its own speed makes it."""
+    """Whether the thrusters can push the vehicle sideways.
+
+    If not, it sways and turns because of its own forward speed.
+    """
     return bool(np.abs(nominal(vehicle).body.B[AXES.index("sway")]).max(initial=0.0) > 0.0)
 
 
 def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
-    """Body velocity (n, 6) at the even times (n,) s, commands held between their lines."""
+    """Body velocity (n, 6) that commands cause, m/s and rad/s, FRD.
+
+    Args:
+        vehicle: the vehicle.
+        commands: logged commands; each holds until the next one.
+        time: evenly spaced times (n,), s.
+    """
     tau = held(commands.time, wrench(vehicle, commands), time)
     return respond(vehicle, tau, time_step(time))
 
@@ -40,9 +50,16 @@ def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
 def cause(
     vehicle: Vehicle, commands: Commands, begin: float, longest: float
 ) -> tuple[Array, Array]:
-    """Times (n,) s and body velocities (n, 6) that commands cause, and a little around them.
+    """Predict the body velocity that commands cause, from shortly before to shortly after them.
 
-    From `begin` s on, and of that at most the first `longest` s.
+    Args:
+        vehicle: the vehicle.
+        commands: logged commands.
+        begin: commands before this time are not considered, s.
+        longest: how much of the commands is considered at most, s.
+
+    Returns:
+        Times (n,) in s, and velocities (n, 6) in m/s and rad/s, FRD.
     """
     end = min(float(commands.time[-1]), begin + longest)
     time = np.arange(begin - BEFORE, end + AFTER, STEP)
@@ -50,13 +67,19 @@ def cause(
 
 
 def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
-    """Body velocity (n, 6) under a wrench (n, 6) at even times, `step` s apart, from rest."""
+    """Integrate the body velocity (n, 6) from rest under a wrench, each axis by itself.
+
+    Args:
+        vehicle: the vehicle.
+        tau: wrench (n, 6) at evenly spaced times, N and N m, FRD.
+        step: between these times, s.
+    """
     inertia, linear, quadratic, stiffness = _diagonals(vehicle)
     nu, angle = np.zeros(6), np.zeros(6)
     found = np.empty((len(tau), 6))
     for k, push in enumerate(tau):
         found[k] = nu
-        # implicit in the drag: stable at any step
+        # drag is integrated implicitly, which is stable for any step
         resisted = inertia / step + linear + quadratic * np.abs(nu)
         nu = (inertia / step * nu + push - stiffness * angle) / resisted
         angle = angle + step * nu
@@ -64,12 +87,18 @@ def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
 
 
 def held(time: Array, value: Array, at: Array) -> Array:
-    """Values (n, c) of the last line at each instant (n,); zero before the first."""
+    """Values (n, c) of the latest line of a log at each time; zero before the first line.
+
+    Args:
+        time: of the lines (m,), s.
+        value: of the lines (m, c).
+        at: the times (n,), s.
+    """
     return np.where((at >= time[0])[:, None], value[latest(time, at)], 0.0)
 
 
 def righting(vehicle: Vehicle) -> Array:
-    """Restoring stiffness (6,) of a vehicle at rest: N/m, N m/rad."""
+    """Restoring stiffness (6,) of each axis of a vehicle at rest, N/m and N m/rad."""
     dry = vehicle.rigid_body
     center = dry.center_of_buoyancy or dry.center_of_gravity
     arm = dry.center_of_gravity[2] - center[2]
@@ -82,9 +111,13 @@ def righting(vehicle: Vehicle) -> Array:
 
 
 class _Diagonals(NamedTuple):
-    """Constants (6,) of the six axes, without what couples them: SI units.
+    """Constants (6,) of the six axes, without any coupling.
 
-    `linear` and `quadratic` are drag coefficients; `stiffness` rights the vehicle at rest.
+    Attributes:
+        inertia: with added mass, kg and kg m2.
+        linear: drag coefficients, N s/m and N m s/rad.
+        quadratic: drag coefficients, N s2/m2 and N m s2/rad2.
+        stiffness: that restores the vehicle at rest, N/m and N m/rad.
     """
 
     inertia: Array
@@ -94,7 +127,7 @@ class _Diagonals(NamedTuple):
 
 
 def _diagonals(vehicle: Vehicle) -> _Diagonals:
-    """The constants of each axis by itself, of a vehicle at rest; its stiffness at least 0."""
+    """Constants of each axis of a vehicle; a negative stiffness is replaced by zero."""
     dry, water = vehicle.rigid_body, vehicle.hydrodynamics
     moments = [getattr(dry.inertia, name) or 1.0 for name in ("Ixx", "Iyy", "Izz")]
     inertia = np.array([dry.mass] * 3 + moments) + np.diag(matrix(water.added_mass))
