@@ -55,7 +55,7 @@ def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> For
     Args:
         model: the model.
         motion: the run.
-        how: measurements were filtered, and commands are held.
+        how: settings of the filter of the measurement, and of how commands are held.
     """
     found = sample_run(model, motion, how)
     parts: dict[str, Array] = {}

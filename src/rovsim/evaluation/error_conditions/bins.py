@@ -1,9 +1,9 @@
-"""Errors by bins of a condition, and how far chance could make their means differ from zero.
+"""Average errors in bins of a condition, and tell how far their means differ from zero by chance.
 
-Neighbouring errors resemble one another, so samples are not counted as independent: a run is cut
-into stretches of several correlation times, and the stretches count. The standard error of a bin's
-mean is that of a mean of clusters; the chance level comes from turning the sign of whole stretches
-at random, which keeps every correlation within them, and destroys what a condition explains.
+Neighbouring errors are correlated, so blocks are not independent. A run is cut into stretches of
+several correlation times, and these count as independent. The standard error of a bin's mean is
+that of a mean of clusters. What chance explains is found by changing the sign of whole stretches at
+random: that keeps every correlation within them, and destroys what a condition explains.
 """
 
 from dataclasses import dataclass
@@ -16,20 +16,26 @@ from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.results.error_conditions import BLOCK
 
 BINS = 8  # of equal width between the tails
-VISITS = 4  # stretches that must have visited a bin before it is judged
+VISITS = 4  # stretches that a bin needs to be judged
 SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
-FLAT = 1e-6  # N, m, rad, s, or of them a second: less is rounding
-MANY = 2000  # stretches: chance is known well by then, and memory goes with their number
-NEAR = 0.6  # of a block, within which two are as far apart as a lag: a gap lies between others
-TAIL = 0.03  # of all values, beyond the outer edges at either end
-TIMES = 3.0  # correlation times a stretch should last
+FLAT = 1e-6  # in the unit of the condition: one that varies less varies by rounding alone
+MANY = 2000  # stretches, at most: they are enough to know chance, and need memory
+NEAR = 0.6  # of a block: two blocks whose distance differs more from a lag have a gap between them
+TAIL = 0.03  # share of all values beyond the outer edges, at either end
+TIMES = 3.0  # correlation times that a stretch should last
 
 
 @dataclass(frozen=True, eq=False)
 class Binning:
-    """One condition cut into b bins: `edges` (b+1,), `center` (b,) mean of the values inside.
+    """A condition that is cut into b bins.
 
-    `bin` (n,) of each block, `count` (b,) of blocks, `judged` (b,): visited often enough.
+    Attributes:
+        condition: the condition.
+        edges: of the bins (b + 1,), in its unit.
+        center: mean (b,) of the values inside of each bin.
+        bin: index (n,) of the bin of each block.
+        count: number of blocks (b,) in each bin.
+        judged: mask (b,) of the bins with blocks of enough stretches.
     """
 
     condition: Condition
@@ -42,18 +48,35 @@ class Binning:
 
 @dataclass(frozen=True, eq=False)
 class BinnedErrors:
-    """One axis by one condition, b bins: `mean`, `error` of the mean, `rms`, `effective` (b,)."""
+    """Errors of one axis in b bins of a condition, m/s2 or rad/s2.
+
+    Attributes:
+        binning: the bins.
+        mean: of the errors (b,).
+        error: standard error of that mean (b,).
+        rms: of the errors (b,).
+        effective: number of blocks (b,), as if they were independent.
+        share: of the squared error that the means explain, without what chance adds.
+    """
 
     binning: Binning
     mean: Array
     error: Array
     rms: Array
     effective: Array
-    share: float  # of the squared error that the means explain, what chance adds taken off
+    share: float
 
 
 def number_stretches(blocks: Blocks, error: Array) -> Array:
-    """Number (n,) of the stretch each block belongs to, 0 .. g-1, for errors (n,) of one axis."""
+    """Cut runs into g stretches, each several correlation times of the errors long.
+
+    Args:
+        blocks: n blocks of all runs.
+        error: of one axis (n,).
+
+    Returns:
+        Number of the stretch, 0 to g - 1, to which each block belongs (n,).
+    """
     usual = np.clip(
         TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST
     )
@@ -63,7 +86,11 @@ def number_stretches(blocks: Blocks, error: Array) -> Array:
 
 
 def _unexplained(blocks: Blocks, error: Array) -> Array:
-    """Errors less the bin means of the two conditions that take most away: memory, not cause."""
+    """Subtract from errors (n,) the bin means of the two conditions that explain most.
+
+    What a condition explains is correlated for as long as the condition lasts; the correlation time
+    of the rest is wanted.
+    """
     members = [cut(values)[1] for values in blocks.values.values()]
     for _ in range(2):
         means = [np.bincount(m, error) / np.maximum(np.bincount(m), 1) for m in members]
@@ -73,7 +100,10 @@ def _unexplained(blocks: Blocks, error: Array) -> Array:
 
 
 def correlation_time(error: Array, blocks: Blocks) -> float:
-    """Integral of the correlation over both signs of the lag, s, up to its first zero."""
+    """Correlation time of errors (n,) in s: integral of the correlation up to its first zero.
+
+    The integral includes negative lags.
+    """
     power = float(np.mean(error**2))
     total = 1.0
     for lag in range(1, int(LONGEST / BLOCK)):
@@ -87,9 +117,12 @@ def correlation_time(error: Array, blocks: Blocks) -> float:
 
 
 def cut(values: Array) -> tuple[Array, Array]:
-    """Edges (b+1,) of equal bins over the usual range, and the bin (n,) of each value.
+    """Cut values (n,) into bins of equal width over their usual range.
 
-    The outer bins hold whatever lies beyond; what never varied has a single bin.
+    The outer bins include all that lies beyond. Values that do not vary have a single bin.
+
+    Returns:
+        Edges (b + 1,), and the index (n,) of the bin of each value.
     """
     low, high = np.quantile(values, [TAIL, 1.0 - TAIL])
     count = BINS if high - low > FLAT else 1
@@ -100,7 +133,13 @@ def cut(values: Array) -> tuple[Array, Array]:
 
 
 def cut_bins(condition: Condition, values: Array, stretch: Array) -> Binning:
-    """Bins of a condition, and which of them were visited often enough to be judged."""
+    """Cut a condition into bins, and mark those with blocks of enough stretches to be judged.
+
+    Args:
+        condition: the condition.
+        values: of the condition (n,).
+        stretch: number (n,) of the stretch of each block.
+    """
     edges, member = cut(values)
     count = np.bincount(member, minlength=len(edges) - 1)
     visits = np.array([len(np.unique(stretch[member == b])) for b in range(len(count))])
@@ -110,14 +149,20 @@ def cut_bins(condition: Condition, values: Array, stretch: Array) -> Binning:
 
 
 def sums(binning: Binning, error: Array, stretch: Array) -> Array:
-    """Sums (bins, stretches) of the errors (n,) of one axis."""
+    """Sums (b, g) of the errors (n,) of one axis, over the blocks of each bin and stretch."""
     total = np.zeros((len(binning.count), stretch.max(initial=-1) + 1))
     np.add.at(total, (binning.bin, stretch), error)
     return total
 
 
 def bin_errors(binning: Binning, error: Array, stretch: Array) -> BinnedErrors:
-    """Means, their standard errors and the explained share of the errors (n,) of one axis."""
+    """Average the errors of one axis in bins, and tell how much of them the means explain.
+
+    Args:
+        binning: b bins.
+        error: of one axis (n,), m/s2 or rad/s2.
+        stretch: number (n,) of the stretch of each block.
+    """
     total, safe = sums(binning, error, stretch), np.maximum(binning.count, 1)
     mean = total.sum(axis=1) / safe
     size = sums(binning, np.ones(len(error)), stretch)
@@ -134,12 +179,21 @@ def bin_errors(binning: Binning, error: Array, stretch: Array) -> BinnedErrors:
 
 
 def weigh_evidence(cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array) -> Array:
-    """How far the bin means of the errors (n,) are from zero: (c, f) of c cuts, f draws.
+    """Tell how far the bin means of the errors are from zero, with changed signs of stretches.
 
-    The sum over bins of (sum of the errors)^2 / sum over stretches of (their sums)^2, the errors of
-    every stretch under each of the `signs` (g, f): about 1 a bin by chance, up to the number of
-    stretches in it. Every bin has its own scale, so that a few large errors at the end of a range
-    neither make nor hide a finding.
+    The evidence is the sum over bins of (sum of the errors)^2 / sum over stretches of (their
+    sums)^2. Chance makes it about 1 for each bin; at most it is the number of stretches in the bin.
+    Every bin has its own scale, so that a few large errors at the end of a range neither make nor
+    hide a finding.
+
+    Args:
+        cuts: c conditions in bins.
+        error: of one axis (n,).
+        stretch: number (n,) of the stretch of each block.
+        signs: 1 or -1 for each stretch in each of f draws (g, f).
+
+    Returns:
+        The evidence (c, f).
     """
     parts = [sums(cut, error, stretch)[cut.judged] for cut in cuts]
     owner = np.repeat(np.arange(len(cuts)), [len(part) for part in parts])

@@ -1,11 +1,11 @@
-"""In what condition the vehicle was, and what the model missed there: means over short blocks.
+"""Average conditions, such as speed or place, and a model's error over short blocks of a run.
 
 The error is the acceleration error a_res = a_real - a_sim of a model that is evaluated at the
-measured state, averaged over blocks of 0.5 s: the velocity a model gains too little in half a
-second, divided by half a second. Why this one: a velocity error at the end of a 2 s window is the
-sum of all that went wrong on the way, under conditions that have changed since; and a single a_res
-is mostly the noise of two differentiations, which the mean over a block removes (what is left is
-the noise of two velocities). Half a second is short against the motion of such a vehicle.
+measured state, averaged over blocks of 0.5 s. That is the velocity that a model gains too little in
+half a second, divided by half a second. Other errors would tell less. A velocity error at the end
+of a 2 s window is the sum of all that went wrong in it, while the conditions changed. A single
+a_res is mostly the noise of two differentiations; the mean over a block removes it, except for the
+noise of two velocities. Half a second is short compared with the motion of such a vehicle.
 """
 
 from dataclasses import dataclass
@@ -21,19 +21,24 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import BLOCK
 from rovsim.simulation.samples import Samples
 
-SEEN = 0.5  # share of a block that must have been seen
+SEEN = 0.5  # share of a block that must have been measured
 SPEEDS = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
 THROUGHOUT, HEADING = "throughout", "heading"
-ACCELERATION = "acceleration"  # kind of those that are no condition of a search
+ACCELERATION = "acceleration"  # a kind that is drawn, but not searched
 ANGLES = ("roll angle", "pitch angle", HEADING)
 UNITS = {"speed": ("m/s", "rad/s"), "thrust": ("N", "N m"), "change": ("N/s", "N m/s")}
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Something that varied: name, unit, kind, and the axis it belongs to (or "").
+    """Something that varies along a run, and with which an error may vary.
 
-    Kinds: throughout, speed, absolute (speed), thrust, change (of thrust), attitude, place, time.
+    Attributes:
+        name: as a person reads it.
+        unit: of its values.
+        kind: throughout (a constant), speed, absolute (speed), thrust, change (of thrust),
+            attitude, place, time or acceleration.
+        axis: to which it belongs; "" for none.
     """
 
     name: str
@@ -44,11 +49,15 @@ class Condition:
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """Means over blocks of `BLOCK` s, n of them.
+    """Means over n blocks of `BLOCK` s.
 
-    `error` (n, 6) of the acceleration, m/s2 and rad/s2; `measured` (n, 6) acceleration; `values`
-    (n,) by condition; `time` (n,) s and `run` (n,) to which run a block belongs; `axes` (6,) in
-    which motion was measured: elsewhere errors mean nothing.
+    Attributes:
+        error: of the model's acceleration (n, 6), a_real - a_sim, m/s2 and rad/s2.
+        measured: acceleration (n, 6), m/s2 and rad/s2.
+        values: of each condition (n,), in its unit.
+        time: since the begin of the run (n,), s.
+        run: number of the run (n,) to which a block belongs.
+        axes: mask (6,) of the axes that were measured; on others, errors mean nothing.
     """
 
     error: Array
@@ -60,7 +69,12 @@ class Blocks:
 
 
 def average_blocks(motion: Motion, samples: Samples) -> Blocks:
-    """Blocks of one run in which the motion was seen."""
+    """Average one run over blocks; those with too few samples are left out.
+
+    Args:
+        motion: the run.
+        samples: accelerations and errors of a model at its measured states.
+    """
     time = motion.time[samples.index] - motion.time[0]
     step = float(np.median(np.diff(motion.time)))
     block, count = np.unique(np.floor(time / BLOCK).astype(int), return_counts=True)
@@ -83,7 +97,7 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
 
 
 def join_blocks(parts: Sequence[Blocks]) -> Blocks:
-    """Blocks of several runs; a condition that is unknown in one of them is left out."""
+    """Join the blocks of several runs; a condition that is unknown in one of them is left out."""
     shared = [c for c in parts[0].values if all(c in p.values for p in parts)]
     joined = {c: np.concatenate([p.values[c] for p in parts]) for c in shared}
     run = np.concatenate([np.full(len(p.time), k) for k, p in enumerate(parts)])
@@ -96,10 +110,11 @@ def join_blocks(parts: Sequence[Blocks]) -> Blocks:
 
 
 def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
-    """Conditions (n,) that a picture may have: those of the blocks, and measured accelerations.
+    """List the conditions that a figure may show, with their values (n,).
 
-    Accelerations are none for a search: their noise is in the error as well, and the two would seem
-    related. The same noise is in the errors of two models, so that these may be compared over them.
+    These are the conditions of the blocks and the measured accelerations. The latter are not
+    searched: the error contains their noise, so the two would seem related. A figure may compare
+    the errors of two models over them, as the same noise is in both.
     """
     shown = dict(blocks.values)
     for k in np.flatnonzero(blocks.axes).tolist():
@@ -110,7 +125,7 @@ def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
 
 
 def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Array]:
-    """Every condition at the samples, but those that nobody measured."""
+    """Values (n,) of every condition at n samples; conditions that nobody measured are left out."""
     moves = find_measured(motion.measured)
     found = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
     rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
@@ -134,7 +149,10 @@ def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Ar
 
 
 def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
-    """Position in MoCap axes, as far as it was measured; distances to known walls and surface."""
+    """Values (n,) of conditions of place: position in MoCap axes, distances to walls and surface.
+
+    Unmeasured coordinates, and distances to unknown walls or an unknown surface, are left out.
+    """
     known = np.ones(3, bool) if motion.measured is None else motion.measured.coordinates
     position = motion.eta[index, :3]
     in_mocap = position * motion.site.axes
@@ -154,5 +172,5 @@ def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
 
 
 def _mean_angle(mean, angle: Array) -> Array:
-    """Mean direction, which does not jump where the angle does."""
+    """Mean direction of angles, rad, which does not jump where an angle does; `mean` averages."""
     return np.arctan2(mean(np.sin(angle)), mean(np.cos(angle)))

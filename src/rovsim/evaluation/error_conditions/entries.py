@@ -1,4 +1,4 @@
-"""What was found, as `where.json` holds it."""
+"""Turn the findings into the content of `where.json`."""
 
 from typing import Sequence
 
@@ -20,11 +20,12 @@ from rovsim.results.error_conditions import (
 
 
 def list_conditions(models: Sequence[SearchedModel]) -> ErrorConditions:
-    """`where.json` of several models, in the order given."""
+    """Put together `where.json` of several models, in the order given."""
     return ErrorConditions(models={one.model: _list_model(one) for one in models})
 
 
 def _list_model(one: SearchedModel) -> ModelConditions:
+    """Report the error of one model by axis and condition, and its findings."""
     explanation = one.explanation
     return ModelConditions(
         split=one.split,
@@ -41,7 +42,7 @@ def _list_model(one: SearchedModel) -> ModelConditions:
 
 
 def _size(explanation: ErrorExplanation, k: int) -> ErrorSize:
-    """RMS of the error and of the measured acceleration of axis k, where it was measured."""
+    """RMS of the error and of the measured acceleration of axis k; None where it is unmeasured."""
     if explanation.blocks is None or not explanation.blocks.axes[k]:
         return ErrorSize(rms=None, measured_rms=None)
 
@@ -53,6 +54,7 @@ def _size(explanation: ErrorExplanation, k: int) -> ErrorSize:
 
 
 def _finding(found: Finding) -> ConditionFinding:
+    """Report a finding with its sentence."""
     return ConditionFinding(
         **found.share().model_dump(),
         unit=UNITS.get(found.axis, "rad/s²"),
@@ -63,7 +65,7 @@ def _finding(found: Finding) -> ConditionFinding:
 
 
 def tabulate(one: BinnedErrors) -> ConditionTable:
-    """One axis by one condition; a value for each bin."""
+    """Report the errors of one axis in the bins of one condition, rounded."""
     at = one.binning
     return ConditionTable(
         unit=at.condition.unit,
@@ -80,4 +82,5 @@ def tabulate(one: BinnedErrors) -> ConditionTable:
 
 
 def _rounded(values: Array, digits: int = 5) -> tuple[float, ...]:
+    """Round values (n,) to significant digits."""
     return tuple(float(f"{v:.{digits}g}") for v in values)

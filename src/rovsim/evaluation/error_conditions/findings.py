@@ -1,8 +1,8 @@
-"""Which condition explains a model's error: found one after the other, against chance.
+"""Find the conditions that explain a model's error, one after the other, if not by chance.
 
-For every axis the condition that explains most is taken out of the error and the rest is searched
-again, so that one cause is told once and not under the name of everything that varied with it. A
-condition counts only when it explains more than any of all conditions on any axis would by chance.
+On every axis, what the best condition explains is subtracted from the error, and the rest is
+searched again. So one cause is reported once, and not as everything that varied together with it. A
+condition counts only if it explains more than any condition on any axis would by chance.
 """
 
 from dataclasses import dataclass, field, replace
@@ -24,24 +24,30 @@ from rovsim.evaluation.error_conditions.bins import (
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Condition
 from rovsim.results.error_conditions import ConditionShare
 
-LEVEL = 0.005  # chance of a single false finding in a whole search over an adequate model
-FLIPS = 3999  # of signs: these tell chances down to 1/4000, a twentieth of LEVEL
-SMALLEST = 0.03  # share of the squared error below which a condition is not worth a sentence
-NEGLIGIBLE = 0.03  # explained error relative to the measured acceleration, likewise (both RMS)
-AS_GOOD = 0.9  # of the best share: conditions the data do not tell apart from it
-MOST = 3  # findings an axis
-FEWEST = 8  # stretches without which nothing is said
+LEVEL = 0.005  # chance of any false finding in a whole search over an adequate model
+FLIPS = 3999  # draws of signs: they tell chances down to 1/4000, a twentieth of LEVEL
+SMALLEST = 0.03  # share of the squared error: a condition that explains less is not reported
+NEGLIGIBLE = 0.03  # likewise: explained error over the measured acceleration, both RMS
+AS_GOOD = 0.9  # of the best share: conditions with more cannot be told apart from the best
+MOST = 3  # findings of each axis
+FEWEST = 8  # stretches: with fewer, nothing is said
 
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """What explains part of the error of one axis.
+    """A condition that explains part of the error of one axis.
 
-    `share_of_error` of its squared error, of which `constant` varies with nothing; `table` of the
-    error that was left when it was found; `alike` conditions that explain it nearly as well;
-    `chance` of such a share by accident; `after` the conditions that were taken out of the error
-    before this one was sought. `steady` is the mean error, and `push` what a constant would push
-    with, N or N m, where the inertia is known.
+    Attributes:
+        axis: surge to yaw.
+        condition: its name.
+        share_of_error: share of the squared error that it explains.
+        chance: of explaining so much by accident.
+        table: bins of the error that earlier findings of the axis left.
+        alike: conditions that explain it nearly as well.
+        after: names of the conditions that were subtracted from the error before.
+        constant: share of the squared error that a constant alone explains.
+        steady: that constant, the mean error, m/s2 or rad/s2.
+        push: force or moment of such a constant, N or N m; None where the inertia is unknown.
     """
 
     axis: str
@@ -56,7 +62,7 @@ class Finding:
     push: float | None = None
 
     def share(self) -> ConditionShare:
-        """As `where` of a diagnosis lists it."""
+        """The finding, as a diagnosis lists it under `where`."""
         alone = self.push is not None and self.condition == THROUGHOUT
         return ConditionShare(
             axis=self.axis,
@@ -68,16 +74,23 @@ class Finding:
 
 @dataclass(frozen=True, eq=False)
 class ErrorExplanation:
-    """Errors of one model by axis and condition, and the findings, largest share first."""
+    """Errors of one model by axis and condition, and the findings.
+
+    Attributes:
+        blocks: errors and conditions; None without a usable sample.
+        tables: errors in bins, by axis and name of the condition.
+        findings: the largest share first.
+        enough: False if too little was recorded to judge anything.
+    """
 
     blocks: Blocks | None
     tables: dict[str, dict[str, BinnedErrors]]
     findings: list[Finding] = field(default_factory=list)
-    enough: bool = True  # False: too little was recorded to judge anything
+    enough: bool = True
 
     @staticmethod
     def nothing() -> "ErrorExplanation":
-        """What is known of a model without a usable sample."""
+        """The explanation of a model without a usable sample."""
         return ErrorExplanation(None, {axis: {} for axis in AXES}, [], False)
 
 
@@ -85,9 +98,9 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Erro
     """Search all conditions on the axes that were measured.
 
     Args:
-        blocks: what is searched.
-        seed: of the signs that say what chance does.
-        inertia: of the model (6, 6), which makes forces of accelerations.
+        blocks: errors and conditions.
+        seed: of the random signs that tell what chance explains.
+        inertia: of the model (6, 6), which turns mean errors into forces; None if unknown.
     """
     if len(blocks.time) < 2:
         return ErrorExplanation.nothing()
@@ -109,7 +122,7 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Erro
 
 
 def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:
-    """A finding of axis k with the push of a constant: that axis' row of tau_res = M a_res."""
+    """Add to a finding of axis k the push of a constant: row k of tau_res = M a_res."""
     if inertia is None:
         return one
     mean = np.where(blocks.axes, blocks.error.mean(axis=0), 0.0)
@@ -118,7 +131,7 @@ def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Find
 
 
 def _relative_power(blocks: Blocks, k: int) -> float:
-    """Mean squared measured acceleration of axis k over mean squared error."""
+    """Ratio of mean squared measured acceleration and mean squared error of axis k."""
     power = float(np.mean(blocks.error[:, k] ** 2))
     return float(np.mean(blocks.measured[:, k] ** 2)) / power if power > 0 else 0.0
 
@@ -126,7 +139,15 @@ def _relative_power(blocks: Blocks, k: int) -> float:
 def _of_axis(
     axis: str, error: Array, cuts: Sequence[Binning], stretch: Array, seed: int
 ) -> list[Finding]:
-    """Findings of one axis, each explaining what the ones before it left."""
+    """Find conditions on one axis, each of which explains what the ones before left.
+
+    Args:
+        axis: surge to yaw.
+        error: of that axis (n,), m/s2 or rad/s2.
+        cuts: all conditions in bins.
+        stretch: number (n,) of the stretch of each block.
+        seed: of the random signs.
+    """
     count = int(stretch.max()) + 1
     signs = np.random.default_rng(seed).choice([-1.0, 1.0], (count, FLIPS))
     found: list[Finding] = []
@@ -142,7 +163,11 @@ def _of_axis(
 
 
 def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
-    """The condition that explains most of what is left, if that is beyond chance."""
+    """Find the condition that explains most of what is left; None where chance explains as much.
+
+    A constant is preferred if it explains nearly as much. `scale` is the share of the whole squared
+    error that is left.
+    """
     tables = [bin_errors(b, left, stretch) for b in cuts]
     chances = _chances(left, cuts, stretch, signs)
     real = [(t, p) for t, p in zip(tables, chances, strict=True) if p <= LEVEL / len(AXES)]
@@ -162,7 +187,14 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
 
 
 def _chances(error: Array, cuts: Sequence[Binning], stretch: Array, signs: Array) -> list[float]:
-    """Chance that the most striking of all conditions is as striking as each one is."""
+    """Chance, for each condition, that the most striking of all is as striking by accident.
+
+    Args:
+        error: of one axis (n,).
+        cuts: c conditions in bins.
+        stretch: number (n,) of the stretch of each block.
+        signs: random signs (g, f) of the stretches.
+    """
     none = np.ones((len(signs), 1))
     flipped = weigh_evidence(cuts, error, stretch, signs)
     seen = weigh_evidence(cuts, error, stretch, none)[:, 0]

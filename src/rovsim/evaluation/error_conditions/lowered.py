@@ -1,4 +1,4 @@
-"""What a change of the model does to its error, over the condition that shows such a change."""
+"""Find the condition over which a change of the model lowers its error most."""
 
 from dataclasses import dataclass
 from typing import Collection, Iterator, Sequence
@@ -20,15 +20,21 @@ from rovsim.evaluation.error_conditions.conditions import (
     list_shown_conditions,
 )
 
-NEARLY = 0.97  # of the most: a steady force is gone from the bins of any condition
+NEARLY = 0.97  # of the most: other conditions show as much, as a steady force shows in any
 
 
 @dataclass(frozen=True, eq=False)
 class Lowered:
-    """Error of one axis over one condition, before a change and after it.
+    """Error of one axis over one condition, before a change of the model and after it.
 
-    `size`: the RMS of the bins tells, not their means. `removed`: mean square that is gone from
-    them, over that of the measured acceleration of the axis.
+    Attributes:
+        axis: surge to yaw.
+        condition: the condition.
+        before: errors of the model without the change, in bins.
+        after: errors of the model with it, in the same bins.
+        size: whether the RMS of the bins shows the change, instead of their means.
+        removed: by how much the mean square of the bins fell, over the mean square of the measured
+            acceleration of the axis.
     """
 
     axis: str
@@ -42,16 +48,20 @@ class Lowered:
 def find_most_lowered(
     before: Blocks, after: Blocks, shown: Signature | None, axes: Collection[str] = AXES
 ) -> Lowered | None:
-    """Where the error fell most, of what an effect declares to show it; None where it fell nowhere.
+    """Find the axis and condition over which the error fell most when an effect was added.
 
-    Without a declaration, or where its condition was not measured, any condition will do. Of
-    conditions that show about as much, the declared one, or one of the axis' own motion.
+    Only conditions are considered that are like the one over which the effect declares to show. If
+    it declares none, or that was not measured, all are. Of conditions that show about as much, the
+    declared one is preferred, then one of the axis' own motion.
 
     Args:
-        before: blocks of the model that lacks the effect.
-        after: the same blocks of the model that has it.
-        shown: over what the effect shows.
-        axes: those on which it acts.
+        before: blocks of the model without the effect.
+        after: the same blocks of the model with it.
+        shown: over what the effect declares to show; None if it does not.
+        axes: on which it acts.
+
+    Returns:
+        The error before and after; None where it did not fall.
     """
     if len(before.time) < 2 or not np.array_equal(before.time, after.time):
         return None
@@ -78,7 +88,7 @@ def find_most_lowered(
 def _list_choices(
     blocks: Blocks, shown: Signature | None
 ) -> Iterator[tuple[str, Sequence[Condition]]]:
-    """Axes that were measured, and over which conditions each may be shown."""
+    """Yield the axes that were measured, each with the conditions over which it may be shown."""
     known = [*list_shown_conditions(blocks)]
     declared = next((c for c in known if shown and c.name == shown.condition), None)
     for k in np.flatnonzero(blocks.axes).tolist():
@@ -89,7 +99,10 @@ def _list_choices(
 
 
 def _is_alike(condition: Condition, axis: str, declared: Condition, shown_axis: str) -> bool:
-    """Whether a condition is to an axis what the declared one is to the declared axis."""
+    """Whether a condition relates to an axis as the declared one does to the declared axis.
+
+    For example, the speed of the axis itself, if an effect declares to show over its own speed.
+    """
     if declared.axis == "" or declared.name == HEADING:
         return condition == declared
     own = declared.axis == shown_axis
@@ -99,7 +112,7 @@ def _is_alike(condition: Condition, axis: str, declared: Condition, shown_axis: 
 def _compare(
     before: Blocks, after: Blocks, axis: str, conditions: Sequence[Condition], size: bool
 ) -> Iterator[Lowered]:
-    """Conditions over which the error of an axis fell."""
+    """Yield those of the conditions over which the error of an axis fell."""
     k = AXES.index(axis)
     old, new, measured = before.error[:, k], after.error[:, k], before.measured[:, k]
     stretch = number_stretches(before, old)
@@ -113,7 +126,7 @@ def _compare(
 
 
 def _removed(before: BinnedErrors, after: BinnedErrors, size: bool) -> float:
-    """Mean square that is gone from the bins that were judged; zero where there is only one."""
+    """By how much the mean square of the judged bins fell; zero where there is only one bin."""
     count = before.binning.count * before.binning.judged
     if len(count) < 2:
         return 0.0

@@ -14,7 +14,14 @@ from rovsim.simulation.settings import SimulationSettings
 
 @dataclass(frozen=True, eq=False)
 class SearchedModel:
-    """What was found for one model, on the runs it was judged on, all of one split."""
+    """What was found for one model.
+
+    Attributes:
+        model: its name.
+        split: of the runs that were searched, "train" or "test".
+        runs: ids of these runs.
+        explanation: errors by axis and condition, and the findings.
+    """
 
     model: str
     split: str
@@ -23,23 +30,27 @@ class SearchedModel:
 
 
 def choose_split(model: Model, splits: Collection[str]) -> str:
-    """The split a model is searched on, of those that there are.
+    """Choose the split on whose runs a model is searched.
 
-    Train runs: whoever decides by the findings what to add has not looked at the test runs yet.
-    Test runs for a model with a trained residual, which knows the train runs by heart. Where the
-    campaign has only the other split, that one.
+    These are the train runs, so that the test runs stay unseen for those who decide by the findings
+    what to add. For a model with a learned residual, which was fitted to the train runs, these are
+    the test runs. If the campaign lacks that split, the other one is chosen.
+
+    Args:
+        model: the model.
+        splits: those that the campaign has.
     """
     split = "test" if model.residual is not None else "train"
     return split if split in splits else next(iter(splits))
 
 
 class ConditionSearch:
-    """A search for conditions in which a model fails; takes in one run after the other.
+    """Searches for conditions in which a model fails, taking in one run after the other.
 
     Args:
         model: the model.
-        splits: those of the runs that will come.
-        how: measurements were cleaned, and commands are held.
+        splits: those of the runs that will be taken in.
+        how: settings of the filter of the measurement, and of how commands are held.
     """
 
     def __init__(self, model: Model, splits: Collection[str], how: SimulationSettings) -> None:
@@ -49,12 +60,12 @@ class ConditionSearch:
         self._parts: list[Blocks] = []
 
     def add(self, motion: Motion) -> None:
-        """Take in a run; one of the other split is passed by."""
+        """Take in a run; ignore a run of the other split."""
         if motion.run.split == self.split:
             self.take(motion, sample_run(self._model, motion, self._how))
 
     def take(self, motion: Motion, samples: Samples) -> None:
-        """Take in a run of which there are samples; one of the other split is passed by."""
+        """Take in a run that was sampled already; ignore a run of the other split."""
         if motion.run.split != self.split:
             return
         self._runs.append(motion.run.id)
@@ -63,7 +74,7 @@ class ConditionSearch:
 
     @property
     def found(self) -> SearchedModel:
-        """What the error varies with."""
+        """What the error on the runs so far varies with."""
         parts = self._parts
         if not parts:
             explanation = ErrorExplanation.nothing()
@@ -73,7 +84,13 @@ class ConditionSearch:
 
 
 def search_runs(model: Model, runs: Runs, how: SimulationSettings) -> SearchedModel:
-    """Search the runs of a campaign, one after the other, for conditions in which it fails."""
+    """Search the runs of a campaign for conditions in which a model fails.
+
+    Args:
+        model: the model.
+        runs: of the campaign.
+        how: settings of the filter of the measurement, and of how commands are held.
+    """
     search = ConditionSearch(model, set(runs.splits.values()), how)
     for name in runs.of(search.split):
         search.add(runs.motions[name])

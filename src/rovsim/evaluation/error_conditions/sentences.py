@@ -1,4 +1,4 @@
-"""One plain sentence a finding: axis, condition, direction, size, share, and what often does it."""
+"""Say a finding in plain language: axis, condition, direction, size, share, and usual causes."""
 
 import numpy as np
 
@@ -24,7 +24,8 @@ NEGATIVE = {
     "pitch": "nose down",
     "yaw": "to port",
 }
-# On the condition's own axis: what it means that error and condition have equal, or other, signs.
+# If a condition is of the same axis as the error: what it means that the two have equal signs, and
+# what it means that they have opposite ones.
 RELATIONS = {
     "speed": ("brakes too much when moving fast", "brakes too little when moving fast"),
     "thrust": ("responds too weakly to its thrust", "responds too strongly to its thrust"),
@@ -47,17 +48,17 @@ USUAL = {
     "coupled": "a coupling (allocation, lift, off-diagonal damping or mass), or an autopilot "
     "that the log does not show",
 }
-STRAIGHT = 0.6  # of a correlation: beyond, an error goes with what it depends on, or against it
+STRAIGHT = 0.6  # correlation of error and condition: beyond, the error grows or falls with it
 
 
 def say(found: Finding) -> str:
-    """A finding in plain language, complete in itself."""
+    """Say a finding in sentences that need no others."""
     after = f", beyond {' and '.join(found.after)}" if found.after else ""
     return f"{_begin(found.axis)}{after}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
 def summarize(explanation: ErrorExplanation) -> list[str]:
-    """Sentences of all findings, or why there are none."""
+    """Say all findings, or why there are none, in sentences."""
     if not explanation.enough:
         return ["Too little was recorded to tell under which condition the model fails."]
     if not explanation.findings:
@@ -69,12 +70,12 @@ def summarize(explanation: ErrorExplanation) -> list[str]:
 
 
 def amount(value: float) -> str:
-    """Two significant digits without an exponent."""
+    """Write a number with two significant digits, and without an exponent."""
     return f"{value:.0f}" if abs(value) >= 10 else f"{value:#.2g}".rstrip(".")
 
 
 def relation(found: Finding) -> float:
-    """Correlation of the bin means with the condition, weighted by count; NaN with one bin."""
+    """Correlation of the bin means with the condition, weighted by blocks; NaN with one bin."""
     at = found.table.binning
     x, y, w = at.center[at.judged], found.table.mean[at.judged], at.count[at.judged]
     if len(x) < 2:
@@ -85,7 +86,7 @@ def relation(found: Finding) -> float:
 
 
 def _what(found: Finding) -> str:
-    """What happens, and how large it gets."""
+    """Say how the error depends on the condition, and how large it gets."""
     condition, unit = found.table.binning.condition, UNITS.get(found.axis, "rad/s²")
     if condition.kind == THROUGHOUT:
         return _constant(found, unit)
@@ -97,6 +98,7 @@ def _what(found: Finding) -> str:
 
 
 def _constant(found: Finding, unit: str) -> str:
+    """Say by how much, and to which side, the vehicle constantly accelerates more."""
     mean = float(found.table.mean[0])
     side = (POSITIVE if mean > 0 else NEGATIVE)[found.axis]
     push = f", as a push of {_push(found)} would make it" if found.push is not None else ""
@@ -107,12 +109,12 @@ def _constant(found: Finding, unit: str) -> str:
 
 
 def _push(found: Finding) -> str:
-    """Size of the push that a constant stands for."""
+    """Write the force or moment that would cause the mean error, with its unit."""
     return f"{amount(abs(found.push or 0.0))} {FORCES.get(found.axis, 'N m')}"
 
 
 def _extreme(found: Finding, unit: str) -> str:
-    """Where along the condition the mean error is largest."""
+    """Say in which bin of the condition the mean error is largest."""
     b = int(np.argmax(np.where(found.table.binning.judged, np.abs(found.table.mean), -1.0)))
     mean, condition = abs(float(found.table.mean[b])), found.table.binning.condition
     return (
@@ -121,7 +123,7 @@ def _extreme(found: Finding, unit: str) -> str:
 
 
 def _range(found: Finding, unit: str) -> str:
-    """Lowest and highest mean error and where they are."""
+    """Say the lowest and the highest mean error, and in which bins they are."""
     judged, mean = found.table.binning.judged, found.table.mean
     low = int(np.argmin(np.where(judged, mean, np.inf)))
     high = int(np.argmax(np.where(judged, mean, -np.inf)))
@@ -132,11 +134,12 @@ def _range(found: Finding, unit: str) -> str:
 
 
 def _signed(value: float) -> str:
+    """Write a number with its sign, also if that is a plus."""
     return f"{'−' if value < 0 else '+'}{amount(abs(float(value)))}"
 
 
 def _span(found: Finding, b: int) -> str:
-    """A bin in words; the outer bins are open."""
+    """Say which values are in bin b; the outer bins are open."""
     edges, condition = found.table.binning.edges, found.table.binning.condition
     if condition.unit == "rad":
         return f"near {minus(f'{np.degrees(found.table.binning.center[b]):.0f}')}°"
@@ -149,11 +152,12 @@ def _span(found: Finding, b: int) -> str:
 
 
 def _plain(value: float) -> str:
+    """Write a number, with a sign only if it is negative."""
     return minus(amount(float(value)))
 
 
 def _share(found: Finding) -> str:
-    """Share of the error, and which other conditions would do as well."""
+    """Say which share of the error a condition explains, and which others would explain as much."""
     share, at = f"{100 * found.share_of_error:.0f} %", found.table.binning.condition
     if at.kind == THROUGHOUT:
         return f"{share} of the squared error is constant."
@@ -169,15 +173,17 @@ def _share(found: Finding) -> str:
 
 
 def _begin(words: str) -> str:
-    """As a sentence begins; what is a name already stays."""
+    """Begin with a capital letter; the rest stays as it is."""
     return words[0].upper() + words[1:]
 
 
 def _usual(found: Finding) -> str:
+    """Say what often causes such a finding."""
     return f"Often: {USUAL[_cause(found.axis, found.table.binning.condition)]}."
 
 
 def _cause(axis: str, condition: Condition) -> str:
+    """Key in `USUAL` of an axis and a condition; "coupled" if the condition is of another axis."""
     if condition.name == "heading":
         return "heading"
     moved = condition.kind in ("speed", "thrust", "attitude")

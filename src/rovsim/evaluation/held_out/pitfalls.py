@@ -82,7 +82,7 @@ def measure_pitfalls(
         runs: the training runs, of both controls.
         test: the held-out run.
         learners: settings of `knn` and `gp`.
-        how: measurements are filtered, and runs are replayed.
+        how: settings of the filter of the measurement, and of replays.
 
     Returns:
         The number without the mistake (`right`) and with it (`wrong`), by name of the mistake.
