@@ -97,7 +97,12 @@ def time_both_ways(
 ) -> BothWays:
     """Time a trained residual both as a call of its library and as its exported predictor.
 
-    For the arguments see `time_calls`.
+    Args:
+        residual: the trained residual.
+        queries: features (n, d), used in turn.
+        calls: how often to call each, at most.
+        warmup: calls before the clock starts.
+        seconds: for each, no further call is started after this long.
     """
     from rovsim.learning.learner import library_of
 

@@ -43,7 +43,7 @@ class Periodogram:
         power: chi-square (r, f) that a line explains in each run, at its best phase there.
         frequency: (f,) Hz, evenly spaced from 0.
         usable: indices (u,) of the frequencies that may be the fundamental of a comb.
-        samples: sum of the squared envelope over all readings: their number, where it is constant.
+        samples: number of all readings, as the sum of the squared envelope.
     """
 
     power: Array

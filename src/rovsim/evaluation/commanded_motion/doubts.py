@@ -111,6 +111,7 @@ def _read_otherwise(
 
 
 def _first(pair: tuple[float, Array]) -> float:
+    """Key that sorts pairs by their first number."""
     return pair[0]
 
 
