@@ -1,4 +1,9 @@
-"""A law as an effect of a hypothesis: its terms as numbers, which of them are free, and how far."""
+"""A law of products as an effect of a hypothesis: its parameters, and which of them are free.
+
+The effect is `Law`, whose parameters state the terms: for each a free coefficient, a fixed size,
+and codes (`law_codes`) of what the term acts on and of its factors. The coefficient is that of the
+equation times the RMS of the term, so that it is of the order of the force.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Sequence
@@ -20,21 +25,26 @@ MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little ap
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Where the runs went: least and greatest place (2, 3) NED m, and the site."""
+    """The region that the runs covered.
+
+    Attributes:
+        reach: least and greatest position (2, 3) of the vehicle in NED, m.
+        site: of the runs, which says how MoCap axes point in NED.
+    """
 
     reach: Array
     site: Site
 
     @staticmethod
     def of(runs: Sequence[ObservedRun]) -> "Surroundings":
-        """Of some runs."""
+        """Find the region that runs covered; the site is that of the first."""
         path = np.concatenate([run.motion.state[run.motion.usable, :3] for run in runs])
         reach = np.array([path.min(axis=0), path.max(axis=0)])
         return Surroundings(reach, runs[0].motion.site)
 
     @property
     def bounds(self) -> dict[str, Bounds]:
-        """Where a centre may lie, in MoCap coordinates."""
+        """Range of each coordinate of a law's place, by name, in MoCap coordinates, m."""
         edges = np.sort(self.reach * self.site.axes, axis=0)
         return {
             n: Bounds(float(low - MARGIN), float(high + MARGIN))
@@ -43,7 +53,7 @@ class Surroundings:
 
 
 def place_of(law: Term, site: Site) -> Array:
-    """Place (3,) NED m and width m that a law's terms speak of."""
+    """Place (3,) in NED and width of a law, m, as one array (4,)."""
     return np.append(
         [law.effect[n] * s for n, s in zip("xyz", site.axes, strict=True)], law.effect["width"]
     )
@@ -56,14 +66,19 @@ def add_term(
     columns: Columns,
     around: Surroundings,
 ) -> Hypothesis:
-    """The hypothesis with one more term in its law, at what the regression gives it.
+    """Add a term to the law of a hypothesis, with the coefficient that the regression gives.
 
     Args:
-        h: some hypothesis, its law made of `known` terms.
+        h: a hypothesis, with a law of the `known` terms; without a law where there are none.
         known: terms of its law.
-        more: the term to add.
-        columns: the terms, and their Gram matrix with what is left.
-        around: where the runs went.
+        more: the term to add, one of those of `columns`.
+        columns: of candidate terms on top of the fit of `h`.
+        around: the region that the runs covered, in which the law's place is bounded.
+
+    Returns:
+        The hypothesis with all coefficients of the law free, and the place and width where a term
+        depends on them. A place or width that the law did not need before begins at that of the
+        term, or else at the `middle` of the columns.
     """
     rest, law = split_law(h)
     terms = (*known, more)
@@ -95,7 +110,11 @@ def add_term(
 
 
 def follow_drag(h: Hypothesis) -> Hypothesis:
-    """The hypothesis with the drag, which water that moves meets, of what the law stands beside."""
+    """Give the law the drag coefficients of the model beside it.
+
+    Moving water acts on the vehicle through its drag. When another effect changes that drag, the
+    law has to follow.
+    """
     rest, law = split_law(h)[0], get_law(h)
     linear, quadratic = drag_of(rest.model)
     values = {f"linear{i}": float(v) for i, v in enumerate(linear)}
@@ -105,7 +124,13 @@ def follow_drag(h: Hypothesis) -> Hypothesis:
 
 
 def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
-    """The hypothesis without one term of its law; the others move up."""
+    """Remove a term from the law of a hypothesis, and renumber the others.
+
+    Args:
+        h: a hypothesis with a law.
+        terms: of that law.
+        gone: index of the term that is removed.
+    """
     rest, law = split_law(h)[0], get_law(h)
     kept = [k for k in range(len(terms)) if k != gone]
     own = ("c", "size", "on")
@@ -121,7 +146,7 @@ def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
 
 
 def list_moved(terms: Sequence[LawTerm]) -> tuple[str, ...]:
-    """Which numbers of a law's place its terms depend on."""
+    """List the names of the coordinates of a place, and its width, that some term depends on."""
     used = {f for t in terms for f in t.factors}
     flat = bool(used & {NEAR}) or any(t.on == SWIRL for t in terms)
     return (

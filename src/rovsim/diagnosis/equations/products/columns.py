@@ -1,4 +1,9 @@
-"""How candidate terms of an equation would show in what the model did not foresee."""
+"""Predict how candidate terms of a law would appear in the whitened innovations of a fit.
+
+A force that the model lacks appears in the innovations in proportion to its coefficient. For a
+coefficient of 1, that response is the column of a term. The search for terms regresses the
+innovations on these columns.
+"""
 
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
@@ -13,19 +18,25 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.noise import RunFilters
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 
-BLOCKS = 3  # parts of the runs, each of which is left out once by the regression
-NEGLIGIBLE = 1e-9  # of an axis' acceleration per newton
+BLOCKS = 3  # groups of time blocks, each of which is left out once by the regression
+NEGLIGIBLE = 1e-9  # m/s2 or rad/s2: acceleration of an axis by a wrench with an RMS of 1 N
 
-Wrenches = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]  # as `library.push`
+# Evaluates terms with a coefficient of 1 along a run, as `library.push` does: (c, n, 6).
+Wrenches = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Terms, the size (c,) of each per unit coefficient, and the Gram matrix of what they do.
+    """The Gram matrix of c terms' columns and the whitened innovations, summed over all axes.
 
-    `gram` (1 + c, 1 + c) of whitened innovations and the terms' columns, each of unit size;
-    what was fitted is projected out. One for all readings, and one `parts` for each block of time.
-    `middle` (4,): place NED m and width m of terms that have none of their own.
+    Its row and column 0 are the innovations, and the others the columns of the terms, each for a
+    wrench with an RMS of 1 N (or N m). The directions of the fitted parameters are projected out.
+
+    Attributes:
+        terms: the c terms that act at all.
+        size: RMS (c,) of the wrench of each term with a coefficient of 1.
+        parts: Gram matrix (1 + c, 1 + c) of each group of time blocks.
+        middle: (4,) place in NED and width, m, of terms that have none of their own.
     """
 
     terms: tuple[Any, ...]
@@ -35,21 +46,24 @@ class Columns:
 
     @property
     def gram(self) -> Array:
-        """Over all blocks."""
+        """Gram matrix (1 + c, 1 + c) of all readings."""
         return np.asarray(sum(self.parts))
 
 
 def project(
     terms: Sequence[Any], fit: Fit, bank: FilterBank, middle: Array, wrenches: Wrenches
 ) -> Columns:
-    """Gram matrix of all terms' columns and what a fit leaves, less what it takes up itself.
+    """Compute the columns of candidate terms on top of a fit, and their Gram matrix.
 
     Args:
-        terms: the candidates, on top of the fit.
-        fit: whose derivatives' directions are left out.
-        bank: the runs.
-        middle: see `Columns`.
-        wrenches: of terms, with a coefficient of 1.
+        terms: the candidates.
+        fit: gives the innovations, and the directions of its parameters, which are projected out.
+        bank: the runs that it was fitted to, with their filters.
+        middle: (4,) place in NED and width, m, of terms that have none of their own.
+        wrenches: evaluates terms with a coefficient of 1.
+
+    Returns:
+        The columns, without terms whose wrench is zero throughout.
     """
     model, noise = fit.hypothesis.model, fit.noise
     white, fitted = bank.whiten(fit.linearised.e, noise), bank.whiten(fit.linearised.J, noise)
@@ -61,7 +75,7 @@ def project(
     parts = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
     first = 0
     for run, filters in zip(bank.runs, bank.design_filters(noise), strict=True):
-        # columns of one run at a time
+        # the columns of one run at a time
         pushes = wrenches(kept, run, model, middle) / size[acts, None, None]
         columns = _respond(pushes, model, run, filters)
         at = slice(first, first + columns.shape[2])
@@ -76,7 +90,18 @@ def project(
 
 
 def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
-    """How wrenches (c, n, 6) would show in whitened settled innovations (6, c, m) of a run."""
+    """Filter wrenches as the innovations of a run would show them.
+
+    Args:
+        pushes: wrenches (c, n, 6) along the body axes at all readings, N and N m.
+        model: gives the inertia.
+        run: the run.
+        filters: of each axis of that run.
+
+    Returns:
+        The response (6, c, m) in the whitened innovations of the m settled readings; zero on axes
+        that were not measured, or in which the vehicle cannot move.
+    """
     accelerations = pushes @ model.body.M_inv.T
     out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
     whole = np.empty(pushes.shape[:2])
@@ -99,7 +124,7 @@ def _measure_size(
     middle: Array,
     wrenches: Wrenches,
 ) -> Array:
-    """Root mean square (c,) of the wrench of each term with a coefficient of 1, over all runs."""
+    """RMS (c,) over all runs of the wrench of each term with a coefficient of 1, of all axes."""
     square, count = np.zeros(len(terms)), 0
     for run in runs:
         own = wrenches(terms, run, model, middle)
@@ -108,7 +133,15 @@ def _measure_size(
 
 
 def _without(parts: Sequence[Array], kept: int) -> list[Array]:
-    """Gram matrix (kept, kept) of each part: the directions behind taken out as in the whole."""
+    """Project directions out of Gram matrices: the Schur complement, as for the sum of all parts.
+
+    Args:
+        parts: Gram matrix of each group of time blocks.
+        kept: how many rows and columns stay; those after them are projected out.
+
+    Returns:
+        A matrix (kept, kept) for each part.
+    """
     whole = np.asarray(sum(parts))
     if len(whole) == kept:
         return list(parts)

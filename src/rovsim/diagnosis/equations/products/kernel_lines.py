@@ -1,4 +1,4 @@
-"""A law of products as the lines of a kernel in Python."""
+"""Write a law of products as the lines of an effect's kernel in Python."""
 
 from typing import Iterator, Sequence
 
@@ -21,7 +21,13 @@ from rovsim.estimation.observer.hypothesis import Term
 
 
 def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Iterator[str]:
-    """Lines of the kernel of a law of these terms, whose coefficients have these names."""
+    """Yield the lines of the kernel of a law.
+
+    Args:
+        names: of the coefficients of the terms.
+        terms: of the law.
+        law: at its values, of which the drag coefficients are written into the lines.
+    """
     used = {k for t in terms for k in t.factors}
     yield from _velocities(used, terms)
     yield from _surroundings(used, terms)
@@ -51,6 +57,7 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
 
 
 def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
+    """Yield lines that assign the velocities and the NED z axis in body axes, as far as needed."""
     named = {k % SIZE for k in used if k < DOWN}
     if used & {SPEED, DIRECTION} or any(TARGETS[t.on].is_water for t in terms):
         named |= {0, 1, 2}
@@ -63,6 +70,7 @@ def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
 
 
 def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
+    """Yield lines that assign the distances from the law's place, and the nearness to it."""
     turning = any(t.on == SWIRL for t in terms)
     if used & {NORTH, NEAR} or turning:
         yield "north = at.position[0] - p.x * at.axes[0]"
@@ -75,14 +83,19 @@ def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
 
 
 def _turned(world: Sequence[str]) -> Iterator[str]:
-    """A force of the world seen in the body."""
+    """Yield lines that turn a force from NED into body axes; `world` are its three components."""
     for j, f in enumerate("xyz"):
         parts = [f"at.R[{i}][{j}] * {v}" for i, v in enumerate(world) if v != "0.0"]
         yield f"force_{f} = " + " + ".join(parts)
 
 
 def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:
-    """What water that moves adds to the drag of the vehicle."""
+    """Yield lines that compute by how much moving water changes the drag of the vehicle.
+
+    Args:
+        flow: names of the velocity of the water north and east; `0.0` for none.
+        law: gives the drag coefficients of surge, sway and heave.
+    """
     yield "# drag in water that moves, less that in still water, with the model's coefficients"
     for j, (f, v) in enumerate(zip("xyz", IN_CODE[:3], strict=True)):
         parts = [f"at.R[{i}][{j}] * {one}" for i, one in enumerate(flow) if one != "0.0"]

@@ -1,9 +1,9 @@
-"""Candidate terms of an equation, and the wrench of each.
+"""List the candidate terms of a law, and evaluate the wrench of each.
 
-Dimensions are kept since every coefficient has the unit that its term needs; what acts on the
-vehicle along its own axes must turn with the mirror of port and starboard as its axis does.
-Accelerations are no factors: a force proportional to one is inertia, which the catalogue has, and
-the engine has none before all forces are known.
+Every coefficient has the unit that makes its term a force, a moment or a flow. A term along an axis
+of the body has to change sign as that axis does when port and starboard are exchanged.
+Accelerations are not used as factors: a force proportional to an acceleration is inertia, which the
+catalogue has, and the engine knows the accelerations only once it knows all forces.
 """
 
 from dataclasses import dataclass
@@ -34,15 +34,18 @@ from rovsim.dynamics.effects.law_codes import (
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-SPACING, WIDTH = 1.0, 0.6  # m: places tried, and how wide each is; the fit moves both
-MOST_PLACES = 60  # those where the vehicle was most often
+SPACING, WIDTH = 1.0, 0.6  # m: grid of places tried, and width of each; a fit changes both
+MOST_PLACES = 60  # on the grid: those where the vehicle was most often
 
 
 @dataclass(frozen=True)
 class LawTerm:
-    """What a term acts on, and its factors, as `law_codes` numbers them.
+    """A candidate term: a product of factors that acts on something.
 
-    `place` m north and east, of terms that fade away from one.
+    Attributes:
+        on: code (`law_codes`) of what the term acts on.
+        factors: codes of the factors; none for a constant.
+        place: m north and east in NED, of a term that fades away from a place.
     """
 
     on: int
@@ -51,15 +54,24 @@ class LawTerm:
 
     @property
     def kind(self) -> tuple[int, tuple[int, ...]]:
-        """The same for terms that differ by their place alone."""
+        """What the term acts on, and its factors: the same for terms that differ only by place."""
         return self.on, self.factors
 
 
-Known = tuple[float | None, float | None]  # m north and east of a law's place, where it has one
+Known = tuple[float | None, float | None]  # m north and east of a law's place, or None
 
 
 def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list[LawTerm]:
-    """All candidate terms that these runs could show; at places that suit what is known of one."""
+    """List all candidate terms that runs could show.
+
+    Terms along axes of the world and those of a place are only listed if all axes in which the
+    vehicle can move were measured.
+
+    Args:
+        runs: the runs.
+        known: coordinates that the law's place has already. All terms of a law share one place, so
+            only places with these coordinates are listed.
+    """
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
     terms = [term for i in moving for term in list_body_terms(int(i), moving)]
     if not all((run.axes | ~run.free_axes.astype(bool)).all() for run in runs):
@@ -71,9 +83,14 @@ def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list
 
 
 def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
-    """Terms along one axis of the body that turn with the mirror as it does.
+    """Yield terms along axis `i` of the body that respect the mirror symmetry of the vehicle.
 
-    But for those that the catalogue has: drags of one velocity, and linear and quadratic couplings.
+    Terms that the catalogue has are left out: drags of the axis' own velocity alone, and linear and
+    quadratic couplings to the velocity of another axis.
+
+    Args:
+        i: the axis (0 to 5).
+        moving: numbers of the axes in which the vehicle moves and is measured.
     """
     for factors in _products([int(j) for j in moving]):
         odd = sum(bool(VARIABLES[k].odd) for k in factors) % 2 == 1
@@ -82,6 +99,7 @@ def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
 
 
 def _products(axes: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Yield products of velocities along these axes and of attitude, as codes of the factors."""
     for j in axes:
         yield from ((SIZE + j,), (SIGN + j,), (j, j), (j, j, j), (SPEED, j))
         if j < 3:
@@ -96,7 +114,12 @@ def _products(axes: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 
 def _along_world() -> Iterator[LawTerm]:
-    """Forces and flows whose direction is fixed in the tank; a uniform flow is a current."""
+    """Yield terms whose direction or strength is fixed in the tank.
+
+    These are constant forces north and east, forces and flows along NED axes that vary with place,
+    water that turns about a place, and drags that vary with place. A uniform flow is left out: it
+    is a current.
+    """
     for on in (*range(WORLD, WATER), WATER, WATER + 1):
         for factors in ((), (NORTH,), (EAST,), (NORTH, NORTH), (EAST, EAST), (NORTH, EAST)):
             if factors or on in (WORLD, WORLD + 1):
@@ -109,7 +132,7 @@ def _along_world() -> Iterator[LawTerm]:
 
 
 def _at(place: tuple[float, float]) -> Iterator[LawTerm]:
-    """What acts near one place."""
+    """Yield forces, flows and drags near a place, m north and east."""
     for on in (WORLD, WORLD + 1, WORLD + 2, WATER, WATER + 1, SWIRL):
         yield LawTerm(on, (NEAR,), place)
     for i in range(3):
@@ -117,7 +140,7 @@ def _at(place: tuple[float, float]) -> Iterator[LawTerm]:
 
 
 def list_places(runs: Sequence[ObservedRun]) -> list[tuple[float, float]]:
-    """Places (north, east) on a grid that the vehicle came by, the most visited first."""
+    """List places on a grid that the vehicle visited, m north and east, the most visited first."""
     path = np.concatenate([run.motion.state[run.motion.usable, :2] for run in runs])
     cells, count = np.unique(np.round(path / SPACING).astype(int), axis=0, return_counts=True)
     order = np.argsort(-count, kind="stable")[:MOST_PLACES]
@@ -125,29 +148,42 @@ def list_places(runs: Sequence[ObservedRun]) -> list[tuple[float, float]]:
 
 
 def middle_of(runs: Sequence[ObservedRun]) -> Array:
-    """Mean place (3,) NED m of all runs, and the width m that is tried first."""
+    """Mean position (3,) in NED of all runs and the width tried first, m, as one array (4,)."""
     path = np.concatenate([run.motion.state[run.motion.usable, :3] for run in runs])
     return np.append(np.mean(path, axis=0), WIDTH)
 
 
 def drag_of(model: Model) -> tuple[Array, Array]:
-    """Linear and quadratic drag (3,) of surge, sway and heave."""
+    """Linear (3,) and quadratic (3,) drag of surge, sway and heave, N s/m and N s2/m2."""
     return model.body.linear[:3], model.body.quadratic[:3]
 
 
 def push(terms: Sequence[LawTerm], run: ObservedRun, model: Model, middle: Array) -> Array:
-    """Wrench (c, n, 6) of terms with a coefficient of 1 at the readings of a run.
+    """Evaluate terms with a coefficient of 1 at the n readings of a run.
 
-    `middle`: place (3,) NED m and width m of terms that have none of their own.
+    The states are those measured a little before each reading, see `earlier_states`. For arguments
+    and result see `push_at`.
     """
     return push_at(terms, earlier_states(run), model, middle)
 
 
 def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array) -> Array:
-    """Wrench (c, n, 6) of terms with a coefficient of 1 at states (n, 13)."""
+    """Evaluate terms with a coefficient of 1 at given states.
+
+    A flow acts through the drag, which is linearised about still water.
+
+    Args:
+        terms: c terms.
+        state: (n, 13) position in NED m, quaternion body to world, body velocity m/s and rad/s.
+        model: gives the drag.
+        middle: (4,) place in NED and width, m, of terms that have none of their own.
+
+    Returns:
+        Wrenches (c, n, 6) along the body axes (FRD).
+    """
     R, nu = matrix(state[:, 3:7]), state[:, 7:10]
     linear, quadratic = drag_of(model)
-    gain = linear + 2.0 * quadratic * np.abs(nu)  # d drag / d velocity of the water
+    gain = linear + 2.0 * quadratic * np.abs(nu)  # d force / d velocity of the water
     tables = {}
     wrenches = np.zeros((len(terms), len(state), 6))
     for out, term in zip(wrenches, terms, strict=True):

@@ -1,4 +1,4 @@
-"""The form of a law that is a sum of products."""
+"""The form of laws that are sums of products of states at the same instant."""
 
 from dataclasses import dataclass
 from textwrap import indent
@@ -35,27 +35,30 @@ def wrench(at, p):
 
 @dataclass(frozen=True)
 class Products(Form):
-    """Terms of `Law`, each a coefficient times up to three factors."""
+    """A law of one to three terms, each a coefficient times up to three factors.
+
+    The law of a hypothesis in this form is the effect `Law`.
+    """
 
     terms: tuple[LawTerm, ...]
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """Its terms."""
+        """The terms, in order."""
         return tuple(Part(TARGETS[t.on].group, list_quantities(t)) for t in self.terms)
 
     @property
     def equation(self) -> str:
-        """In LaTeX."""
+        """The law in LaTeX."""
         return write_equation(self.terms)
 
     @property
     def meaning(self) -> str:
-        """In a sentence."""
+        """The law in a sentence."""
         return describe(self.terms)
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
-        """Coefficients with the units of their terms, then the place they speak of."""
+        """List the coefficients in the units of their terms, then the place and its width."""
         numbers = []
         each = zip(name_terms(self.terms), self.terms, strict=True)
         for k, (name, term) in enumerate(each, start=1):
@@ -73,12 +76,12 @@ class Products(Form):
         return numbers
 
     def divide(self, law: Term) -> list[Effect]:
-        """Each term by itself: the others' coefficients are zero."""
+        """Return each term by itself: the law with the other coefficients set to zero."""
         count = range(1, len(self.terms) + 1)
         return [law.effect.with_values({f"c{j}": 0.0 for j in count if j != k}) for k in count]
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
-        """A kernel of plain arithmetic."""
+        """Write an effect whose kernel states the law as plain arithmetic."""
         code = "\n".join(write_body(name_terms(self.terms), self.terms, law))
         maths = [f for f in ("exp", "sqrt", "tanh") if f"{f}(" in code]
         placed = any(n.default is not None for n in numbers)
@@ -94,11 +97,11 @@ class Products(Form):
         )
 
     def follow(self, h: Hypothesis) -> Hypothesis:
-        """Water that moves drags with the coefficients of the model that it moves beside."""
+        """Give the law the drag coefficients of the model beside it, by which moving water acts."""
         return follow_drag(h)
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """Without each of its terms, as long as one is left."""
+        """List the laws without one of the terms, as long as another is left."""
         if len(self.terms) == 1:
             return []
         return [

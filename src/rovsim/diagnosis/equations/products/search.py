@@ -1,10 +1,10 @@
-"""Which term comes next: sparse regression of what is left on the library, by PySINDy.
+"""Propose the next term of a law by sparse regression of the innovations on all candidate terms.
 
-Forward regression with orthogonal least squares (FROLS: Billings 2013) of PySINDy. Why PySINDy: its
-optimisers take any columns, here those that the observer's filters made of each term, so that the
-regression is weighed with the disturbance's own covariance; it is deterministic and has no other
-runtime. PySR downloads Julia when it is installed; gplearn breeds formulae from raw numbers, at
-random, and knows neither dimensions nor coloured noise.
+The regression is forward regression with orthogonal least squares (FROLS: Billings 2013), by
+PySINDy. PySINDy's optimisers accept any columns. Here these are the terms as the observer's filters
+respond to them, so the regression is weighted by the covariance of the disturbance. PySINDy is also
+deterministic and needs no other runtime: PySR downloads Julia when it is installed, and gplearn
+evolves formulae from raw numbers at random, with neither dimensions nor coloured noise.
 """
 
 import warnings
@@ -16,16 +16,20 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm
 
-FIRST = 6  # the likeliest single terms
-KEPT = 150  # columns of the regression: those that explain most alone
-RIDGE = 1e-7  # of each column's own square
+FIRST = 6  # single terms that explain most alone: proposed in any case
+KEPT = 150  # columns in the regression: the terms that explain most alone
+RIDGE = 1e-7  # of the largest eigenvalue: smaller ones of the Gram matrix are raised to it
 
 
 def propose(columns: Columns, steps: int) -> list[LawTerm]:
-    """Terms worth a fit, the most often named first.
+    """Propose terms that are worth a fit, the most promising first.
 
-    Named by the likeliest `steps` terms together, on all blocks and without each of them, and by
-    what each of the likeliest would explain alone.
+    The regression is repeated on all readings, and without each group of time blocks. Terms that
+    more of these regressions select come first, then the terms that explain most alone.
+
+    Args:
+        columns: of the candidate terms.
+        steps: how many terms each regression selects.
     """
     whole = columns.gram
     subsets = [whole, *(whole - part for part in columns.parts)]
@@ -37,13 +41,28 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
 
 
 def find_alone(G: Array) -> Array:
-    """What each term (c,) explains alone: decrease of the sum of squares."""
+    """Compute what each of c terms would explain as the only addition.
+
+    Args:
+        G: Gram matrix (1 + c, 1 + c) of the whitened innovations and the columns of the terms.
+
+    Returns:
+        Decrease (c,) of the sum of squared whitened innovations; 0 for a term without effect.
+    """
     power = np.diag(G)[1:]
     return np.divide(G[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
 
 
 def _follow(G: Array, steps: int) -> list[int]:
-    """The terms of PySINDy's forward regression, in order."""
+    """List the terms that forward regression selects, in the order of their selection.
+
+    Args:
+        G: Gram matrix (1 + c, 1 + c), see `Columns`.
+        steps: how many terms to select.
+
+    Returns:
+        Indices of the terms.
+    """
     from pysindy import FROLS
 
     kept = np.sort(np.argsort(-find_alone(G), kind="stable")[:KEPT])
@@ -51,16 +70,25 @@ def _follow(G: Array, steps: int) -> list[int]:
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     X, y = _as_rows(H / np.outer(scale, scale), b / scale)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that columns resemble one another
+        warnings.simplefilter("ignore")  # PySINDy warns of columns that resemble one another
         path = FROLS(max_iter=steps, alpha=1e-9, unbias=False).fit(X, y[:, None]).history_
     found: list[int] = []
-    for row in path[: steps + 1]:  # the first has no term
+    for row in path[: steps + 1]:  # the first row is that of no term
         found += [int(kept[k]) for k in np.flatnonzero(row[0]) if kept[k] not in found]
     return found
 
 
 def _as_rows(H: Array, b: Array) -> tuple[Array, Array]:
-    """X (c, c) and y (c,) with X'X = H and X'y = b: as many rows as columns, not as readings."""
+    """Convert normal equations into the least squares problem that an optimiser expects.
+
+    Args:
+        H: Gram matrix (c, c) of the columns.
+        b: product (c,) of the columns and the target.
+
+    Returns:
+        X (c, c) and y (c,) with X'X = H and X'y = b, which have as many rows as there are columns
+        instead of one row for each reading.
+    """
     values, vectors = np.linalg.eigh(H)
     root = np.sqrt(np.maximum(values, RIDGE * values[-1]))
     return root[:, None] * vectors.T, (vectors.T @ b) / root

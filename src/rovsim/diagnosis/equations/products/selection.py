@@ -1,4 +1,4 @@
-"""Terms of a law, selected one after the other."""
+"""Select the terms of a law one after the other, each refitted with all else."""
 
 from typing import Sequence
 
@@ -30,7 +30,15 @@ TRIED = 5  # terms that are fitted before one is added
 
 
 def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
-    """Forward selection of one to three terms, each refitted with all else before the next."""
+    """Select up to three terms of a law of products, each refitted with all else before the next.
+
+    Args:
+        fits: how laws are fitted and judged.
+        start: a hypothesis without a law, to which the terms are added.
+
+    Returns:
+        The law with its rivals; None where not even one term is worth adding.
+    """
     site, middle = fits.runs[0].motion.site, middle_of(fits.runs)
     terms: tuple[LawTerm, ...] = ()
     fit, best = fits.selection.fit(start), None
@@ -61,14 +69,17 @@ def fit_products(
     more: Sequence[LawTerm],
     columns: Columns,
 ) -> dict[LawTerm, FittedLaw]:
-    """Laws of all these terms and one more beside a fit, the likeliest first.
+    """Fit laws of the terms so far and one more, the likeliest first in what is returned.
 
     Args:
-        fits: how.
-        fit: with the law of the terms, if there are any.
-        terms: what it has already.
-        more: the terms that are tried.
-        columns: of these, among others.
+        fits: how laws are fitted and judged.
+        fit: with the law of the terms so far, if there are any.
+        terms: terms so far.
+        more: further terms, each of which is tried.
+        columns: of candidate terms on top of `fit`, which have to include those of `more`.
+
+    Returns:
+        The fitted laws by their additional terms, without those that stay far behind.
     """
     around = Surroundings.of(fits.runs)
     starts = {k: add_term(fit.hypothesis, terms, k, columns, around) for k in more}
@@ -76,14 +87,27 @@ def fit_products(
 
 
 def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Known]:
-    """A place (4,), where it is known the law's own, and what of it is known north and east."""
+    """Keep those coordinates of a place that the law has fitted.
+
+    Args:
+        middle: (4,) place in NED and width, m, for terms that have none of their own.
+        moved: names of the coordinates that the law has fitted: `x`, `y`, `z`, `width`.
+        place: (4,) place in NED and width of the law, m.
+
+    Returns:
+        The place (4,) with the coordinates of the law where it has fitted them, and of these what
+        is known of north and east.
+    """
     own = np.array([name in moved for name in ("x", "y", "z", "width")])
     n, e = (float(p) if known else None for p, known in zip(place[:2], own[:2], strict=True))
     return np.where(own, place, middle), (n, e)
 
 
 def choose_kinds(terms: Sequence[LawTerm]) -> list[LawTerm]:
-    """The first of each kind: a fit moves it from where it begins to where it acts."""
+    """Keep the first term of each kind, which is the most promising.
+
+    Terms of a kind differ by place alone, and a fit moves a place to where the term acts.
+    """
     kinds: dict[tuple, LawTerm] = {}
     for term in terms:
         kinds.setdefault(term.kind, term)

@@ -1,4 +1,4 @@
-"""What a term of a law acts on: an axis of the body, of the world, the water, water that turns."""
+"""What a term of a law may act on: an axis of the body or of NED, flowing or turning water."""
 
 from dataclasses import dataclass
 from typing import Sequence
@@ -13,9 +13,13 @@ WORLD_FORCES, FLOWS = ("Fn", "Fe", "Fd"), ("vn", "ve")  # in code
 
 @dataclass(frozen=True)
 class Head:
-    """What stands left of an equals sign, in LaTeX and in code.
+    """The left side of one of a law's equations.
 
-    `inner`: a further factor, and its sign, of the term on the right of it, likewise.
+    Attributes:
+        latex: symbol in LaTeX.
+        code: variable in a kernel.
+        inner_latex: a further factor of the term on the right side, with its sign; empty for none.
+        inner_code: the same factor in a kernel.
     """
 
     latex: str
@@ -26,10 +30,16 @@ class Head:
 
 @dataclass(frozen=True)
 class Target:
-    """What a term acts on: for names, in equations, in sentences, and in units.
+    """What a term acts on.
 
-    `group`: an axis, `force` along the world's axes, or `water`; `acts`: a noun phrase; `newtons`:
-    N or N m, of forces; `meters`, `seconds`: powers of the unit of a flow.
+    Attributes:
+        name: for names of coefficients.
+        group: name of a body axis, `force` for one along NED axes, or `water`.
+        heads: left sides of its equations.
+        acts: noun phrase for sentences.
+        newtons: unit of a force, N or N m; empty for a flow.
+        meters: power of m in the unit of a flow.
+        seconds: power of s in the unit of a flow.
     """
 
     name: str
@@ -46,7 +56,7 @@ class Target:
         return self.group == "water"
 
     def unit_of(self, factors: Sequence[int]) -> str:
-        """SI unit of a coefficient before these factors."""
+        """SI unit of the coefficient of a product of these factors, given by their codes."""
         used = [VARIABLES[k] for k in factors]
         powers = {
             "m": self.meters - sum(v.meters for v in used),
@@ -57,6 +67,7 @@ class Target:
 
 
 def _along_body() -> list[Target]:
+    """Forces and moments along the six body axes."""
     kinds = ("force",) * 3 + ("moment",) * 3
     return [
         Target(axis, axis, (Head(letter, letter),), f"a {axis} {kind}", newtons=unit)
@@ -65,6 +76,7 @@ def _along_body() -> list[Target]:
 
 
 def _along_world() -> list[Target]:
+    """Forces along the NED axes."""
     latex, towards = ("F_n", "F_e", "F_d"), ("towards north", "towards east", "downwards")
     return [
         Target(name, "force", (Head(symbol, code),), f"a force {where}", newtons="N")
@@ -75,6 +87,7 @@ def _along_world() -> list[Target]:
 
 
 def _of_water() -> list[Target]:
+    """Flows north and east, and water that turns about a vertical axis."""
     vn, ve = (Head(f"v_{code[1]}", code) for code in FLOWS)
     turning = (
         Head(vn.latex, vn.code, "-" + VARIABLES[EAST].latex, " * -east"),
@@ -87,5 +100,5 @@ def _of_water() -> list[Target]:
     ]
 
 
-# In the order of `law_codes`.
+# In the order of `law_codes`, so that a code is an index.
 TARGETS = (*_along_body(), *_along_world(), *_of_water())

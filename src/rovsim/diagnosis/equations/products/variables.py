@@ -1,7 +1,7 @@
-"""What a law may be made of: factors, with units and mirror symmetry.
+"""The factors that terms of a law may be made of, with their units and mirror symmetry.
 
-Their order is that of `law_codes`. Under a mirror of port and starboard, the symmetry of
-nearly every vehicle, sway, roll, yaw and what goes with them change sign.
+Their order is that of `law_codes`. Nearly every vehicle is symmetric between port and starboard.
+When these are exchanged, sway, roll and yaw change sign, with the factors that are odd in them.
 """
 
 from dataclasses import dataclass
@@ -15,15 +15,24 @@ from rovsim.core.axes import VELOCITY
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
 
-IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # `p` are the parameters there
-ODD = (1, 3, 5)  # axes whose sign a mirror of port and starboard turns
+IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # in kernels, where `p` are the parameters
+ODD = (1, 3, 5)  # axes that change sign when port and starboard are exchanged
 
 
 @dataclass(frozen=True)
 class Variable:
-    """A factor of a term: its symbol, LaTeX, code in a file, powers of its unit, and meaning.
+    """A factor of a term.
 
-    `odd`: it changes sign under the mirror; None: it is of the world, which has no such symmetry.
+    Attributes:
+        symbol: for results.
+        latex: in LaTeX.
+        code: expression in a kernel.
+        meters: power of m in its unit.
+        seconds: power of s in its unit.
+        radians: power of rad in its unit.
+        odd: whether it changes sign when port and starboard are exchanged; None for a place in the
+            tank, to which that symmetry does not apply.
+        meaning: words for sentences.
     """
 
     symbol: str
@@ -37,6 +46,7 @@ class Variable:
 
 
 def _velocities() -> list[Variable]:
+    """Velocity, absolute value and smooth sign of each of the six body axes."""
     signs = (r"\tanh({}/" + f"{SMOOTH:g})", "tanh({} / " + f"{SMOOTH:g})")
     kinds = (
         ("{}", "{}", "{}", "{} velocity"),
@@ -65,6 +75,7 @@ def _unit_of_velocity(i: int, kind: str) -> tuple[int, int, int]:
 
 
 def _attitudes() -> list[Variable]:
+    """Components of the NED z axis in body axes, and their smooth signs."""
     signs = (r"\tanh(d_{}/" + f"{TILT:g})", "tanh(d{} / " + f"{TILT:g})")
     kinds = (("d_{}", "d_{}", "d{}"), ("sign(d_{})", *signs))
     return [
@@ -87,11 +98,14 @@ VARIABLES: tuple[Variable, ...] = (
 
 
 def tabulate(state: Array, place: Array) -> Array:
-    """Values (30, n) of all variables at states (n, 13).
+    """Evaluate all 30 factors at n states.
 
     Args:
-        state: pose NED and body velocity.
-        place: north, east, down (3,) m and width m of what depends on place.
+        state: (n, 13) position in NED m, quaternion body to world, body velocity m/s and rad/s.
+        place: (4,) place in NED and width, m, for the factors that depend on place.
+
+    Returns:
+        Values (30, n) in the order of `VARIABLES`.
     """
     nu, R = state[:, 7:].T, matrix(state[:, 3:7])
     down, U = R[:, 2].T, np.sqrt(np.sum(state[:, 7:10] ** 2, axis=1))
@@ -102,7 +116,12 @@ def tabulate(state: Array, place: Array) -> Array:
 
 
 def write_unit(powers: Mapping[str, int], head: str = "") -> str:
-    """A unit of these powers as catalogues write it: N s2/m2, N m s/rad, 1/s."""
+    """Write a unit as the catalogue does, such as N s2/m2, N m s/rad or 1/s.
+
+    Args:
+        powers: of the units, by name.
+        head: a unit that comes first, such as N or N m; empty for none.
+    """
     above = [_power(name, k) for name, k in powers.items() if k > 0]
     below = [_power(name, -k) for name, k in powers.items() if k < 0]
     over = " ".join(([head] if head else []) + above) or "1"

@@ -1,4 +1,4 @@
-"""A law of products in LaTeX and in words."""
+"""Write a law of products in LaTeX and in words."""
 
 from collections import Counter
 from typing import Sequence
@@ -10,7 +10,7 @@ from rovsim.dynamics.effects.law_codes import SWIRL
 
 
 def name_terms(terms: Sequence[LawTerm]) -> list[str]:
-    """A parameter's name for each term: of what it acts on, numbered where that comes twice."""
+    """Name the coefficient of each term after what it acts on, numbered where terms share that."""
     heads = [TARGETS[t.on].name.replace(" ", "_") for t in terms]
     count, found = Counter(heads), []
     for k, head in enumerate(heads):
@@ -19,7 +19,7 @@ def name_terms(terms: Sequence[LawTerm]) -> list[str]:
 
 
 def write_equation(terms: Sequence[LawTerm]) -> str:
-    """The law in LaTeX."""
+    """Write a law in LaTeX, with an equation for each left side."""
     rows: dict[str, list[str]] = {}
     for k, term in enumerate(terms, start=1):
         symbol = f"c_{k}" if len(terms) > 1 else "c"
@@ -33,12 +33,13 @@ def write_equation(terms: Sequence[LawTerm]) -> str:
 
 
 def _joined(parts: Sequence[str]) -> str:
+    """Join signed terms to a sum, without a plus sign in front."""
     text = " ".join(parts)
     return text[2:] if text.startswith("+ ") else "-" + text[2:]
 
 
 def _powers(factors: Sequence[int]) -> list[str]:
-    """LaTeX of factors, equal ones as a power."""
+    """Write factors, given by their codes, in LaTeX; equal ones as a power."""
     found = []
     for k, count in Counter(factors).items():
         text = VARIABLES[k].latex
@@ -47,7 +48,7 @@ def _powers(factors: Sequence[int]) -> list[str]:
 
 
 def describe(terms: Sequence[LawTerm]) -> str:
-    """What a law says, in a sentence."""
+    """Write a law as a sentence."""
     parts = []
     for term in terms:
         varies = list(dict.fromkeys(VARIABLES[k].meaning for k in term.factors)) or ["nothing"]
@@ -59,7 +60,10 @@ def describe(terms: Sequence[LawTerm]) -> str:
 
 
 def list_quantities(term: LawTerm) -> tuple[str, ...]:
-    """What a term varies with: velocities by their symbols, attitude, place, depth, speed."""
+    """List the quantities that a term varies with, each once.
+
+    These are velocities by their symbols, `attitude`, `place`, `depth` and `speed`.
+    """
     found = [_QUANTITY.get(VARIABLES[k].meaning, VARIABLES[k].symbol) for k in term.factors]
     found += ["place"] if term.on == SWIRL else []
     plain = [name.replace("|", "").removeprefix("sign(").rstrip(")") for name in found]
