@@ -30,7 +30,13 @@ class Action(NamedTuple):
 
 
 def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
-    """How strongly the law of a fitted hypothesis acts at the measured states of runs."""
+    """Evaluate how strongly a fitted law acts at the measured states of runs.
+
+    Args:
+        form: of the law.
+        fit: of a hypothesis with the law; its noise says how large the disturbance is.
+        runs: at whose readings the law is evaluated.
+    """
     bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
     each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
     whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
@@ -45,7 +51,16 @@ def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0)
 
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
-    """Accelerations (k, n, 6) that k effects add to a model at the measured states of a run."""
+    """Accelerations that effects add to a model at the measured states of a run.
+
+    Args:
+        model: without the effects.
+        effects: k effects, each added by itself.
+        run: of which the n readings with a measured state are used.
+
+    Returns:
+        Body accelerations (k, n, 6), m/s2 and rad/s2.
+    """
     state = undo_mocap_view(model, run.motion).state[run.innovation_samples]
     known = np.isfinite(state).all(axis=1)
     index, states = run.innovation_samples[known], state[None, known]

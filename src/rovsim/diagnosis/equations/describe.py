@@ -1,4 +1,4 @@
-"""What is left, as `diagnosis.json` says it: a law, or the force in time."""
+"""Convert a proposed law, or a force in time, into the sections of `diagnosis.json`."""
 
 from typing import Mapping
 
@@ -23,16 +23,24 @@ from rovsim.results.diagnosis import (
 )
 from rovsim.results.fitted import FittedEffect, FittedValue
 
-LINE = 0.2  # s between two lines of a force in time: what the readings resolve (sudden_pushes.py)
+LINE = 0.2  # s between two rows of a force in time: what the readings resolve (sudden_pushes.py)
 
 
 def rounded(value: float | None) -> float | None:
-    """A number to six digits; None where it is none."""
+    """Round a number to six significant digits; None where it is None or not finite."""
     return None if value is None or not np.isfinite(value) else float(f"{value:.6g}")
 
 
 def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
-    """What the fit chose, and what else differs from the default."""
+    """List the fitted parameters of an effect, and any others that differ from their defaults.
+
+    Args:
+        term: the effect at its fitted values.
+        std: standard deviations of the fitted parameters, by name, in their units.
+
+    Returns:
+        Values by the names of the parameters.
+    """
     given = term.effect.given()
     units = {p.name: p.unit for p in term.effect.parameters}
     names = [p.name for p in term.effect.parameters if p.name in given or p.name in std]
@@ -47,7 +55,7 @@ def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedVal
 
 
 def describe_force(force: ForceInTime) -> Disturbance:
-    """The force in time, a line every fifth of a second."""
+    """Describe a force in time, with a row about every `LINE` s for each run."""
     each = zip(force.runs, force.time, force.place, force.force, strict=True)
     return Disturbance(
         axes=force.axes,
@@ -69,6 +77,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
 
 
 def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
+    """Describe a spectrum, its densities to four significant digits."""
     density = np.vectorize(lambda d: float(f"{d:.4g}"))(spectrum.density)
     return ForceSpectrum(
         frequency_hz=tuple(np.round(spectrum.frequency, 4).tolist()),
@@ -77,6 +86,7 @@ def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
 
 
 def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:
+    """Describe the force along one run: times (n,), places (n, 3) and wrenches (n, 6)."""
     every = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
     return ForceOfRun(
         run=run,
@@ -87,13 +97,13 @@ def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfR
 
 
 def _round_all(values: Array) -> Array:
-    """To four digits of the largest."""
+    """Round all values to the fourth significant digit of the largest."""
     most = float(np.max(np.abs(values), initial=1e-12))
     return np.asarray(np.round(values, 3 - int(np.floor(np.log10(max(most, 1e-12))))))
 
 
 def describe_law(law: ProposedLaw) -> ProposedEquation:
-    """A law that is proposed."""
+    """Describe a proposed law, the effects beside it, and the laws tried in its place."""
     beside = [
         FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
         for one in law.beside
@@ -119,5 +129,6 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
 
 
 def _triple(place: Array) -> tuple[float, float, float]:
+    """A place (3,) to the millimetre."""
     x, y, z = np.round(place, 3).tolist()
     return x, y, z

@@ -1,8 +1,9 @@
-"""Where no law holds: the force in time that is left, where and when it acted, and how fast it is.
+"""Estimate the force that no law explains: when and where it acted, and how fast it varies.
 
-The innovations of an axis are white, and a push d with the spectrum S of the fitted disturbance
-shows in them as H d. The best estimate of it from all of a run, later readings included, is then
-S H* e at every frequency (Wiener 1949; the smoother of the filter's own model).
+The whitened innovations e of an axis have unit variance. A push d on that axis, with the spectrum
+S of the fitted disturbance, appears in them as H d, where H is the response of the filter. The best
+estimate of d from all readings of a run, later ones included, is then S H* e at every frequency
+(Wiener 1949; the smoother of the filter's own model).
 """
 
 from dataclasses import dataclass
@@ -26,7 +27,15 @@ APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out
 
 @dataclass(frozen=True, eq=False)
 class Push:
-    """A moment at which the disturbance was strong: N, N m on one axis, at a place (3,) MoCap m."""
+    """A moment at which the disturbance was strong on one axis.
+
+    Attributes:
+        run: id of the run.
+        time: on the clock of the motion capture, s.
+        axis: of the body, by name.
+        force: along that axis, N or N m.
+        place: (3,) of the vehicle in MoCap coordinates, m.
+    """
 
     run: str
     time: float
@@ -37,12 +46,18 @@ class Push:
 
 @dataclass(frozen=True, eq=False)
 class ForceInTime:
-    """What pushes and follows no law.
+    """A force that follows no law, as it acted over time.
 
-    `runs` and their `time` (n,) s on the clock of the motion capture, `place` (n, 3) MoCap m and
-    `force` (n, 6) N, N m along the body;
-    `axes` on which it is more than noise; `rms` (6,); its `spectrum`, and the `band` Hz that holds
-    most of its power on the strongest of these; `pushes`, the strongest first.
+    Attributes:
+        runs: ids of the runs.
+        time: (n,) of each run's readings, on the clock of the motion capture, s.
+        place: (n, 3) of the vehicle in each run, in MoCap coordinates, m.
+        force: wrench (n, 6) of each run along the body axes (FRD), N and N m.
+        axes: on which the force is more than noise.
+        rms: (6,) of the wrench over all runs, N and N m.
+        spectrum: of the wrench.
+        band: lowest and highest frequency of most of its power on the strongest axis, Hz.
+        pushes: moments at which it was strong, the strongest first.
     """
 
     runs: tuple[str, ...]
@@ -57,7 +72,13 @@ class ForceInTime:
 
 
 def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> ForceInTime | None:
-    """The smooth force that is left; None where its axes were not read throughout."""
+    """Estimate the force that a fit leaves; None if no axis with structure was read throughout.
+
+    Args:
+        fit: whose whitened innovations are smoothed.
+        bank: the runs that it was fitted to, with their filters.
+        structures: what was found in the innovations, and on which axes.
+    """
     residuals = {one.axis: one for one in split_by_axis(fit, bank)}
     named = {one.axis for one in structures}
     axes = tuple(a for a in AXES if a in residuals and a in named)
@@ -77,14 +98,17 @@ def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> 
 
 
 def smooth(white: Array, f: AxisFilter, run: ObservedRun, std: float, lasts: float) -> Array:
-    """Acceleration (n,) at the readings of a run, of its settled whitened innovations (m,).
+    """Estimate the push on one axis at all readings of a run.
 
     Args:
-        white: the innovations.
-        f: the filter that made them.
-        run: where.
-        std: of the disturbance.
-        lasts: its correlation time, s.
+        white: whitened settled innovations (m,) of that axis.
+        f: the filter that whitened them.
+        run: the run.
+        std: of the disturbance, m/s2 or rad/s2.
+        lasts: correlation time of the disturbance, s.
+
+    Returns:
+        Accelerations (n,), m/s2 or rad/s2. Innovations that have not settled count as 0.
     """
     e, out = np.zeros(len(run.time)), np.zeros(len(run.time))
     e[run.settled] = white
@@ -94,8 +118,19 @@ def smooth(white: Array, f: AxisFilter, run: ObservedRun, std: float, lasts: flo
 
 
 def smooth_stretch(e: Array, f: AxisFilter, period: float, std: float, lasts: float) -> Array:
-    """Acceleration (n,) that an unbroken stretch of whitened innovations (n,) tells of."""
-    count = next_fast_len(2 * len(e))  # so that the end does not meet the beginning
+    """Estimate the push on one axis in a stretch without gaps: S H* e at every frequency.
+
+    Args:
+        e: whitened innovations (n,) of the stretch.
+        f: the filter that whitened them.
+        period: between two readings, s.
+        std: of the disturbance, m/s2 or rad/s2.
+        lasts: correlation time of the disturbance, s.
+
+    Returns:
+        Accelerations (n,), m/s2 or rad/s2.
+    """
+    count = next_fast_len(2 * len(e))  # zero padding: the FFT is periodic
     z = np.exp(2j * np.pi * np.fft.rfftfreq(count))
     b, a = f.response
     fade = np.exp(-period / lasts)
@@ -110,6 +145,14 @@ def _gather(
     axes: tuple[str, ...],
     residuals: dict[str, AxisResidual],
 ) -> ForceInTime:
+    """Gather the wrenches (n, 6) of all runs, and what characterises them.
+
+    Args:
+        runs: the runs.
+        forces: wrench (n, 6) of each run, N and N m.
+        axes: on which the force is more than noise.
+        residuals: what the fit left on each axis, by the name of the axis.
+    """
     whole = np.concatenate(forces)
     rms = np.sqrt(np.mean(whole**2, axis=0))
     index = [AXES.index(a) for a in axes]
@@ -135,7 +178,7 @@ def _tell_time(run: ObservedRun) -> Array:
 
 
 def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
-    """How much the axis accelerates in these runs, so that forces and moments compare."""
+    """Standard deviation of an axis' acceleration: the unit that makes axes comparable."""
     i = AXES.index(residual.axis)
     nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable, i] for run in runs])
     return max(float(np.nanstd(nu_dot)), 1e-9)
@@ -148,7 +191,15 @@ def _find_pushes(
     index: Sequence[int],
     rms: Array,
 ) -> list[Push]:
-    """The strongest, in units of the RMS of their axis."""
+    """List the moments at which the force was strongest, in units of the RMS of its axis.
+
+    Args:
+        runs: the runs.
+        forces: wrench (n, 6) of each run, N and N m.
+        places: (n, 3) of the vehicle in each run, in MoCap coordinates, m.
+        index: numbers of the axes on which the force is more than noise.
+        rms: (6,) of the wrench over all runs, N and N m.
+    """
     ranked: list[tuple[float, Push]] = []
     for run, force, place in zip(runs, forces, places, strict=True):
         for i in index:

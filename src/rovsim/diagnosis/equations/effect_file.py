@@ -1,4 +1,4 @@
-"""A law as a file: one effect in the form that `docs/your_own_effect.md` explains."""
+"""Write a law as a Python file: an effect in the form that `docs/your_own_effect.md` explains."""
 
 from textwrap import indent
 from typing import Mapping, Sequence
@@ -17,17 +17,17 @@ def write_effect(
     method: str,
     start: Mapping[str, float],
 ) -> str:
-    """Python source of an effect.
+    """Write the Python source of an effect.
 
     Args:
-        name: its id.
-        form: what it says.
-        numbers: its parameters.
-        story: where it comes from, one line.
-        base: its base class.
-        imports: what is imported before that.
-        method: its method, not indented.
-        start: values that a fit begins from; empty where its defaults will do.
+        name: id of the effect; its class is named after that.
+        form: gives the equation of the law, and its meaning in a sentence.
+        numbers: parameters of the effect.
+        story: one line on where the law comes from.
+        base: name of the base class of the effect.
+        imports: lines of imports that come before that of the base class.
+        method: source of the method that computes the effect, not indented.
+        start: parameter values that a fit begins from; empty where the defaults will do.
     """
     return FILE.format(
         story=story,
@@ -45,11 +45,12 @@ def write_effect(
 
 
 def round_start(numbers: Sequence[Number]) -> dict[str, float]:
-    """Where a fit of the written effect begins."""
+    """Round the fitted values to six digits, as the start of a fit of the written effect."""
     return {n.name: float(f"{n.value:.6g}") for n in numbers}
 
 
 def _parameter(n: Number) -> str:
+    """The line of the file that declares one parameter."""
     more = "" if n.low is None else f", low={n.low:g}"
     more += "" if n.high is None else f", high={n.high:g}"
     more += "" if n.default is None else f", default={n.default:.6g}"

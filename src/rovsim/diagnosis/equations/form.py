@@ -1,4 +1,4 @@
-"""A form of law: what it is made of, what it says, how it is written, and how it is simplified.
+"""A form of law: its terms, its equation, how it is written as a file, and how it is simplified.
 
 Some laws are products of states at the same instant, others have a memory or depend on the thrust.
 The search, and whatever shows its results, treats all forms alike.
@@ -15,7 +15,12 @@ from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 @dataclass(frozen=True)
 class Part:
-    """One term of a law: what it acts `on`, and the `quantities` it varies with."""
+    """One term of a law, as a result names it.
+
+    Attributes:
+        on: what the term acts on: an axis, `force`, `water` or `thrusters`.
+        quantities: names of what the term varies with, such as `u`, `depth`, `thrust`.
+    """
 
     on: str
     quantities: tuple[str, ...]
@@ -73,18 +78,21 @@ class Form(ABC):
 
     @abstractmethod
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
-        """The free parameters of a law in the units of its equation.
+        """List the free parameters of a law in the units of its equation.
 
-        `std` holds their standard deviations by name, in the units of the law's effect.
+        Args:
+            law: at its fitted values.
+            std: standard deviations of the free parameters, by name, in the units of the effect
+                that the law is. These may differ from those of the equation.
         """
 
     @abstractmethod
     def divide(self, law: Term) -> list[Effect]:
-        """Each term of a law by itself, as an effect."""
+        """Return each term of a law by itself, as an effect."""
 
     @abstractmethod
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
-        """Python source of the law as an effect.
+        """Write the law as an effect, in Python.
 
         Args:
             name: id of the effect.
@@ -99,7 +107,11 @@ class Form(ABC):
 
     @abstractmethod
     def simplify(self, h: Hypothesis) -> list[tuple["Form", Hypothesis]]:
-        """All forms with one term less, each with the hypothesis whose law is changed like that."""
+        """List all ways to remove one term from the law.
+
+        Returns:
+            The simpler form, and the hypothesis `h` with the law in that form.
+        """
 
 
 def split_law(h: Hypothesis) -> tuple[Hypothesis, Term | None]:

@@ -22,7 +22,7 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 
 HALF_LAW_MARGIN = 2.0  # times what chance allows: a fit to all runs does not change so much
 THRUST_LAWS_TRIED = 4  # laws of the thrust that are fitted: those best to first order
-NEAR = 0.5  # of what products explain: a law of the thrust that may reach less is not fitted
+NEAR = 0.5  # of what products explain: a law of the thrust is not fitted if it may explain less
 
 
 def search_laws(selection: SearchResult) -> FittedLaw | None:

@@ -1,9 +1,10 @@
-"""A law that names of the catalogue stand in for.
+"""Find a law that accepted effects of the catalogue stand in for.
 
-What names leave of a law that they resemble is taken for a disturbance, and beside one of that size
-it does not stand out: a drag u^2 v that was called lift and linear damping was 20 in twice the log
-likelihood under the noise that they leave, and 900 with a noise of its own. So what nearly stands
-out is fitted as a law, with the noise and all else.
+Effects that resemble a law explain part of it. The noise fit takes the rest for a disturbance, and
+beside a disturbance of that size the rest does not stand out. For example, a drag u^2 v was
+mistaken for lift and linear damping: the gain in twice the log likelihood was 20 under the noise
+fitted beside these effects, and 900 when the noise was fitted again beside the law. So what nearly
+stands out is fitted as a law, together with the noise and the accepted effects.
 """
 
 from dataclasses import replace
@@ -19,14 +20,22 @@ from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
 from rovsim.diagnosis.structure.residual import Structure, split_by_axis
 
-# Likelihood-ratio statistics. Of all functions of an axis one reaches 15 by chance in one campaign
-# of fifteen, 8 in most; of those that names could have taken half of there are few.
+# A function is suspect if its likelihood-ratio statistic exceeds SUSPECT. FAINT is enough if the
+# fitted parameters could have explained more than the share RESEMBLES of its power. By chance, the
+# best of all functions of an axis reaches 15 in one campaign of fifteen and 8 in most, but only few
+# functions are so similar to accepted effects.
 SUSPECT, RESEMBLES, FAINT = 15.0, 0.5, 8.0
 TRIED = 3  # laws that are fitted
 
 
 def find_masked_laws(selection: SearchResult) -> list[Structure]:
-    """The law that stands out once it has a noise of its own; none where there is no name."""
+    """Find structure that stands out only once a law is fitted together with the noise.
+
+    Returns:
+        The suspect structure, with its `times_limit` taken from the fitted law, where such a law is
+        worth its penalty. Otherwise nothing, as where no effect of the catalogue was accepted or
+        some axis is not read at every reading.
+    """
     names = [term for term in selection.best.hypothesis.terms if term.effect.listed]
     suspect = _find_suspect(selection) if names and is_seen(selection) else None
     if suspect is None:
@@ -46,7 +55,10 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
 
 
 def _find_suspect(selection: SearchResult) -> Structure | None:
-    """What comes nearest to standing out, of what names could have taken most of, or of all."""
+    """Find the most suspect function that innovations seem to follow; None where none is suspect.
+
+    The `times_limit` of the structure is here the test statistic itself.
+    """
     bank = selection.workspace.bank
     tables = [tabulate(run) for run in bank.runs]
     near = [

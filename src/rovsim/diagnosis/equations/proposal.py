@@ -38,6 +38,7 @@ class Catalogued(NamedTuple):
     on_chosen: Model
 
 
+# Fits a hypothesis once more, to all train runs; returns the fit, and the filters that suit it.
 Polish = Callable[[Fit], tuple[Fit, FilterBank]]
 
 
@@ -84,7 +85,7 @@ class ProposedLaw:
 
     @property
     def source(self) -> str:
-        """The effect as a Python file."""
+        """The law as an effect, in Python."""
         return self.form.write(PROPOSED, self.law, self.numbers, STORY)
 
 
@@ -135,6 +136,7 @@ def propose_law(
 def _holds(
     judged: FittedLaw, selection: SearchResult, best: Catalogued, holdout: HoldoutValidation
 ) -> bool:
+    """Whether a law helps on blocks of time it was not fitted to, and in replays of all runs."""
     rest: Hypothesis = split_law(judged.fit.hypothesis)[0]
     if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
         return False

@@ -1,6 +1,6 @@
-"""How the power of a force is spread over frequencies: periodograms of overlapping segments.
+"""The power spectral density of a force: the mean periodogram of overlapping segments.
 
-Source: Welch 1967. The mean of each segment is taken out, so what pushes all the time is not in it.
+Source: Welch 1967. The mean of each segment is subtracted, so a constant force is not included.
 """
 
 from dataclasses import dataclass
@@ -10,33 +10,38 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import welch
 
-BAND = (0.1, 0.9)  # shares of the power: four fifths of it lie between
+BAND = (0.1, 0.9)  # cumulative shares of the power: four fifths of it lie between
 SEGMENT = 20.0  # s of a spectrum: resolves 0.05 Hz, and a run of a minute has several
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """`density` (k, 6) of power along the body's axes, N²/Hz and (N m)²/Hz, at `frequency` (k,) Hz.
+    """One-sided power spectral density of a wrench: its integral over frequency is the variance.
 
-    One-sided: its integral over the frequencies is the variance.
+    Attributes:
+        frequency: (k,) Hz.
+        density: (k, 6) along the body axes (FRD), N²/Hz and (N m)²/Hz.
     """
 
     frequency: Array
     density: Array
 
     def find_band(self, axis: int) -> tuple[float, float]:
-        """Lowest and highest frequency, Hz, of most of an axis' power."""
+        """Find the band, Hz, that holds the middle four fifths of an axis' power."""
         share = np.cumsum(self.density[:, axis])
         low, high = np.searchsorted(share / max(share[-1], 1e-300), BAND)
         return float(self.frequency[low]), float(self.frequency[min(high, len(share) - 1)])
 
 
 def find_spectrum(forces: Sequence[Array], period: float) -> Spectrum:
-    """Mean over runs of forces (n, 6), a longer run counting more; shorter ones than a segment not.
+    """Estimate the mean spectrum of runs, weighted by their lengths.
+
+    Runs that are shorter than a segment are left out. A segment lasts `SEGMENT` s, or as long as
+    the longest run where that is shorter.
 
     Args:
-        forces: N, N m of each run; where the longest is shorter than a segment, that is one.
-        period: s between two of its lines.
+        forces: wrench (n, 6) of each run along the body axes, N and N m.
+        period: between two samples of a wrench, s.
     """
     length = min(round(SEGMENT / period), max(len(f) for f in forces))
     long = [f for f in forces if len(f) >= length]

@@ -1,7 +1,8 @@
-"""Laws with a memory, which no product of what acts at one instant can be.
+"""Laws with a memory, which a product of states at one instant cannot express.
 
-Each is an effect that no catalogue lists, of a few numbers that are fitted together: the wake that
-an axis leaves, and play of the thrusters. The file of such a law has the effect's own method.
+Each is an effect that the catalogue does not list, with a few parameters that are fitted together:
+the wake of each axis, and the play of the thrusters. The file that is written for such a law
+contains the effect's own method.
 """
 
 import inspect
@@ -23,21 +24,32 @@ from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 @dataclass(frozen=True)
 class WithMemory(Form):
-    """A law that is an effect of its own; `names` of the parameters that it may do without."""
+    """A law that has an effect class of its own.
+
+    Attributes:
+        names: parameters of the effect that a simpler law may lack; one of them has to stay.
+        effect: class of the effect.
+        imitates: ids of effects that do much the same; they are removed before the law is fitted.
+        imports: lines of imports that the effect's method needs, for the file of the law.
+    """
 
     names: tuple[str, ...]
 
     effect: ClassVar[type[Effect]]
-    imitates: ClassVar[tuple[str, ...]] = ()  # effects that it cannot stand beside
+    imitates: ClassVar[tuple[str, ...]] = ()
     imports: ClassVar[str]
 
     @classmethod
     @abstractmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple["WithMemory", Term]]:
-        """The law at all values that a fit starts from, on axes that move and are seen."""
+        """List the law at all values that a fit starts from.
+
+        Args:
+            moving: names of the axes that were measured, and in which the vehicle can move.
+        """
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
-        """The free parameters, as the effect declares them."""
+        """List the free parameters, in the units that the effect declares."""
         return [
             Number(
                 p.name,
@@ -54,7 +66,7 @@ class WithMemory(Form):
         ]
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
-        """The method of the effect itself, with the parameters that were fitted."""
+        """Write an effect with the fitted parameters, and the method of the law's effect class."""
         (base,) = self.effect.__bases__
         method = next(one for one in vars(self.effect).values() if callable(one))
         return write_effect(
@@ -69,18 +81,22 @@ class WithMemory(Form):
         )
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """Without each of its names, as long as one is left."""
+        """List the laws without one of the parameters in `names`, as long as another is left."""
         return [
             (type(self)(_all_but(gone, self.names)), drop_number(h, gone))
             for gone in (self.names if len(self.names) > 1 else ())
         ]
 
     def _symbol(self, name: str) -> str:
+        """LaTeX symbol of a parameter."""
         return next(p.symbol for p in self.effect.parameters if p.name == name)
 
 
 class Wake(WithMemory):
-    """Water that some axes have set moving goes on pushing them."""
+    """A wake: water that motion along some axes has set moving goes on pushing along them.
+
+    `names` are these axes.
+    """
 
     effect = WakeByAxis
     imitates = (FluidMemory.id,)
@@ -90,7 +106,7 @@ class Wake(WithMemory):
 
     @classmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
-        """All axes that move, at several time constants."""
+        """Start with a wake of all axes that move, from several time constants."""
         axes = tuple(moving)
         some = {p.name: p.scale for p in WakeByAxis.parameters if p.name in axes}
         return [
@@ -100,12 +116,12 @@ class Wake(WithMemory):
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """One for each axis."""
+        """One term for each axis."""
         return tuple(Part(axis, (VELOCITY[AXES.index(axis)], "memory")) for axis in self.names)
 
     @property
     def equation(self) -> str:
-        """In LaTeX."""
+        """The law in LaTeX."""
         each = [AXES.index(axis) for axis in self.names]
         pushes = [
             rf"{FORCE[i]} = -{self._symbol(AXES[i])}\,({VELOCITY[i]} - m_{VELOCITY[i]})"
@@ -115,11 +131,11 @@ class Wake(WithMemory):
 
     @property
     def meaning(self) -> str:
-        """In a sentence."""
+        """The law in a sentence."""
         return f"Water that {' and '.join(self.names)} set moving, to m, goes on pushing there."
 
     def divide(self, law: Term) -> list[Effect]:
-        """Each axis by itself."""
+        """Return the wake of each axis by itself."""
         return [
             law.effect.with_values(dict.fromkeys(_all_but(own, self.names), 0.0))
             for own in self.names
@@ -130,47 +146,51 @@ class Wake(WithMemory):
 
 
 class Play(WithMemory):
-    """Thrusters follow only once what is asked of them has moved by a band."""
+    """Play: the force of a thruster follows only once the demanded force has moved by a band.
+
+    `names` are the parameters of the width of the band.
+    """
 
     effect = ThrusterPlay
     imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
 
     @classmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
-        """A narrow and a wide band, and one that grows with the force."""
+        """Start with a narrow band, a wide band, and a band that grows with the force."""
         form = cls(tuple(p.name for p in ThrusterPlay.parameters))
         return [(form, Term(ThrusterPlay(**start), form.names)) for start in ThrusterPlay.starts]
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """All thrusters together."""
+        """A single term, for all thrusters together."""
         return (Part("thrusters", ("thrust", "memory")),)
 
     @property
     def equation(self) -> str:
-        """In LaTeX."""
+        """The law in LaTeX."""
         force, width = r"F_\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
         w = " + ".join(width[name] for name in self.names)
         return rf"F \leftarrow \min(\max(F,\ {force} - w),\ {force} + w),\quad w = {w}"
 
     @property
     def meaning(self) -> str:
-        """In a sentence."""
+        """The law in a sentence."""
         return ThrusterPlay.__doc__ or ""
 
     def divide(self, law: Term) -> list[Effect]:
-        """It is one."""
+        """Return the effect itself: the law has a single term."""
         return [law.effect]
 
 
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
-    """A hypothesis whose law is without one of its numbers, which then is zero."""
+    """Return a hypothesis whose law has one parameter less: it is zero, and no longer free."""
     rest, law = split_law(h)[0], get_law(h)
     fewer = Term(law.effect.with_values({gone: 0.0}), _all_but(gone, law.free))
     return replace(rest, terms=(*rest.terms, fewer))
 
 
 def _all_but(gone: str, names: Sequence[str]) -> tuple[str, ...]:
+    """All names except one."""
     return tuple(name for name in names if name != gone)
 
 

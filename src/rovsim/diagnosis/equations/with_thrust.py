@@ -1,7 +1,8 @@
-"""Laws of the thrust: along one axis it pushes along another, or with the motion.
+"""Laws of the thrust: thrust along one axis pushes along another, or varies with the motion.
 
-A jet that is blown aside, water that hovering thrusters take along, a thruster that sits elsewhere
-than the vehicle file says. One term each; how the thrust itself comes about is the catalogue's.
+Examples are a jet that is blown aside, water that hovering thrusters carry along, and a thruster
+that is not where the vehicle file says. Each law has one term. How the thrust itself arises from
+the commands is left to the effects of the catalogue.
 """
 
 from dataclasses import dataclass, replace
@@ -32,14 +33,20 @@ THRUST = tuple(
         f"T_{X}", f"T_{X}", f"T_{X}", int(j >= 3), 0, 0, j in ODD, f"the thrust {name} (T_{X})"
     )
     for j, (X, name) in enumerate(zip(FORCE, NAMES, strict=True))
-)  # in N, too
+)  # powers of m, s and rad in their units; each has one of N, too
 
 
 @dataclass(frozen=True)
 class ThrustTerm:
-    """What acts `on` an axis: `thrust` along one (its size where `unsigned`), and a `factor`.
+    """One term: the thrust along an axis, perhaps times another factor, pushes along an axis.
 
-    The factor is a velocity or its size, as `law_codes` numbers them, or the thrust along `other`.
+    Attributes:
+        on: axis (0 to 5) of the push.
+        thrust: axis (0 to 5) of the thrust.
+        unsigned: whether the absolute value of that thrust is taken.
+        factor: code of a further factor: a velocity or its absolute value (`law_codes`), or `OTHER`
+            for a second thrust; `NONE` where there is no further factor.
+        other: axis (0 to 5) of the second thrust; `NONE` where there is none.
     """
 
     on: int
@@ -50,12 +57,12 @@ class ThrustTerm:
 
     @property
     def thrusts(self) -> tuple[int, ...]:
-        """Axes of the thrusts in it; a square has one twice."""
+        """Axes of the thrusts in the term; the square of a thrust has its axis twice."""
         return (self.thrust, self.other) if self.factor == OTHER else (self.thrust,)
 
     @property
     def factors(self) -> tuple[Variable, ...]:
-        """What is multiplied."""
+        """The factors of the term, without its coefficient."""
         first, *others = (THRUST[j] for j in self.thrusts)
         if self.unsigned:
             code, latex = f"abs({first.code})", f"|{first.latex}|"
@@ -65,12 +72,24 @@ class ThrustTerm:
 
     @property
     def odd(self) -> bool:
-        """Whether it changes sign when port and starboard are exchanged."""
+        """Whether the product changes sign when port and starboard are exchanged."""
         return sum(bool(factor.odd) for factor in self.factors) % 2 == 1
 
 
 def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustTerm]:
-    """Terms that turn with the mirror, but for a thrust along its own axis; none where unknown."""
+    """List the candidate terms that respect the mirror symmetry of port and starboard.
+
+    A push along an axis has to change sign with that axis. A thrust that pushes along its own axis
+    in proportion is left out, as the model has that already.
+
+    Args:
+        runs: which say in what axes the vehicle moves and is measured.
+        model: its body has the allocation matrix B (6, thrusters).
+
+    Returns:
+        The terms; none where there are no thrusters or too many, or where B has another number
+            of columns.
+    """
     B = model.body.B
     if not 0 < B.shape[1] <= THRUSTERS or len(model.vehicle.thrusters.units) != B.shape[1]:
         return []
@@ -81,6 +100,14 @@ def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustT
 
 
 def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterator[ThrustTerm]:
+    """Yield terms on axis `i` of the thrust along axis `j`.
+
+    Args:
+        i: axis of the push.
+        j: axis of the thrust.
+        moving: axes in which the vehicle moves and is measured.
+        driven: axes along which the thrusters push.
+    """
     if i != j:
         yield ThrustTerm(i, j)
     yield ThrustTerm(i, j, True)
@@ -97,14 +124,33 @@ def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterato
 def push_thrust(
     terms: Sequence[ThrustTerm], run: ObservedRun, model: Model, middle: Array
 ) -> Array:
-    """Wrench (c, n, 6) of terms with a coefficient of 1 at the readings of a run."""
+    """Evaluate terms with a coefficient of 1 at the n readings of a run.
+
+    Args:
+        terms: c terms.
+        run: with its commands.
+        model: gives the forces of the thrusters, and their allocation.
+        middle: not used, as no term depends on a place; see `columns.Wrenches`.
+
+    Returns:
+        Wrenches (c, n, 6) along the body axes, in the unit of each term's product.
+    """
     step = np.minimum(run.at[run.innovation_samples], len(run.grid) - 2)
     force = run.replay_drives.of([model])[0].force[step]
     return push_at(terms, earlier_states(run)[:, 7:], force @ model.body.B.T)
 
 
 def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
-    """Wrench (c, n, 6) of terms at velocities (n, 6) and thrust (n, 6) N, N m."""
+    """Evaluate terms with a coefficient of 1 at given velocities and thrusts.
+
+    Args:
+        terms: c terms.
+        nu: body velocities (n, 6), m/s and rad/s.
+        thrust: of all thrusters together along the body axes (n, 6), N and N m.
+
+    Returns:
+        Wrenches (c, n, 6) along the body axes, in the unit of each term's product.
+    """
     wrenches = np.zeros((len(terms), len(nu), 6))
     table = np.hstack([nu, np.abs(nu)])
     for out, term in zip(wrenches, terms, strict=True):
@@ -119,14 +165,22 @@ def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
 
 
 def begin(columns: Columns, k: int, h: Hypothesis) -> Hypothesis:
-    """A hypothesis with the law of the k-th term, at what the regression gives it."""
+    """Add the law of the k-th term to a hypothesis, with the coefficient that regression gives."""
     term, power = columns.terms[k], columns.gram[1 + k, 1 + k]
     law = build_law(term, h.model, float(columns.size[k]), columns.gram[0, 1 + k] / power)
     return replace(h, terms=(*h.terms, law))
 
 
 def build_law(term: ThrustTerm, model: Model, size: float, coefficient: float) -> Term:
-    """The law of a term that pushes with an RMS of `size` where its coefficient is 1."""
+    """Make the law of a term, its coefficient free.
+
+    Args:
+        term: the term.
+        model: its body has the allocation matrix.
+        size: RMS of the term's wrench over all runs where the coefficient of its equation is 1.
+        coefficient: that of the equation times `size`; its absolute value is the RMS of the law's
+            wrench, N or N m.
+    """
     B = model.body.B
     values = {"c": float(coefficient), "size": 1.0 / size, "on": float(term.on)}
     values |= {"unsigned": float(term.unsigned), "factor": float(term.factor)}
@@ -138,25 +192,25 @@ def build_law(term: ThrustTerm, model: Model, size: float, coefficient: float) -
 
 @dataclass(frozen=True)
 class WithThrust(Form):
-    """A coefficient times a thrust, and perhaps another factor."""
+    """A law of one term: a coefficient times a thrust, and perhaps another factor."""
 
     term: ThrustTerm
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """It is one."""
+        """A single term."""
         own = (VELOCITY[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
         return (Part(AXES[self.term.on], ("thrust", *own)),)
 
     @property
     def equation(self) -> str:
-        """In LaTeX."""
+        """The law in LaTeX."""
         product = r"\,".join(("c", *(factor.latex for factor in self.term.factors)))
         return f"{FORCE[self.term.on]} = {product}"
 
     @property
     def meaning(self) -> str:
-        """In a sentence."""
+        """The law in a sentence."""
         what = "moment" if self.term.on >= 3 else "force"
         with_what = " and ".join(factor.meaning for factor in self.term.factors)
         return f"A {AXES[self.term.on]} {what} that varies with {with_what}."
@@ -172,18 +226,18 @@ class WithThrust(Form):
         return write_unit(powers)
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
-        """The coefficient."""
+        """List the only parameter, the coefficient, in the unit of the equation."""
         size = law.effect["size"]
         value = law.effect["c"] * size
         scale = float(f"{max(abs(value), 1e-6):.1g}")
         return [Number(AXES[self.term.on], self.unit, "c", value, std["c"] * size, scale)]
 
     def divide(self, law: Term) -> list[Effect]:
-        """It is one."""
+        """Return the effect itself: the law has a single term."""
         return [law.effect]
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
-        """A kernel of plain arithmetic that reads the thrusters."""
+        """Write an effect whose kernel reads the forces of the thrusters."""
         return write_effect(
             name,
             self,
@@ -196,6 +250,7 @@ class WithThrust(Form):
         )
 
     def _lines(self, law: Term) -> Iterator[str]:
+        """Yield the lines of the kernel."""
         t = self.term
         yield "F = at.actuators.force"
         for j, row in dict(zip(t.thrusts, "bd", strict=False)).items():
@@ -206,11 +261,16 @@ class WithThrust(Form):
         yield "return " + ", ".join("push" if i == t.on else "0.0" for i in range(6))
 
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
-        """It has one term."""
+        """Return nothing: the only term cannot be removed."""
         return []
 
 
 def _sum(law: Term, row: str) -> str:
-    """Thrust along an axis, of the thrusters that have a share in it."""
+    """Write the thrust along an axis as a sum over the thrusters that contribute to it.
+
+    Args:
+        law: whose parameters hold rows of the allocation matrix.
+        row: letter of the row: `b` for the first thrust, `d` for a second one.
+    """
     shares = [(i, float(f"{law.effect[f'{row}{i}']:.6g}")) for i in range(THRUSTERS)]
     return " + ".join(f"{b:g} * F[{i}]" for i, b in shares if b)
