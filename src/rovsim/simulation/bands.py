@@ -31,7 +31,7 @@ LONGEST = 300.0  # s at once: draws of longer ones would not fit into memory
 
 
 def why_without_bands(model: Model, motion: Motion) -> str | None:
-    """Why a model has no band for a run, as the end of a sentence; None where it has one."""
+    """The reason why a model has no band for a run, for a message; None where it has one."""
     if model.uncertainty is None:
         return (
             "it was not fitted; models that rovsim add makes of a diagnosis know how sure they are"
@@ -51,16 +51,17 @@ def predict_band(
     spans: Spans,
     how: SimulationSettings,
 ) -> Band | None:
-    """The band of a model in some windows of a run; NaN in windows longer than `LONGEST`.
+    """Predict the band of a model in some windows of a run.
 
     Args:
         model: with its uncertainty.
-        motion: the run.
+        motion: the run, as the motion capture reported it.
         spans: first sample or bin of each window, and its last one.
         how: filter and derivative of the measurement, step length, and how commands are held.
 
     Returns:
-        The band; None where there is none, see `why_without_bands`.
+        The band at all times of the run, NaN outside the windows and in windows longer than
+        `LONGEST`; None where the model has no band, see `why_without_bands`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -102,6 +103,7 @@ def _draw_band(
     noise: NoiseDraws,
     how: SimulationSettings,
 ) -> Band:
+    """Replay `DRAWS` draws of a model and its noise in some windows of a run."""
     disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
     again = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
     drawn = [model.draw(noise.random) for _ in range(DRAWS)]
@@ -113,10 +115,10 @@ def _draw_band(
 
 
 def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
-    """Add to a prediction the errors of a measurement.
+    """Give a prediction the measurement errors of `motion` in place of those of `again`.
 
-    The replay began at `again`, a measurement with other errors than `motion`; the difference of
-    the two is added, so that the prediction begins at what was measured.
+    The replay started from `again`, which has other errors than the measured `motion`. The
+    difference of the two is added to the prediction, so that it begins at the measured state.
     """
     back = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
     shift = rotate(conjugate(again.eta[:, 3:]), motion.eta[:, :3] - again.eta[:, :3])
@@ -139,7 +141,7 @@ def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
 
 
 def band_ends(drawn: Array) -> Array:
-    """Lower and upper end (2, ...) of the band about draws (s, ...)."""
+    """Lower and upper end (2, ...) of the band that s draws (s, ...) give."""
     tail = 0.5 * (1.0 - LEVEL)
     with np.errstate(invalid="ignore"):  # of draws that diverged
         return np.quantile(drawn, [tail, 1.0 - tail], axis=0, method="weibull")

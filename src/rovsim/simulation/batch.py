@@ -37,11 +37,11 @@ class Starts:
     """Where trajectories begin: w of them for each of m models.
 
     Attributes:
-        state: true states (m, w, 13) at CO.
-        first: step (w,) at which each begins; its reading where readings correct it.
-        steps: how many steps (w,) each lasts; how many readings where these correct it.
-        memory: velocity (m, w, 6) that the water still has, m/s and rad/s; empty where no model has
-            a fluid memory.
+        state: true states (m, w, 13) at CO: pose in NED, body velocity in FRD.
+        first: index (w,) of the first step of each; for `Batch.innovations`, of the first reading.
+        steps: number (w,) of steps of each; for `Batch.innovations`, of readings.
+        memory: velocity (m, w, 6), the state of the fluid memory, m/s and rad/s; empty where no
+            model has a fluid memory.
     """
 
     state: Array
@@ -50,7 +50,7 @@ class Starts:
     memory: Array = field(default_factory=lambda: NO_MEMORY)
 
     def jobs(self, out: Array) -> Jobs:
-        """The jobs of a kernel, one for each trajectory, which writes from row `out` (m w,) on."""
+        """One job for each trajectory; a kernel writes its results from row `out` (m w,) on."""
         models, count = self.state.shape[:2]
         return Jobs(
             self.state.reshape(-1, 13),
@@ -65,15 +65,15 @@ class Starts:
 class Batch:
     """Models of one vehicle, simulated side by side at one site.
 
-    Its attribute `free` (13,) is 1 for the numbers of a state that can change, and 0 for velocities
-    along axes in which the vehicle cannot move.
+    The attribute `free` (13,) is 0 for velocities along axes in which the vehicle cannot move, and
+    1 for all other numbers of a state.
 
     Args:
         models: m of them.
         site: walls, where an effect needs them.
-        candidates: wrench effects that other models of the same task may have. With them, one
-            engine serves all these models and is compiled once.
-        learned: whether the models' learned residual acts; it is the same for all.
+        candidates: wrench effects that later models of the same task may have. One engine then
+            serves all these models and is compiled once.
+        learned: whether the learned residual acts, which all models must share.
 
     Raises:
         BadInput: models with different residuals.
@@ -112,12 +112,12 @@ class Batch:
 
         Args:
             drives: one for each model.
-            starts: where to begin; `steps` are multiples of `stride`.
+            starts: where to begin; `steps` must be multiples of `stride`.
             time: (k+1,) s at which the integration steps begin and end.
             stride: steps from one returned state to the next.
 
         Returns:
-            For each model and start the states (steps / stride + 1, 13), the given one first.
+            States (steps / stride + 1, 13) for each model and start; the first is the start.
         """
         models, count = starts.state.shape[:2]
         rows = np.tile(starts.steps // stride + 1, models)
@@ -137,16 +137,16 @@ class Batch:
         return [paths[k * count : (k + 1) * count] for k in range(models)]
 
     def innovations(self, drives: Sequence[Drive], starts: Starts, correction: Correction) -> Array:
-        """Run models along readings that correct them, without their learned residual.
+        """Filter readings with models, as a Kalman filter with fixed gains does; no residual acts.
 
         Args:
             drives: one for each of m models.
-            starts: where to begin: at reading `first`, over `steps` readings, n in all.
+            starts: first reading and number of readings of each trajectory, n readings in all.
             correction: the readings and the filters.
 
         Returns:
-            Innovations (m, n, 6), the part of each reading that a model did not predict: m and rad,
-            or m/s and rad/s where velocities are read.
+            Innovations (m, n, 6), reading minus prediction: m and rad, or m/s and rad/s where
+            velocities are read.
         """
         models, count = len(starts.state), int(starts.steps.sum())
         stops = np.cumsum(np.tile(starts.steps, models))
@@ -175,13 +175,13 @@ class Batch:
         return out.reshape(models, count, 6)
 
     def accelerations(self, drive: Drive, times: Array, states: Array, memory: Array) -> Array:
-        """Body acceleration (n, 6) of the first model, m/s2 and rad/s2.
+        """Evaluate the body acceleration (n, 6) of the first model, m/s2 and rad/s2, at n instants.
 
         Args:
             drive: at the n instants.
             times: (n,) since the start of the recording, s.
-            states: (n, 13) true ones at CO.
-            memory: velocity (n, 6) that the water still has; empty without a fluid memory.
+            states: true states (n, 13) at CO.
+            memory: state (n, 6) of the fluid memory, m/s and rad/s; empty without one.
         """
         out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self.free)
         self.engine.accelerations(
@@ -194,7 +194,7 @@ class Batch:
         return out
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
-        """Move the first model's state (13,) and memory (6,) on over all steps, in place."""
+        """Integrate state (13,) and memory (6,) of the first model in place, in steps of h s."""
         state *= self.free
         self.engine.advance(
             state,
@@ -207,10 +207,10 @@ class Batch:
     def advance_by_heun(
         self, drive: Drive, pushes: Array, state: Array, memory: Array, t: float, h: float
     ) -> Array:
-        """States (k, 13) of the first model after each step; `memory` (6,) moves on in place.
+        """Integrate the first model with Heun's method; returns the states (k, 13) after each step.
 
-        For the synthetic tank alone, whose truth must not share the replay's integrator; `pushes`
-        (k, 6) is an acceleration that nobody logged.
+        For the synthetic tank alone, whose truth must not share a replay's integrator. `pushes`
+        (k, 6) is an unlogged acceleration, m/s2 and rad/s2. `memory` (6,) is updated in place.
         """
         out = np.empty((len(pushes), 13))
         self.engine.heun(
@@ -230,7 +230,7 @@ class Batch:
         return self._constants, inputs, self._parameters, self._residual, self._place
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
-        """The drives as kernels take them; a drive that several models share is passed once."""
+        """Stack the drives for the kernels; a drive that several models share is passed once."""
         own, row = _distinct(drives)
         first = own[0]
         acting = [drive.acting(self._reads) for drive in own]
@@ -257,11 +257,11 @@ def _refuse_unlike(models: Sequence[Model]) -> None:
 def _slots(
     models: Sequence[Model], candidates: Sequence[type[Wrench]]
 ) -> tuple[tuple[type[Wrench], ...], list[type[Wrench]]]:
-    """The wrench effects that an engine is compiled with, and those that are attached to it.
+    """List the wrench effects that an engine is compiled with, and those attached to it.
 
     An engine takes seconds to compile, and effects that a model lacks hardly slow it down. So it
-    has either no wrench effect, where no model has one, or all of the package. Attached are a
-    user's own effects, and an effect that a model has a second time.
+    has all built-in wrench effects, or none where no model has any. A user's own effects, and an
+    effect that a model has a second time, are attached.
     """
     most = Counter(candidates)
     for model in models:
@@ -273,7 +273,7 @@ def _slots(
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
-    """For every slot 1 or 0, as the model has such an effect or not, then its parameters."""
+    """For each slot 1 where the model has such an effect, else 0, followed by its parameters."""
     own = list(model.wrenches)
     parts = [np.zeros(0)]
     for cls in slots:
@@ -286,7 +286,7 @@ def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
 
 
 def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
-    """What the effects of an engine read of a drive; None if they read nothing."""
+    """Columns of a drive that the effects of an engine read; None if they read nothing."""
     if not any(cls.reads() for cls in slots):
         return None
     actuators = len(model.body.places) + model.body.B.shape[1]
@@ -294,7 +294,7 @@ def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
 
 
 def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:
-    """The distinct objects among values, and (m,) which of them each value is."""
+    """The distinct objects (by identity) among m values, and the index (m,) of each value's own."""
     own = {id(value): value for value in values}
     place = {key: k for k, key in enumerate(own)}
     return list(own.values()), np.array([place[id(value)] for value in values], np.int64)

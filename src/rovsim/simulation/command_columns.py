@@ -1,4 +1,4 @@
-"""Columns of a command log: which are angles, and how many digits they keep."""
+"""Columns of a command log: which are angles, and how many digits a log keeps of each."""
 
 from dataclasses import replace
 
@@ -13,12 +13,12 @@ from rovsim.measurement.campaign import Campaign
 
 
 def mark_angles(campaign: Campaign, vehicle: Vehicle) -> Campaign:
-    """The campaign, its log told which of its columns are angles in rad.
+    """Note in the description of a campaign's log which of its columns are angles, in rad.
 
-    Columns stand in the vehicle's order, whatever they are called.
+    Columns are taken in the order of `Vehicle.command_columns`, whatever their names are.
 
     Raises:
-        BadInput: a column called like one of the vehicle's stands in another's place.
+        BadInput: a column has the name of a command of the vehicle, but the place of another.
     """
     log, expected = campaign.commands, vehicle.command_columns
     if log is None or log.per_axis or not any(vehicle.angles) or len(log.names) != len(expected):
@@ -36,7 +36,7 @@ def mark_angles(campaign: Campaign, vehicle: Vehicle) -> Campaign:
 
 
 def round_as_logged(value: Array, kind: CommandKind, vehicle: Vehicle) -> Array:
-    """Values (..., c) to the digits that a log keeps: pulses in whole us, else four decimals."""
+    """Round commands (..., c) as a log does: thrusters to PWM in whole us, others to 4 decimals."""
     rounded = np.round(value, 4)
     if kind != "thruster":
         return rounded

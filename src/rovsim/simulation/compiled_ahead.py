@@ -1,4 +1,4 @@
-"""Functions of the engines that a diagnosis needs later, compiled meanwhile in another process."""
+"""Compile the engines that a diagnosis needs later, in another process while it begins."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ def is_compiled() -> bool:
 
 
 def compile_ahead() -> None:
-    """Compile them, in the order in which they are needed, by calls that do next to nothing."""
+    """Compile the engines in the order in which a diagnosis needs them, by calls of one step."""
     model = nominal(load_vehicle(VEHICLE))
     with_effects = Batch([model], Site.unknown(), candidates=built_in().wrenches, learned=False)
     with_effects.innovations([_drive(model)], _starts(), _correction())
@@ -32,19 +32,19 @@ def compile_ahead() -> None:
 
 
 def _starts() -> Starts:
-    """At rest, for one step or reading."""
+    """One start at rest, for one step or reading."""
     state = rest_state(np.zeros(3), np.zeros((1, 1)))
     return Starts(state, np.zeros(1, np.int64), np.ones(1, np.int64))
 
 
 def _drive(model: Model) -> Drive:
-    """Of thrusters that stand still, over one step."""
+    """A drive of one step in which all thrusters stand still."""
     thrusters = model.body.B.shape[1]
     return Drive(np.zeros((1, 6)), np.zeros((1, thrusters)), np.full((1, 6), np.nan), 1.0)
 
 
 def _correction() -> Correction:
-    """Two readings at one place."""
+    """A correction by two equal readings, 0.01 s apart."""
     readings = np.zeros((2, 13))
     readings[:, 3] = 1.0
     return Correction(

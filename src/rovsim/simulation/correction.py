@@ -11,14 +11,16 @@ class Correction:
     """Readings, and the filters that correct models by them.
 
     Attributes:
-        readings: of each model (k, 13): pose, and mean velocity since the reading before.
-        seen: (k, 6) 1 for the axes that each reading shows, else 0.
+        readings: k readings (k, 13) for each model: pose in NED, and the mean body velocity since
+            the previous reading.
+        seen: (k, 6) 1 for the axes that each reading measures, else 0.
         known: (5,) which parts of a pose were measured, see `pose_error` of the engine.
         time: (s+1,) at which the steps begin and end, s.
-        ends: (k,) edges at which the readings hold, as indices into `time`.
-        gains: corrections (3, 6) of pose, velocity and disturbance per unit of innovation.
-        decay: share (s, 6) of the disturbance that remains after each step.
-        by_velocity: whether velocities are read. Poses are then taken as measured.
+        ends: (k,) the time of each reading, as an index into `time`.
+        gains: filter gains (3, 6): corrections of pose, velocity and disturbance per unit of
+            innovation of the same axis.
+        decay: share (s, 6) of the estimated disturbance that remains after each of s steps.
+        by_velocity: whether innovations are those of velocities; poses are then taken as measured.
     """
 
     readings: Sequence[Array]

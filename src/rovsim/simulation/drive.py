@@ -1,4 +1,4 @@
-"""Forces and demands that drive a model: means over integration steps, or values at instants."""
+"""Forces and demands that drive a model, as means over integration steps or values at instants."""
 
 from dataclasses import dataclass, field, replace
 from typing import Callable, NamedTuple, Sequence
@@ -19,10 +19,12 @@ KEPT = 1 << 26  # bytes: fifty drives of a minute each, as many as one step of a
 
 
 class Reads(NamedTuple):
-    """What the effects of an engine read of a drive.
+    """Columns of a drive that the effects of an engine read.
 
-    `actuators` is the number of columns with the forces and commands of the actuators, `channels`
-    are names of what was logged beside the commands, such as a voltage.
+    Attributes:
+        actuators: number of columns with the forces and commands of the actuators.
+        channels: names of the further columns, which were logged beside the commands, such as a
+            voltage.
     """
 
     actuators: int
@@ -30,15 +32,15 @@ class Reads(NamedTuple):
 
 
 class Actuation(NamedTuple):
-    """What commands do to the actuators over k steps, before any body is considered.
+    """What commands make the actuators do over k steps; it does not depend on the vehicle's body.
 
     Attributes:
-        wrench: that the commands are themselves (k, 6), N and N m.
+        wrench: commands that are a wrench themselves (k, 6), N and N m, in body axes FRD at CO.
         force: of each component of each thruster (k, n), N. A thruster that turns has two.
-        demand: (k, 6) in [-1, 1]; NaN where none was logged.
+        demand: pilot demand (k, 6) of each axis in [-1, 1]; NaN where none was logged.
         angle: of each control surface (k, s), rad.
-        read: what effects read (k, r): forces and commands of the actuators, then the channels of
-            the model's thrust path; empty where no effect reads them.
+        read: columns (k, r) for the effects that read them: forces and commands of the actuators,
+            then the channels of the model's thrust path; empty where no effect reads them.
     """
 
     wrench: Array
@@ -49,7 +51,7 @@ class Actuation(NamedTuple):
 
     @staticmethod
     def by(model: Model, thrust: Thrust) -> "Actuation":
-        """The actuation that a thrust is for the thrusters and surfaces of a model."""
+        """Resolve a thrust along the axes of a model's thrusters."""
         force = model.thrust_path.thrusters.resolved(thrust.force, thrust.cosine, thrust.sine)
         angle = thrust.angle
         if angle is None:
@@ -60,7 +62,7 @@ class Actuation(NamedTuple):
         return Actuation(thrust.wrench, force, thrust.demand, angle, read)
 
     def push(self, model: Model) -> Array:
-        """Wrench (k, 6) on a model with its autopilots, N and N m; linear in the actuation."""
+        """Wrench (k, 6) on a model, autopilots included, N and N m; linear in the actuation."""
         return np.asarray(self.wrench + model.actuated(self.force, self.demand))
 
     def drive(self, model: Model, duration: float) -> "Drive":
@@ -76,10 +78,13 @@ class Actuation(NamedTuple):
         )
 
     def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
-        """Join steps: `count` (s,) of them make each of s longer ones.
+        """Join steps to longer ones, over each of which the actuation is a straight line.
 
-        A force that is held constant over a long step loses the time at which it acted in the step.
-        A straight line with the same first moment keeps it.
+        A mean over a long step forgets when within the step a force acted. A line with the same
+        mean and the same first moment about the middle of the step keeps that.
+
+        Args:
+            count: how many steps (s,) make each of the s longer ones.
 
         Returns:
             Means over the longer steps, and by how much the lines rise over each of them.
@@ -98,15 +103,15 @@ class Drive:
     """What drives one model: means over k steps, or values at k instants. Body axes FRD at CO.
 
     Attributes:
-        wrench: of thrusters, autopilots, and commands that are a wrench (k, 6), N and N m.
+        wrench: sum (k, 6) of thrusters, autopilots and commands that are a wrench, N and N m.
         force: of each component of each thruster (k, n), N.
-        demand: (k, 6) in [-1, 1]; NaN where none was logged.
+        demand: pilot demand (k, 6) of each axis in [-1, 1]; NaN where none was logged.
         duration: of the whole run, s.
-        ramp: by how much the wrench rises over each step (k, 6), N and N m; empty for constant
-            wrenches.
+        ramp: by how much the wrench rises over each step (k, 6), N and N m; empty where it is
+            constant over each step.
         angle: of each control surface (k, s), rad.
-        read: what effects read (k, r): forces and commands of the actuators, then the `channels`;
-            empty where no effect reads them.
+        read: columns (k, r) for the effects that read them: forces and commands of the actuators,
+            then the `channels`; empty where no effect reads them.
         channels: names of the last columns of `read`.
     """
 
@@ -120,10 +125,13 @@ class Drive:
     channels: tuple[str, ...] = ()
 
     def acting(self, reads: Reads | None) -> Array:
-        """Forces and angles (k, n + s), then what the effects of an engine read.
+        """The columns that the engine takes: forces, angles, then those that its effects read.
 
-        Zero for channels that this model does not have. The engine takes the columns in this order
-        (`rovsim.dynamics.engine.reading`).
+        Columns of channels that this model does not have are zero. The order is that of
+        `rovsim.dynamics.engine.reading`.
+
+        Returns:
+            Array (k, n + s), or (k, n + s + actuators + channels) where effects read something.
         """
         own = np.hstack([self.force, self.angle]) if self.angle.size else self.force
         if reads is None:
@@ -138,40 +146,40 @@ class Drive:
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
-        """The drive that a thrust is for a model, in a run of `duration` s."""
+        """The drive of a model under a thrust, in a run of `duration` s."""
         return Actuation.by(model, thrust).drive(model, duration)
 
     def each(self, change: Callable[[Array], Array]) -> "Drive":
-        """The same with one change applied to wrench, force, demand, angle and read."""
+        """Apply a function to wrench, force, demand, angle and read; the result has no ramp."""
         names = ("wrench", "force", "demand", "angle", "read")
         changed = {name: change(getattr(self, name)) for name in names}
         return Drive(duration=self.duration, channels=self.channels, **changed)
 
     def at(self, steps: Array) -> "Drive":
-        """The drive at some of the steps (j,)."""
+        """The drive at some of its steps or instants: their indices (j,)."""
         return self.each(lambda x: x[steps])
 
     def pushed(self, wrench: Array) -> "Drive":
-        """The same with a further wrench (k, 6), N and N m."""
+        """Add a further wrench (k, 6), N and N m, in body axes FRD at CO."""
         return replace(self, wrench=self.wrench + wrench)
 
     def idle(self) -> "Drive":
-        """The same demands, while all thrusters stand still."""
+        """The drive with the same demands, but without any force of thrusters or commands."""
         return replace(self, wrench=0 * self.wrench, force=0 * self.force, read=0 * self.read)
 
 
 class Drives:
-    """Makes the drives of models under the commands of one run, and keeps the last ones.
+    """Makes the drives of models under the commands of one run, and caches the latest ones.
 
-    Computing the thrust takes as long as a short simulation. So models whose thrust is the same
-    share one drive.
+    To compute the thrust takes as long as a short simulation, so models with the same thrust share
+    one drive.
 
     Args:
         commands: the log of the run.
         edges: (k+1,) at which the steps begin and end, s; thrust is constant over each step.
-        between: how commands go on from one line of the log to the next.
-        parts: (s,) how many of these steps are joined to one; None where none are.
-        kept: where drives are kept, perhaps together with those of other runs.
+        between: whether commands are held between two lines of the log, or interpolated.
+        parts: (s,) how many of these steps make each of s longer ones; None: all stay as they are.
+        kept: the cache, which drives of other runs may share.
     """
 
     def __init__(
@@ -207,7 +215,7 @@ class Drives:
         return replace(drive, ramp=growth[0].push(model)) if growth else drive
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
-        """Actuation over the steps; where these are joined, also by how much it rises over each."""
+        """Actuation over the steps; where these are joined, also its rise over each of them."""
         found = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
         return (found,) if self._parts is None else found.joined(self._parts)
 
@@ -217,9 +225,9 @@ def drive_by_log(model: Model, motion: Motion, grid: StepGrid, between: Between)
 
     Args:
         model: the model.
-        motion: the run.
-        grid: over whose steps thrust is constant.
-        between: how commands go on from one line of the log to the next.
+        motion: the run, which has the command log.
+        grid: integration steps, over each of which thrust is constant.
+        between: whether commands are held between two lines of the log, or interpolated.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.

@@ -24,15 +24,15 @@ from rovsim.simulation.stepper import Stepper
 class Ensemble:
     """Steppers of possible models, with effects, values and disturbances drawn from a posterior.
 
-    The state of the vehicle is not drawn, for it may be known better than a motion capture tells
-    it, or worse. Where it is uncertain, vary the states that `start` returns.
+    The initial state of the vehicle is not drawn, because the caller may know it better or worse
+    than a motion capture would. Where it is uncertain, vary the states that `start` returns.
 
     Args:
-        model: as `rovsim add` made it of a diagnosis.
+        model: with the uncertainty that `rovsim add` writes into a model after a diagnosis.
         kind: what commands are; see `Stepper`.
         site: walls of the tank, where an effect needs them.
-        duration: of the whole run in s; see `Stepper`.
-        draws: how many.
+        duration: of the whole run, s; see `Stepper`.
+        draws: number of possible models.
         seed: of the draws.
 
     Raises:
@@ -67,10 +67,18 @@ class Ensemble:
         return np.tile(np.asarray(state, dtype=np.float64), (len(self.members), 1))
 
     def step(self, states: Array, command: Array, dt: float) -> Array:
-        """The states (draws, 13) after dt s under a command that is given now and held.
+        """Step all models by dt s under a command that is given now and held.
 
         The disturbance is held for dt as well, so take steps shorter than its correlation time,
         which is some 0.5 s.
+
+        Args:
+            states: of all models (draws, 13), in NED and FRD as those of `Stepper`.
+            command: (c,) in the unit of its kind; see `Stepper`.
+            dt: length of the step, s.
+
+        Returns:
+            The states (draws, 13) after the step.
 
         Raises:
             BadInput: a command or states of another shape, or dt that is not positive.

@@ -1,9 +1,9 @@
 """Extend windows of a replay on both sides, so that the filter has no edge at their ends.
 
-The measurement went through its filter one stretch at a time. If the motion in a window were
+The measurement was filtered one usable stretch at a time. If the simulated motion in a window were
 filtered by itself, it would have two edges where the measurement has none, and even a perfect model
-would show errors there. So the measured motion is put before the window, and the model runs on
-after it, up to the ends of the stretch.
+would show errors there. So the measured motion is put before the window, and the model is simulated
+beyond its end, as far as the filter reaches or the stretch goes.
 """
 
 from collections import defaultdict
@@ -22,7 +22,14 @@ AT_ONCE = 1 << 16  # samples in a stack: filters take some twenty times its room
 
 @dataclass(frozen=True)
 class Embedded:
-    """A window from sample `first` to `last`; `before` and `after`: by how many it is extended."""
+    """A window of a replay, and by how much it is extended.
+
+    Attributes:
+        before: number of samples by which it is extended at its beginning.
+        after: number of samples by which it is extended at its end.
+        first: sample at which the window itself begins.
+        last: sample at which the window itself ends.
+    """
 
     before: int
     after: int
@@ -31,7 +38,13 @@ class Embedded:
 
 
 def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[Embedded]:
-    """Extend windows of a sampled run by up to `reach` samples on either side, in their stretch."""
+    """Extend windows of a sampled run within their usable stretches.
+
+    Args:
+        motion: the run, on a uniform clock.
+        spans: first and last sample of each window.
+        reach: number of samples by which a window is extended on either side at most.
+    """
     stretches = find_stretches(np.isfinite(motion.nu).all(axis=1))
     found = []
     for a, b in spans:
@@ -50,13 +63,16 @@ def derive(
     """Filter and differentiate the simulated poses of windows.
 
     Args:
-        paths: reported poses (n, 7) of each window, from its first sample to the last one after it.
-        windows: of each path.
-        motions: as measured, of each path; all have one clock.
+        paths: for each window the poses (n, 7) that the motion capture would report, from the
+            first sample of the window to the last one of its extension: position m NED, and
+            quaternion body to world.
+        windows: for each path its window.
+        motions: for each path the measured motion; all have the same clock.
         signals: filter and derivative of the measurement.
 
     Returns:
-        Velocity and acceleration (2, n, 6) of each path; infinite where it diverged in its window.
+        For each path velocity and acceleration (2, n, 6) in body axes, m/s, rad/s and m/s2, rad/s2.
+        Infinite from where the path diverged; throughout, if that was within its window.
     """
     found = [np.full((2, len(path), 6), np.inf) for path in paths]
     period = time_step(motions[0].time) if motions else 0.0

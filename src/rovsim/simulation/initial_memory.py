@@ -1,4 +1,7 @@
-"""The state of a model's fluid memory at times of a measured motion."""
+"""The state of a model's fluid memory while the vehicle moves as it was measured.
+
+The memory is a velocity: the velocity relative to the water, passed through a first-order low-pass.
+"""
 
 from typing import Callable, Sequence
 
@@ -15,13 +18,18 @@ STEP = 0.01  # s; the velocity is taken as straight between two samples, for whi
 
 
 def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
-    """Velocity (k, 6) that the water of a model still has at times (k,) s of a true motion.
+    """Compute the state of a model's fluid memory at some times of a true motion.
 
     Gaps in the measurement are interpolated, since the water goes on moving in them. Samples that
     are left out of comparisons are used as well, if they were measured.
 
+    Args:
+        model: with its current and the time constant of its memory.
+        motion: the run as the model sees it, see `undo_mocap_view`.
+        times: (k,) in rising order, s on the clock of the motion.
+
     Returns:
-        The velocity, m/s and rad/s; empty where the model has no fluid memory.
+        Velocity (k, 6) in body axes, m/s and rad/s; empty where the model has no fluid memory.
     """
     body = model.body
     known = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
@@ -43,18 +51,19 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
 def remembered_at(
     models: Sequence[Model], see: Callable[[Model], Motion], edges: Array, steps: Array
 ) -> Array:
-    """Velocity (m, w, 6) that the water of m models still has at steps (w,) of a grid.
+    """Compute the states of the fluid memories of m models at some steps of a grid.
 
     Models whose memory depends on the same numbers share one computation.
 
     Args:
         models: m of them.
-        see: the true motion of the run, as a model sees it.
+        see: returns the true motion of the run behind the measured one, for one model.
         edges: (k+1,) at which the steps of the grid begin and end, s.
-        steps: (w,) of the grid.
+        steps: indices (w,) into `edges`.
 
     Returns:
-        The velocities, m/s and rad/s; empty where no model has a fluid memory.
+        Velocities (m, w, 6), m/s and rad/s; zero for models without a fluid memory, and empty where
+        no model has one.
     """
     if not any(m.body.memory_decay for m in models):
         return NO_MEMORY

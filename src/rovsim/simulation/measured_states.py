@@ -17,7 +17,10 @@ from rovsim.simulation.unfiltered_motion import sharpen
 
 
 def undo_mocap_view(model: Model, motion: Motion) -> Motion:
-    """The true motion of CO behind the reported one, if the motion capture is as the model says."""
+    """Compute the true motion of CO, if the motion capture reports it as the model says.
+
+    This undoes smoothing, and the offset and rotation of the reported body and world axes.
+    """
     motion, back = sharpen(model, motion), model.mocap_view.inverse
     return (
         motion
@@ -33,7 +36,7 @@ def undo_mocap_view(model: Model, motion: Motion) -> Motion:
 
 
 def true_states(model: Model, motion: Motion, index: Array) -> Array:
-    """States (k, 13) of `undo_mocap_view` at some samples or bins (k,), without all else."""
+    """True states (k, 13), as of `undo_mocap_view`, at some samples or bins `index` (k,) alone."""
     view = model.mocap_view
     if motion.binned or (view.identity and not view.low_pass.time_constants):
         return undo_mocap_view(model, motion).state_at(index)
@@ -60,9 +63,15 @@ def interpolate(times: Array, values: Array, time: float) -> Array:
 
 
 def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
-    """Acceleration (n, 6) of a model at the states of a true motion, m/s2 and rad/s2.
+    """Evaluate the body acceleration of a model at the states of a true motion.
 
-    `drive` is that of the model at the n samples or starts of bins.
+    Args:
+        model: the model.
+        motion: the run as the model sees it, see `undo_mocap_view`.
+        drive: of the model at the n samples or starts of bins.
+
+    Returns:
+        Acceleration (n, 6), m/s2 and rad/s2.
     """
     memory = measured_memory(model, motion, motion.time)
     times = motion.commands.since_start(motion.time)
@@ -70,13 +79,13 @@ def accelerate_as_measured(model: Model, motion: Motion, drive: Drive) -> Array:
 
 
 def accelerate_as_logged(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
-    """Acceleration (n, 6) of a model at the states of a true motion, under the logged commands."""
+    """Do the same as `accelerate_as_measured`, under the logged commands of the run."""
     drive = drive_as_measured(model, motion, settings)
     return accelerate_as_measured(model, motion, drive)
 
 
 def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) -> Drive:
-    """The drive of a model at every sample or start of a bin, as the mean over the steps around it.
+    """Average the drive of a model around every sample or start of a bin.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -89,7 +98,7 @@ def drive_as_measured(model: Model, motion: Motion, settings: ReplaySettings) ->
 
 
 def _average_at_samples(drive: Drive, stride: int) -> Drive:
-    """At each sample of a uniform clock: the mean of the steps on either side."""
+    """Average a drive over the two sampling periods around each sample of a uniform clock."""
 
     def mean(x: Array) -> Array:
         x = x.reshape(len(x) // stride, stride, x.shape[-1]).mean(axis=1)
@@ -99,7 +108,12 @@ def _average_at_samples(drive: Drive, stride: int) -> Drive:
 
 
 def _average_at_bins(drive: Drive, nearest: Array) -> Drive:
-    """At the start of each bin, step `nearest` (n+1,): the mean over the bins before and after."""
+    """Average a drive over the two bins around the start of each of n bins.
+
+    Args:
+        drive: over the integration steps.
+        nearest: steps (n+1,) at which the bins begin, and the last one ends.
+    """
 
     def mean(x: Array) -> Array:
         total = np.vstack([np.zeros(x.shape[-1]), np.cumsum(x, axis=0)])
@@ -110,7 +124,7 @@ def _average_at_bins(drive: Drive, nearest: Array) -> Drive:
 
 
 def nearest_steps(motion: Motion, grid: StepGrid) -> Array:
-    """Steps (n+1,) at which the bins begin, and the last one ends."""
+    """Indices (n+1,) of the steps that are nearest to the starts of n bins and the last end."""
     edges = np.append(motion.time, motion.end)
     nearest = np.round((edges - edges[0]) / grid.h).astype(int)
     return np.clip(nearest, 0, len(grid.edges) - 1)

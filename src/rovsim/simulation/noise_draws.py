@@ -20,7 +20,7 @@ AT_ONCE = 1 << 16  # samples: filters take some twenty times their room
 
 @dataclass(frozen=True, eq=False)
 class NoiseDraws:
-    """Draws disturbances and errors of measurements; (6,) is surge to yaw.
+    """Draws disturbances and errors of measurements, along the body axes from surge to yaw.
 
     Attributes:
         disturbance_std: standard deviation (6,) of the disturbance, m/s2 and rad/s2.
@@ -54,9 +54,14 @@ class NoiseDraws:
         return NoiseDraws(level, memory, reading, noise.period_s, colour, lasts, random)
 
     def draw_disturbance(self, steps: Array, draws: int) -> Array:
-        """Draw disturbances (draws, k, 6) over steps of `steps` (k,) s, m/s2 and rad/s2.
+        """Draw disturbances, each axis a stationary first-order Gauss-Markov process.
 
-        Each is a first-order Gauss-Markov process.
+        Args:
+            steps: lengths (k,) of the integration steps, s.
+            draws: number of draws.
+
+        Returns:
+            Accelerations (draws, k, 6), m/s2 and rad/s2.
         """
         fade = gauss_markov.decay(steps[:, None, None] / self.correlation_time)
         normal = self.random.normal(size=(len(fade), draws, 6))
@@ -66,13 +71,13 @@ class NoiseDraws:
     def resample_measurement_noise(
         self, motion: Motion, view: MocapView, signals: SignalSettings, draws: int
     ) -> list[Motion]:
-        """A motion as `draws` other measurements of it would have given it.
+        """Add further measurement errors to a motion, after its filter and derivative.
 
         Args:
             motion: as it was measured.
-            view: of the motion capture, which may smooth.
+            view: how the motion capture reports a motion; it may smooth.
             signals: filter and derivative of the measurement.
-            draws: how many.
+            draws: number of motions to return, each with errors of its own.
         """
         if motion.binned:
             return [self._read_bins_again(motion) for _ in range(draws)]
@@ -86,15 +91,20 @@ class NoiseDraws:
         return found
 
     def _read_bins_again(self, motion: Motion) -> Motion:
+        """Add white noise to the mean velocities of a binned motion."""
         read = self.reading_std * self.random.normal(size=motion.nu.shape)
         return replace(motion, nu=motion.nu + read, state_nu=motion.state_nu + read)
 
     def _misread(
         self, count: int, period: float, draws: int, view: MocapView, signals: SignalSettings
     ) -> tuple[Array, Array, Array]:
-        """Measurements of a vehicle at rest: poses (draws, n, 7), and velocities and accelerations.
+        """Draw measurements of a vehicle at rest, which consist of errors alone.
 
-        The last two are (draws, n, 6). All have passed the smoothing of the cameras and the filter.
+        The errors of poses pass the smoothing of the motion capture, the filter and the derivative.
+
+        Returns:
+            Poses (draws, count, 7), velocities (draws, count, 6) and accelerations of that shape,
+            relative to the body at rest, m, m/s, m/s2 and rad, rad/s, rad/s2.
         """
         pad = round(PAD / period)
         kicks = np.stack([self._err(count + 2 * pad, period) for _ in range(draws)])
@@ -105,12 +115,12 @@ class NoiseDraws:
         return smooth[:, inside], nu[:, inside], nu_dot[:, inside]
 
     def _err(self, count: int, period: float) -> Array:
-        """Errors (count, 6) of single frames, `period` s apart."""
+        """Draw errors (count, 6) of single frames, `period` s apart, m and rad."""
         one = self.reading_std * np.sqrt(self.period / period)  # a reading is a mean of frames
         return one * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
 
     def _err_slowly(self, count: int, period: float) -> Array:
-        """Slow errors (count, 6) of the cameras."""
+        """Draw slow Gauss-Markov errors (count, 6) of frames, `period` s apart, m and rad."""
         if not self.colour_std.any():
             return np.zeros((count, 6))
         keep = gauss_markov.decay(period / self.colour_correlation_time)
@@ -120,9 +130,13 @@ class NoiseDraws:
 
 
 def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:
-    """Add errors to a motion: of poses `off` (n, 7), velocities and accelerations (n, 6).
+    """Add errors along the body axes to a motion.
 
-    All are along the body axes.
+    Args:
+        motion: n samples.
+        off: errors of poses (n, 7): position m, and quaternion.
+        nu: errors of velocities (n, 6), m/s and rad/s.
+        nu_dot: errors of accelerations (n, 6), m/s2 and rad/s2.
     """
     place = motion.eta[:, :3] + rotations.rotate(motion.eta[:, 3:], off[:, :3])
     eta = np.hstack([place, rotations.multiply(motion.eta[:, 3:], off[:, 3:])])

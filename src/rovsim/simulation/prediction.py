@@ -1,4 +1,4 @@
-"""What a replay returns: arrays aligned with the measurement, by horizon."""
+"""What a replay returns: for each horizon, arrays that are aligned with the measurement."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,7 @@ LEVEL = 0.9  # share of the measurement that a band should contain
 class Prediction:
     """What a model predicts at the n times of a motion, after the filter of the measurement.
 
-    NaN where it predicts nothing, infinite from where it diverged.
+    NaN at times without a prediction, infinite from where the replay diverged.
 
     Attributes:
         eta: pose (n, 7): position m NED, quaternion body to world.
@@ -31,7 +31,7 @@ class Prediction:
 
     @staticmethod
     def empty(count: int) -> "Prediction":
-        """A prediction of nothing at `count` times."""
+        """A prediction that is NaN at `count` times."""
         return Prediction(*(np.full((count, columns), np.nan) for columns in (7, 6, 6)))
 
     def mark_diverged(self, at: slice) -> None:
@@ -43,7 +43,14 @@ class Prediction:
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """Predictions of one model for one run, by horizon: `open_loop`, `0.5`, `2`, `5`."""
+    """Predictions of one model for one run.
+
+    Attributes:
+        model: name of the model.
+        run: the run.
+        time: (n,) of the measurement, s.
+        horizons: predictions at these times by name of their horizon: `open_loop`, `0.5`, `2`, `5`.
+    """
 
     model: str
     run: RunInfo
@@ -52,7 +59,7 @@ class Replay:
 
     @property
     def longest(self) -> float:
-        """Length of its longest windows, s; 0 without windows."""
+        """Length of the longest windows, s; 0 if there are none."""
         return max((float(name) for name in self.horizons if name != OPEN_LOOP), default=0.0)
 
     def write(self, path: Path) -> None:
@@ -77,12 +84,12 @@ class Replay:
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Lower and upper end of what a model predicts at the n times of a motion; NaN where nothing.
+    """Lower and upper end of a band at the n times of a motion; NaN at times without a prediction.
 
     Attributes:
         nu: of the body velocity (2, n, 6), m/s and rad/s.
         place: of the position m NED, then of roll, pitch and yaw in rad (2, n, 6). The angles are
-            continued from the measured ones where each window begins.
+            continued from the measured ones where each window begins, without jumps of 2 pi.
     """
 
     nu: Array

@@ -1,8 +1,8 @@
 """Replay: drive a model with the logged commands, from measured states.
 
 An open-loop replay starts once and is never corrected; windows of h seconds start again from the
-measured state every h seconds. What comes back is aligned with the measurement, and went through
-the same filter.
+measured state every h seconds. Predictions are aligned with the measurement, and have passed the
+same filter.
 """
 
 from itertools import islice
@@ -42,7 +42,7 @@ def replay(
     """Replay one run in windows, and in open loop as well unless told otherwise.
 
     The result is what the motion capture would report of the model's motion; it is NaN throughout
-    for a run that cannot be used.
+    for a run without usable samples.
 
     Args:
         model: the model to drive.
@@ -64,7 +64,7 @@ def by_horizon(
     how: SimulationSettings,
     open_loop: bool = True,
 ) -> Iterator[tuple[str, Prediction]]:
-    """The predictions of `replay`, each made when it is asked for, with the name of its horizon.
+    """Yield the predictions of `replay` one by one, each with the name of its horizon.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -76,7 +76,7 @@ def by_horizon(
 def find_spans(
     motion: Motion, settings: ReplaySettings, open_loop: bool = True
 ) -> dict[str, Spans]:
-    """The windows of each horizon: `open_loop`, `0.5`, `2`, `5`."""
+    """Find the windows of each horizon, by its name: `open_loop`, `0.5`, `2`, `5`."""
     spans: dict[str, Spans] = {OPEN_LOOP: find_whole(motion)} if open_loop else {}
     for seconds in settings.horizons:
         spans[name_horizon(seconds)] = list(find_windows(motion, seconds))
@@ -110,9 +110,9 @@ class Anchor(NamedTuple):
     """Where a trajectory begins.
 
     Attributes:
-        step: integration step of the grid.
-        samples: how many samples it lasts.
-        state: true state (13,) there.
+        step: index of the integration step at which it begins.
+        samples: length of the trajectory in sampling periods; in steps, for a binned run.
+        state: true state (13,) there: pose in NED, body velocity in FRD.
     """
 
     step: int
@@ -153,12 +153,12 @@ def simulate(
         model: the model to drive.
         motion: the run as the model sees it, see `undo_mocap_view`.
         starts: of each trajectory, in order of time. Velocities that were not measured are replaced
-            by those that the model itself has by then.
+            by those that the model itself reaches by then.
         settings: step length and how commands are held.
         disturbed: further accelerations (k, 6) over the integration steps, m/s2 and rad/s2.
 
     Returns:
-        For each start its states (samples + 1, 13), the given one first.
+        For each start the states (samples + 1, 13), of which the first is the start itself.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -194,7 +194,7 @@ def _predict_samples(
 def _report_samples(
     case: ReplayCase, within: Sequence[Embedded], settings: ReplaySettings
 ) -> list[Array]:
-    """Poses (k, 7) of each window, as the motion capture would report them."""
+    """Simulate each window; returns the poses (k, 7) that the motion capture would report."""
     model, motion, _ = case
     true, stride = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step).stride
     state, period = true.state, time_step(motion.time)

@@ -1,4 +1,4 @@
-"""Where runs begin that nobody measured: at rest and level, where they were put."""
+"""Initial states at rest and level, for runs whose start was planned and not measured."""
 
 import numpy as np
 from numpy import ndarray as Array
@@ -8,7 +8,7 @@ PLACED, TURNED = 0.05, 0.05
 
 
 def rest_state(place: Array, heading: Array | float) -> Array:
-    """States (..., 13) at a place (..., 3) m NED, of headings (...) rad."""
+    """States (..., 13) at rest and level, at places (..., 3) m NED, with headings (...) rad."""
     half = 0.5 * np.asarray(heading)
     state = np.zeros((*half.shape, 13))
     state[..., :3] = place

@@ -1,6 +1,7 @@
-"""The acceleration that a model lacks at the measured states, sample by sample of a run.
+"""The acceleration that a model lacks at the measured states: a_res = a_real - a_sim.
 
-Teacher-forced: the model is evaluated where the vehicle was, a_res = a_real - a_sim.
+This is teacher forcing: the model is evaluated at each measured state, and never integrated over
+more than two bins.
 """
 
 from dataclasses import dataclass, replace
@@ -35,9 +36,11 @@ class Samples:
         index: (n,) of the samples or bins in `motion.time`.
         nu: body velocity (n, 6), m/s and rad/s.
         attitude: quaternion (n, 4) body to world.
-        wrench: of the thrusters (n, 6), N and N m, body axes.
-        a_sim: instantaneous acceleration (n, 6) of the model there, m/s2 and rad/s2.
-        a_res: the acceleration (n, 6) that it lacks, a_real - a_sim.
+        wrench: wrench (n, 6) of the drive, that is of the thrusters above all, N and N m, in body
+            axes FRD at CO.
+        a_sim: instantaneous body acceleration (n, 6) of the model there, m/s2 and rad/s2.
+        a_res: body acceleration (n, 6) that the model lacks, a_real - a_sim, m/s2 and rad/s2. Here
+            a_sim has passed the filter or the bins of the measurement.
     """
 
     index: Array
@@ -66,7 +69,7 @@ def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples
 
 
 def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
-    """Of a sampled run: the model's acceleration goes through the filter of the measurement."""
+    """Compare at samples: the model's acceleration passes the filter of the measurement."""
     drive = drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)
     smoothing, period = how.signals.suited(motion).filter, time_step(motion.time)
@@ -86,7 +89,7 @@ def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Sample
 
 
 def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
-    """Of a binned run: model and measurement are backward differences of the means of two bins."""
+    """Compare at bins: both accelerations are backward differences of the means of two bins."""
     fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
     index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)[index]
@@ -104,9 +107,16 @@ def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
 def _differences_of_bins(
     model: Model, motion: Motion, settings: ReplaySettings, index: Array
 ) -> Array:
-    """Backward differences (n, 6) of the model's mean velocities over two bins, m/s2 and rad/s2.
+    """Simulate pairs of bins; returns backward differences of the mean velocities of the two.
 
-    `index` (n,) says which the second bins are. Each simulation starts where the first bin does.
+    Args:
+        model: the model.
+        motion: a binned run as the model sees it, see `undo_mocap_view`.
+        settings: step length and how commands are held.
+        index: (n,) of the second bin of each pair; a simulation starts with the first one.
+
+    Returns:
+        Accelerations (n, 6), m/s2 and rad/s2.
     """
     grid, edges = StepGrid.over(motion, settings.step), np.append(motion.time, motion.end)
     nearest = nearest_steps(motion, grid)

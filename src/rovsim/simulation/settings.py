@@ -11,21 +11,21 @@ from rovsim.measurement.signals.chain import SignalSettings
 
 
 class ReplaySettings(Section):
-    """`step` s is the longest integration step; `commands` between two logged lines."""
+    """Longest integration step, how commands go on between two logged lines, and the horizons."""
 
     # RK4's error is below 1e-6 m/s at 0.01 s (tests/laws/test_replay.py); above 0.14 s it leaves a
-    # thruster whose time constant is 0.05 s unstable (2.79 of them)
+    # thruster whose time constant is 0.05 s unstable (2.79 time constants)
     step: Annotated[float, Field(gt=0.0, le=0.1)] = 0.01
     commands: Between = "held"  # what an autopilot does with a set-point
     horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
 
     @property
     def longest(self) -> float:
-        """Of the windows, s."""
+        """Longest horizon, s."""
         return max(self.horizons)
 
     def only(self, *horizons: float) -> Self:
-        """The same with these windows, perhaps none."""
+        """Copy the settings with these horizons in s, perhaps none, in place of their own."""
         return self.model_copy(update={"horizons": horizons})
 
     @field_validator("horizons")
@@ -43,5 +43,5 @@ class SimulationSettings(Section):
     replay: ReplaySettings = ReplaySettings()
 
     def only(self, *horizons: float) -> Self:
-        """The same with these windows in s, perhaps none."""
+        """Copy the settings with these horizons in s, perhaps none, in place of their own."""
         return self.model_copy(update={"replay": self.replay.only(*horizons)})

@@ -14,8 +14,8 @@ class StepGrid:
     """k integration steps of the same length.
 
     Attributes:
-        edges: (k+1,) at which they begin and end, s on the clock of the motion.
-        stride: steps from one sample to the next; 1 for a binned run.
+        edges: (k+1,) at which the steps begin and end, s on the clock of the motion.
+        stride: number of steps from one sample to the next; 1 for a binned run.
         before: time from the start of the recording to the first step, s.
     """
 
@@ -35,7 +35,10 @@ class StepGrid:
 
     @staticmethod
     def over(motion: Motion, step: float) -> "StepGrid":
-        """Divide a run into steps no longer than `step` s; each sample falls on an edge."""
+        """Divide a run into steps of at most `step` s, so that each sample falls on an edge.
+
+        The bins of a binned run may begin between two edges.
+        """
         if motion.binned:
             count = int(np.ceil((motion.end - motion.time[0]) / step - 1e-9))
             edges = motion.time[0] + step * np.arange(count + 1)

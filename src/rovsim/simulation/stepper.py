@@ -1,4 +1,4 @@
-"""One step at a time: a model in somebody else's loop, with software or hardware in it.
+"""Steps a model one command at a time, for software or hardware in the loop.
 
     stepper = Stepper(model)
     while running:
@@ -24,7 +24,7 @@ LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.settings.Replay
 
 
 class Stepper:
-    """A model that remembers what a vehicle remembers between two steps.
+    """A model that keeps what is not part of its state: thruster lag, late commands, fluid memory.
 
     States (13,) are true ones at CO: position m in NED, quaternion body to world (w, x, y, z),
     body velocity m/s and rad/s in FRD.
@@ -34,7 +34,8 @@ class Stepper:
         kind: what commands are. `thruster` [-1, 1] per thruster, `demand` [-1, 1] per axis, or
             `wrench` N and N m per axis.
         site: walls of the tank, where an effect needs them.
-        duration: of the whole run in s, where an effect is given per run (a sagging battery).
+        duration: of the whole run, s, needed where an effect changes over a run (such as a battery
+            whose voltage sags).
 
     Raises:
         BadInput: an effect lacks what it needs, or acts on commands before they are given.
@@ -57,17 +58,24 @@ class Stepper:
         self.reset()
 
     def reset(self) -> None:
-        """Begin a new run: no command was given, nothing is remembered."""
+        """Begin a new run: forget all commands, the thruster lag and the fluid memory."""
         self.time = 0.0
         self._arrival, self._value = np.empty(0), np.empty((0, self.columns))
         self._response: list | None = None
         self._memory = np.zeros(6)
 
     def step(self, state: Array, command: Array, dt: float, pushed: Array | None = None) -> Array:
-        """The state (13,) after dt s under a command that is given now and holds.
+        """Step the model by dt s under a command that is given now and held.
 
-        So does a wrench (6,) that is `pushed` besides, N and N m. Steps longer than 10 ms are
-        divided.
+        Args:
+            state: at the beginning of the step (13,).
+            command: (c,) in the unit of its kind.
+            dt: length of the step, s; longer ones than 10 ms are divided.
+            pushed: a further wrench (6,) that acts during the step, N and N m, in body axes FRD at
+                CO.
+
+        Returns:
+            The state (13,) at the end of the step.
 
         Raises:
             BadInput: a command or state of another shape, or dt that is not positive.
@@ -92,7 +100,7 @@ class Stepper:
         return state
 
     def _give(self, command: Array) -> None:
-        """Put the command behind those that have not taken effect; forget what is over."""
+        """Queue a command behind those that have not yet taken effect, and drop replaced ones."""
         arrival = self.model.thrust_path.effective_time(np.array([self.time]))
         over = int(latest(self._arrival, self.time))
         self._arrival = np.append(self._arrival[over:], arrival)
@@ -123,7 +131,7 @@ def _refuse_foresight(model: Model) -> None:
 
 
 def _refuse_unknown_duration(model: Model, duration: float) -> None:
-    """Refuse effects whose values are of a whole run where nobody says how long it is."""
+    """Refuse effects whose values refer to a whole run where its duration is not known."""
     names = [effect.id for effect in model.effects if effect.needs_duration()]
     if not names or duration < inf:
         return
@@ -138,7 +146,7 @@ def _refuse_unknown_duration(model: Model, duration: float) -> None:
 def rollouts(
     models: Sequence[Model], states: Array, commands: Array, dt: float, kind: CommandKind
 ) -> Array:
-    """States (m, s, k + 1, 13) of every model from every state under the same commands.
+    """Simulate every model from every state under the same commands.
 
     All run side by side on all cores. The models must have the same wrench effects (an ensemble
     of parameters has) and the same residual.
@@ -150,8 +158,12 @@ def rollouts(
         dt: s, not longer than an integration step of 10 ms.
         kind: what commands are; see `Stepper`.
 
+    Returns:
+        States (m, s, k + 1, 13), of which the first of each trajectory is the given one.
+
     Raises:
-        BadInput: models that do not go together or are given per run, or a dt that does not fit.
+        BadInput: models with different residuals, effects that need the duration of the run, or a
+            dt that is not positive or too long.
     """
     for model in models:
         _refuse_unknown_duration(model, inf)

@@ -1,4 +1,4 @@
-"""Undo the smoothing of a motion capture: the motion that it saw, from the one it reports."""
+"""Undo the smoothing of a motion capture: recover the motion that the cameras saw."""
 
 from dataclasses import replace
 
@@ -15,7 +15,8 @@ from rovsim.measurement.signals.motion import Motion
 def sharpen(model: Model, motion: Motion) -> Motion:
     """Undo the smoothing that a model says the motion capture does.
 
-    Its filter and that of the measurement commute, so it can be undone in derivatives as in poses.
+    The low-pass of the motion capture and the filter of the measurement commute. So smoothing can
+    be undone in the filtered poses and in their derivatives.
     """
     if not model.mocap_view.low_pass.time_constants:
         return motion
@@ -24,12 +25,12 @@ def sharpen(model: Model, motion: Motion) -> Motion:
 
 
 def stage_outputs(model: Model, motion: Motion) -> Array:
-    """Input of the first low-pass of a motion capture, and the output of each.
+    """Recover the input of the low-pass of a motion capture, and the outputs of its stages.
 
     Returns:
-        Array (stages + 1, n, c) in world axes; the last stage is what is reported. The channels are
-        those of `low_pass.in_world`, 21 of a sampled motion and 14 of a binned one. NaN where the
-        motion is unknown.
+        Array (stages + 1, n, c) in world axes: the input, then the output of each stage, of which
+        the last is what is reported. The channels are those of `low_pass.in_world`: c = 21 for a
+        sampled motion, 14 for a binned one. NaN where the motion is unknown.
     """
     low_pass = model.mocap_view.low_pass
     rates = (motion.state_nu,) if motion.binned else (motion.nu, motion.nu_dot)
@@ -44,9 +45,9 @@ def stage_outputs(model: Model, motion: Motion) -> Array:
 
 
 def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
-    """The same (stages + 1, n, 14) at the starts of bins, which are farther apart than frames.
+    """Recover the stages (stages + 1, n, 14) at the starts of bins, which are far apart.
 
-    Derivatives up to the third are used instead of the samples before.
+    Each sample is computed from derivatives up to the third instead of earlier samples.
     """
     eta, first = channels[:, :7], channels[:, 7:]
     second = _differentiate(first, time)
@@ -56,11 +57,12 @@ def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
 
 
 def _differentiate(values: Array, time: Array) -> Array:
+    """Central differences (n, c) of channels (n, c) at `time` (n,) s; zero for one sample."""
     return np.gradient(values, time, axis=0) if len(time) > 1 else np.zeros_like(values)
 
 
 def _of_samples(motion: Motion, seen: Array) -> Motion:
-    """A sampled motion with the channels that were seen (n, 21), where these are known."""
+    """Replace a sampled motion by the channels `seen` (n, 21), where these are known."""
     known = np.isfinite(seen).all(axis=1)[:, None]
     old = (motion.eta, motion.nu, motion.nu_dot)
     eta, nu, nu_dot = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
@@ -68,9 +70,9 @@ def _of_samples(motion: Motion, seen: Array) -> Motion:
 
 
 def _of_bins(motion: Motion, seen: Array) -> Motion:
-    """A binned motion with the channels that were seen (n, 14).
+    """Replace a binned motion by the channels `seen` (n, 14), where these are known.
 
-    The mean velocity of a bin changes by the average change at both of its ends.
+    The mean velocity of a bin changes by the average of the changes at its two ends.
     """
     known = np.isfinite(seen).all(axis=1)[:, None]
     old = (motion.eta, motion.state_nu)

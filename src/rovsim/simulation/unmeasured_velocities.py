@@ -1,4 +1,4 @@
-"""Velocities that nobody measured: each replay goes on with those of the one before it."""
+"""Velocities that were not measured: each window begins with those that the model has by then."""
 
 from dataclasses import replace
 from typing import Sequence
@@ -13,17 +13,19 @@ from rovsim.simulation.drive import Drive
 def propagate_unmeasured_velocities(
     batch: Batch, drives: Sequence[Drive], starts: Starts, time: Array, measured: Array
 ) -> Starts:
-    """The same starts, with the velocities that each model itself has by then where none was read.
+    """Replace unmeasured velocities of starts by those that each model reaches by then.
 
-    A recording of depth and attitude does not say how fast the vehicle swims; taken for zero, even
-    a perfect model would be wrong for as long as its drag needs. Before the first start it rests.
+    A recording of depth and attitude alone does not say how fast the vehicle moves. If each window
+    began with zero velocity, even a perfect model would be wrong for as long as drag needs to make
+    it forget. So each model is simulated from one start to the next. The velocity at the first
+    start stays as given.
 
     Args:
         batch: of m models.
-        drives: of each.
-        starts: w of them, in order of time.
+        drives: one for each model.
+        starts: w of them for each model, in order of time.
         time: (k+1,) s at which the integration steps begin and end.
-        measured: axes (6,) whose velocity was.
+        measured: boolean (6,): axes whose velocity was measured.
     """
     unread = ~measured & (batch.free[7:] > 0.0)
     if not unread.any():

@@ -12,16 +12,16 @@ LAST_SHARE = 0.75  # of a window's length, that what is left of an uneven run mu
 
 
 def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
-    """Find all full windows inside usable stretches, one after the other.
+    """Find all full windows inside usable stretches, each beginning where the last one ended.
 
     A window of a binned run ends at the bin that begins nearest to `seconds` after its start, since
     bins may differ in length.
 
     Args:
         motion: the run.
-        seconds: length of a window; there are no windows shorter than half a sample.
+        seconds: length of a window; of windows shorter than half a sampling period none are found.
 
-    Returns:
+    Yields:
         Sample or bin at which each window begins, and the one at which it ends.
     """
     for first, last in motion.segments():
@@ -34,6 +34,7 @@ def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
 
 
 def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterator[tuple[int, int]]:
+    """Find the windows among the bins `first` to `last` - 1 of a binned run."""
     starts = np.append(motion.time, motion.end)[: last + 1]
     anchor = first
     while starts[last] - starts[anchor] >= LAST_SHARE * seconds:
@@ -45,7 +46,7 @@ def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterato
 
 
 def predicted(motion: Motion, window: tuple[int, int]) -> slice:
-    """Samples or bins that are predicted in a window: without the sample that it begins with."""
+    """Samples or bins of a window that are predicted; the sample that it begins with is given."""
     anchor, end = window
     return slice(anchor, end) if motion.binned else slice(anchor + 1, end + 1)
 
