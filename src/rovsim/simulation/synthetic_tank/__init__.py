@@ -1,6 +1,6 @@
-"""Synthetic campaigns, written as raw exports with the truth sealed beside them.
+"""Makes synthetic campaigns: raw exports, and beside them a file with the hidden truth.
 
-settings     all that a synthetic campaign is made of
+settings     runs, tank, cameras, sensors and hidden effects of a synthetic campaign
 campaign     makes a whole campaign
 true_run     one run: pilot, thrusters, vehicle and turbulence, in closed loop
 pilot        the pilot who moves the sticks
@@ -9,5 +9,5 @@ allocation   turns a demand per axis into commands of thrusters and surfaces
 turbulence   random forces and currents that are not logged
 sensors      what sensors other than cameras report
 exports      writes files as the laboratory's software does
-description  `campaign.yaml`, and the sealed answer
+description  `campaign.yaml`, and `truth.yaml` with the hidden effects
 """

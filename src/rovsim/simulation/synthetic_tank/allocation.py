@@ -1,4 +1,4 @@
-"""What a demand asks of thrusters and surfaces: the mixer, or their levers where there is none."""
+"""Allocation of demands to thrusters and control surfaces, by the mixer or by their lever arms."""
 
 from functools import cached_property
 
@@ -12,7 +12,15 @@ FULL_ANGLE = 0.25  # rad, of a surface at full demand: below the stall of most
 
 
 class Allocation:
-    """From demands per axis to the command columns of a vehicle."""
+    """Turns demands per axis into the commands of a vehicle.
+
+    Attributes:
+        arms: places (n, 3) of the n thrusters in body axes FRD, scaled so that the largest is 1.
+        pushes: force and moment (n, 6) of each thruster per unit of thrust; moments are scaled so
+            that the largest is 1. These allocate demands where the vehicle has no mixer.
+        levers: moment (s, 3) of each control surface per unit of force along its normal, scaled so
+            that the largest is 1.
+    """
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.thrusters, self.limit = vehicle.thrusters, vehicle.thrusters.command_limit
@@ -26,12 +34,17 @@ class Allocation:
 
     @property
     def sideways(self) -> bool:
-        """Whether some thruster pushes sideways."""
+        """Whether a thruster can push sideways."""
         turning = any(unit.azimuth for unit in self.units)
         return turning or bool(np.abs(self.pushes[:, 1]).max(initial=0.0) > 0.1)
 
     def command(self, demand: Array) -> Array:
-        """Commands and angles, as `Vehicle.command_columns`, of a demand (6,)."""
+        """Allocate a demand (6,) from surge to yaw, each axis in [-1, 1].
+
+        Returns:
+            Thruster commands in [-1, 1] and angles in rad, in the order of
+            `Vehicle.command_columns`.
+        """
         columns: list[float] = []
         for k, throttle in enumerate((self._shares @ demand).tolist()):
             own = self._turned(k, demand) if self.units[k].azimuth else [throttle]
@@ -41,11 +54,11 @@ class Allocation:
 
     @cached_property
     def _shares(self) -> Array:
-        """What each thruster (n, 6) does for a demand."""
+        """Command (n, 6) of each of n thrusters per unit of demand of each axis."""
         return self.thrusters.mixing() if self.thrusters.mixer else self.pushes
 
     def _turned(self, k: int, demand: Array) -> list[float]:
-        """Command and angle of a thruster that turns: along what is asked of its place."""
+        """Command and angle, rad, of azimuth thruster k, along the force demanded at its place."""
         x, y, _ = self.arms[k]
         ahead, aside = demand[0] - demand[5] * y, demand[1] + demand[5] * x
         zero = np.arctan2(self.units[k].direction[1], self.units[k].direction[0])
@@ -54,5 +67,5 @@ class Allocation:
 
 
 def _largest_one(levers: Array) -> Array:
-    """Levers (n, 3) of which the largest is 1."""
+    """Scale lever arms (n, 3) so that their largest component is 1."""
     return levers / max(np.abs(levers).max(initial=0.0), 1e-9)

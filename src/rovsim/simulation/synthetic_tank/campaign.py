@@ -1,4 +1,4 @@
-"""A whole synthetic campaign: its recordings appear complete or not at all."""
+"""Make a whole synthetic campaign; its recordings appear complete or not at all."""
 
 import os
 from pathlib import Path
@@ -46,7 +46,7 @@ from rovsim.simulation.synthetic_tank.true_run import fly_run
 def true_model(
     settings: TankSettings, catalogue: Catalogue, unlisted: Sequence[Effect] = ()
 ) -> Model:
-    """The vehicle in the tank: nominal physics and all that is hidden.
+    """Build the true model of the vehicle: nominal physics and all hidden effects.
 
     Raises:
         BadInput: a hidden effect that the catalogue does not know, or values it cannot have.
@@ -66,13 +66,13 @@ def make_campaign(
 ) -> None:
     """Fly all runs and write the campaign to the folder `out`.
 
-    What else is in the folder stays; of an earlier campaign of a tank the recordings go.
+    The recordings of an earlier synthetic campaign in the folder are removed; other files stay.
 
     Args:
-        settings: what it is made of.
-        out: a folder that is new, empty or an earlier tank campaign.
+        settings: runs, tank, sensors and hidden effects.
+        out: a folder that is new, empty or holds an earlier synthetic campaign.
         catalogue: effects that the settings can name.
-        progress: told how many runs are done, of how many.
+        progress: called with the number of runs done and their total number.
         unlisted: hidden physics that the catalogue does not know.
 
     Raises:
@@ -94,10 +94,11 @@ CAMPAIGN = "campaign.yaml"
 
 
 def _move(new: Path, out: Path) -> None:
-    """Put a campaign where it belongs.
+    """Move a new campaign to the folder `out`, and remove the recordings of an earlier one there.
 
-    Into a folder that is there, file by file: until all are, it holds no campaign, and is still one
-    that a tank may write into.
+    Files are moved one by one into a folder that exists, `truth.yaml` first and `campaign.yaml`
+    last. If this is interrupted, the folder holds no complete campaign, but a tank may still write
+    into it.
     """
     if not out.exists():
         os.replace(new, out)
@@ -111,7 +112,7 @@ def _move(new: Path, out: Path) -> None:
 
 
 def _list_written(out: Path) -> set[str]:
-    """Names of the files that a tank wrote into a folder, by what it sealed there."""
+    """Names of the files that a tank wrote into a folder, according to its `truth.yaml`."""
     try:
         settings = checked(SealedTruth, read_yaml(out / SEALED), out / SEALED).settings
         describe(settings)  # no run leaves the folder
@@ -140,6 +141,7 @@ def _record_all(
     folder: Path,
     progress: Callable[[int, int], None],
 ) -> None:
+    """Fly all runs, and write recordings, `campaign.yaml` and `truth.yaml` to `folder`."""
     runs, hidden = settings.runs, len(settings.effects)
     seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
     for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
@@ -157,6 +159,7 @@ def _record_all(
 def _record(
     model: Model, settings: TankSettings, run: TankRun, folder: Path, random: np.random.Generator
 ) -> None:
+    """Fly one run, and write what was measured and commanded to `folder`."""
     tank, readings = settings.tank.ned, list[Reading]()
 
     def choose(total: int, step: float) -> Array:

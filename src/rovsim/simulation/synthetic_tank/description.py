@@ -1,4 +1,4 @@
-"""The two files beside the recordings: what a reader is told, and the sealed answer."""
+"""The two files beside the recordings: `campaign.yaml`, and `truth.yaml` with the hidden truth."""
 
 from pathlib import Path
 from typing import Any, Mapping, Sequence
@@ -23,21 +23,29 @@ VEHICLE = "vehicle.yaml"  # a copy of the user's, so that the folder can be move
 
 
 class HiddenEffect(Section):
-    """An effect of the catalogue and its values, those at their default left out."""
+    """A hidden effect of the catalogue, and its values that are not the defaults."""
 
     effect: str
     parameters: dict[str, float]
 
 
 class OutsideEffect(Section):
-    """Physics that no catalogue names."""
+    """A hidden effect that is not in the catalogue, and its values."""
 
     name: str
     parameters: dict[str, float]
 
 
 class SealedTruth(Section):
-    """The answer, in the terms of the diagnosis, and how to make the campaign again."""
+    """The correct answer of a diagnosis, and the settings that make the same campaign again.
+
+    Attributes:
+        verdict: `missing_effects`, `unexplained` (there is physics outside the catalogue) or
+            `adequate`.
+        effects: hidden effects of the catalogue.
+        outside: hidden physics that is not in the catalogue; None without any.
+        settings: of the tank.
+    """
 
     verdict: str
     effects: tuple[HiddenEffect, ...]
@@ -46,7 +54,7 @@ class SealedTruth(Section):
 
 
 def own_vehicle(settings: TankSettings) -> Path | None:
-    """The file of a vehicle that rovsim does not bring.
+    """Path of the file of a user's own vehicle; None for a vehicle that rovsim brings.
 
     Raises:
         BadInput: there is no such vehicle.
@@ -55,7 +63,7 @@ def own_vehicle(settings: TankSettings) -> Path | None:
 
 
 def describe(settings: TankSettings) -> CampaignFile:
-    """`campaign.yaml` of a tank, without simulating anything.
+    """Describe a synthetic campaign as `campaign.yaml` does, without simulating anything.
 
     Raises:
         BadInput: the name of the campaign or of a run cannot be a file's.
@@ -87,17 +95,17 @@ def describe(settings: TankSettings) -> CampaignFile:
 
 
 def motion_file(settings: TankSettings, run: TankRun) -> str:
-    """Name of the file that holds what was measured of a run."""
+    """Name of the file with the measured motion of a run."""
     return f"{run.id}.csv" if settings.sensors else f"{run.id}_6D.tsv"
 
 
 def commands_file(run: TankRun) -> str:
-    """Name of the file that holds what was sent in a run."""
+    """Name of the file with the command log of a run."""
     return f"{run.id}_commands.csv"
 
 
 def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:
-    """The tank along the axes of the recordings: NED where no cameras look on."""
+    """Walls of the tank, m, along the axes of the recordings: z up with cameras, else NED."""
     box = {axis: list(getattr(settings.tank, axis)) for axis in "xyz"}
     if settings.sensors:
         box |= {axis: [-high, -low] for axis, (low, high) in box.items() if axis != "x"}
@@ -105,6 +113,7 @@ def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:
 
 
 def _describe_sensors(sensors: Mapping[SensorKind, Sensor]) -> dict[str, Any]:
+    """Section `mocap` of `campaign.yaml` for recordings of other sensors than cameras."""
     late = {kind: sensor.delay for kind, sensor in sensors.items() if sensor.delay}
     places = {PLACES[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
     where = places | ({"delay_s": late} if late else {})
@@ -115,7 +124,13 @@ def _describe_sensors(sensors: Mapping[SensorKind, Sensor]) -> dict[str, Any]:
 def seal(
     settings: TankSettings, hidden: Sequence[Effect], unlisted: Sequence[Effect]
 ) -> SealedTruth:
-    """The answer: effects that the settings name, and physics that they cannot."""
+    """State the hidden truth of a campaign.
+
+    Args:
+        settings: of the tank.
+        hidden: effects of the catalogue that the settings name.
+        unlisted: hidden physics that the catalogue does not know.
+    """
     return SealedTruth(
         verdict="unexplained" if unlisted else "missing_effects" if hidden else "adequate",
         effects=tuple(HiddenEffect(effect=e.id, parameters=e.given()) for e in hidden),

@@ -1,4 +1,4 @@
-"""Raw exports of a true run, as the laboratory's own software would write them."""
+"""Write a true run as raw exports: poses as Qualisys does, and the log of commands."""
 
 from typing import TextIO
 
@@ -21,16 +21,27 @@ COLUMNS = (
 
 
 def choose_frames(camera: Camera, total: int, step: float) -> Array:
-    """Steps (n,) of `step` s, of `total`, after which the cameras look."""
+    """Indices (n,) of the integration steps after which the cameras take a frame.
+
+    Args:
+        camera: its rate.
+        total: number of integration steps of the run.
+        step: their length, s.
+    """
     return np.arange(0, total, round(1.0 / (camera.rate * step)))
 
 
 def export_poses(
     truth: TrueRun, camera: Camera, view: MocapView, random: np.random.Generator, file: TextIO
 ) -> None:
-    """Qualisys 6DOF export: z-up world, FLU body, mm and degrees, seen by imperfect cameras.
+    """Write the poses as a Qualisys 6DOF export: z-up world, FLU body, mm and degrees.
 
-    The run holds one state a frame.
+    Args:
+        truth: the run, with one state for each frame.
+        camera: its noise and failures.
+        view: what the motion capture reports of a motion.
+        random: generator of its errors.
+        file: what is written to.
     """
     frames = len(truth.state)
     position, attitude = _measure(truth.state[:, :7], camera, view, random)
@@ -45,9 +56,12 @@ def export_poses(
 def _measure(
     eta: Array, camera: Camera, view: MocapView, random: np.random.Generator
 ) -> tuple[Array, Array]:
-    """Noisy poses in the MoCap's own axes, of true poses (n, 7).
+    """Add all errors of the motion capture to true poses (n, 7), NED and FRD.
 
-    Its software smooths the noise as well; markers are swapped behind it.
+    The low-pass of the motion capture smooths motion and noise; outliers are added after it.
+
+    Returns:
+        Positions (n, 3), m, and quaternions (n, 4), in the motion capture's axes: z-up and FLU.
     """
     n, flip, eta = len(eta), np.concatenate([[1.0], HALF_TURN_X]), view.poses(eta)
     turn, shift = _draw_colour(n, camera, random)
@@ -65,14 +79,14 @@ def _measure(
 
 
 def _draw_colour(n: int, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
-    """Errors that last: turns (n, 3) rad and shifts (n, 3) m, from a generator of their own."""
-    (own,) = random.spawn(1)  # what else is drawn stays the same
+    """Draw Gauss-Markov errors of n frames: rotations (n, 3) rad and shifts (n, 3) m."""
+    (own,) = random.spawn(1)  # a generator of its own: all other draws stay as they are without it
     lasting = gauss_markov.draw(n, 1.0 / (camera.rate * camera.colour_time), own)
     return camera.colour_attitude * lasting[:, 3:], camera.colour_noise * lasting[:, :3]
 
 
 def _format_rows(position: Array, attitude: Array, random: np.random.Generator) -> Array:
-    """Millimetres, degrees, marker residual, and the rotation matrix column by column."""
+    """Format poses as rows (n, 16): mm, degrees, marker residual, rotation matrix by columns."""
     angles = np.degrees(to_euler(attitude))
     columns = np.swapaxes(matrix(attitude), -1, -2).reshape(-1, 9)
     residual = random.uniform(0.2, 0.7, size=(len(position), 1))
@@ -80,7 +94,7 @@ def _format_rows(position: Array, attitude: Array, random: np.random.Generator) 
 
 
 def _lose_frames(frames: int, camera: Camera, random: np.random.Generator) -> Array:
-    """Frames in which the body was not found: bursts of random length."""
+    """Draw the frames (n,) in which the body is not found: bursts of random length."""
     hidden = np.zeros(frames, dtype=bool)
     starts = np.flatnonzero(random.random(frames) < camera.bursts_per_minute / (60 * camera.rate))
     for start in starts:
@@ -89,6 +103,7 @@ def _lose_frames(frames: int, camera: Camera, random: np.random.Generator) -> Ar
 
 
 def _header(frames: int, rate: float) -> str:
+    """Header of a Qualisys 6DOF export; `rate` in Hz."""
     lines = {
         "NO_OF_FRAMES": frames,
         "NO_OF_CAMERAS": 12,
@@ -109,7 +124,10 @@ def _header(frames: int, rate: float) -> str:
 def export_commands(
     truth: TrueRun, log: Log, vehicle: Vehicle, random: np.random.Generator, file: TextIO
 ) -> None:
-    """Thruster PWM in us, angles in rad, or demands per axis, one line a tick; some are lost."""
+    """Write the command log: thruster PWM in us and angles in rad, or demands per axis.
+
+    There is one line for each command of the pilot; some are lost, and time stamps jitter.
+    """
     commands = truth.commands
     time = commands.time + log.jitter * random.normal(size=len(commands.time))
     kept = random.random(len(time)) >= log.missing

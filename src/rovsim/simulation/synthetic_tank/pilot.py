@@ -1,4 +1,4 @@
-"""Pilots who look at the vehicle and move the sticks, late; the autopilot keeps it upright."""
+"""Pilots who watch the vehicle and move the sticks with a reaction time; an autopilot levels it."""
 
 from collections import deque
 
@@ -31,7 +31,16 @@ SET_POINT_TIME = 8.0  # s
 
 
 def draw_wander(ticks: int, dt: float, random: np.random.Generator) -> Array:
-    """Smooth random stick movements (ticks, 6): white noise, lagged twice, of unit variance."""
+    """Draw smooth random stick movements of unit variance: white noise through two low-passes.
+
+    Args:
+        ticks: number of commands.
+        dt: time between two commands, s.
+        random: generator.
+
+    Returns:
+        Stick movements (ticks, 6), from surge to yaw.
+    """
     a, rows = gauss_markov.decay(2.0 * dt / WANDER_TIME), random.normal(size=(ticks + 400, 6))
     for _ in range(2):
         rows = gauss_markov.lag(a, (1 - a) * rows, np.zeros(6))
@@ -40,7 +49,15 @@ def draw_wander(ticks: int, dt: float, random: np.random.Generator) -> Array:
 
 
 class Pilot:
-    """Wanders between set-points inside the tank; sees the vehicle with a delay."""
+    """Steers from set-point to set-point in the tank, by what was seen a reaction time ago.
+
+    Args:
+        control: `3dof` or `6dof`: whether the sticks also excite rotations.
+        tank: walls (3, 2) in NED, m.
+        ticks: number of commands.
+        dt: time between two commands, s.
+        random: generator of set-points and stick movements.
+    """
 
     def __init__(
         self, control: str, tank: Array, ticks: int, dt: float, random: np.random.Generator
@@ -55,11 +72,11 @@ class Pilot:
         self.drift = np.zeros(3)
 
     def choose_start(self, random: np.random.Generator) -> Array:
-        """State (13,) to start from: at rest near the first set-point, any heading."""
+        """Draw the state (13,) to start from: at rest at the first set-point, any heading."""
         return rest_state(self.set_points[0], random.uniform(-np.pi, np.pi))
 
     def steer(self, tick: int, state: Array) -> Array:
-        """Demand (6,) per axis after seeing this state (13,)."""
+        """Decide on the demand (6,) of each axis at a tick, when the state is `state` (13,)."""
         self.seen.append(state.copy())
         seen = self.seen[0]
         goal = self.set_points[int(tick * self.dt / SET_POINT_TIME)]
@@ -87,7 +104,7 @@ SLOWLY = 0.5  # m/s ahead, as it starts
 
 
 class Helmsman(Pilot):
-    """Goes ahead from set-point to set-point, anywhere clear of the walls."""
+    """Steers a vehicle that cannot push sideways: always ahead, from set-point to set-point."""
 
     def __init__(
         self, control: str, tank: Array, ticks: int, dt: float, random: np.random.Generator
@@ -97,13 +114,13 @@ class Helmsman(Pilot):
         self.set_points = self.middle + half * random.uniform(-1, 1, self.set_points.shape)
 
     def choose_start(self, random: np.random.Generator) -> Array:
-        """State (13,) to start from: slowly ahead near the middle, any heading."""
+        """Draw the state (13,) to start from: slowly ahead in the middle, any heading."""
         state = rest_state(self.middle, random.uniform(-np.pi, np.pi))
         state[7] = SLOWLY
         return state
 
     def steer(self, tick: int, state: Array) -> Array:
-        """Demand (6,) per axis after seeing this state (13,)."""
+        """Decide on the demand (6,) of each axis at a tick, when the state is `state` (13,)."""
         self.seen.append(state.copy())
         seen = self.seen[0]
         way = self.set_points[int(tick * self.dt / COURSE_TIME)] - seen[:3]

@@ -1,4 +1,4 @@
-"""What sensors on board or ashore report of a true run, each at its own rate, without cameras."""
+"""Readings of a true run by sensors on board or ashore, each at its own rate, without cameras."""
 
 from dataclasses import dataclass
 from typing import Mapping, Sequence, TextIO
@@ -22,7 +22,14 @@ COLUMNS: Mapping[SensorKind, Sequence[str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """After which `steps` (m,) of a run a sensor measures, and its white `noise` (m, c)."""
+    """When a sensor measures in a run, and the noise of its m readings.
+
+    Attributes:
+        kind: what the sensor measures.
+        sensor: its settings.
+        steps: indices (m,) of the integration steps after which it measures.
+        noise: white noise (m, c) of each component, in its unit.
+    """
 
     kind: SensorKind
     sensor: Sensor
@@ -33,7 +40,7 @@ class Reading:
 def draw_readings(
     sensors: Mapping[SensorKind, Sensor], total: int, step: float, random: np.random.Generator
 ) -> list[Reading]:
-    """When the sensors measure in a run of `total` steps of `step` s, and what is noise in it."""
+    """Draw the times and the noise of all readings in a run of `total` steps of `step` s."""
     found = []
     for kind, sensor in sensors.items():
         steps = _draw_steps(sensor, total, step, random)
@@ -43,14 +50,17 @@ def draw_readings(
 
 
 def _draw_steps(sensor: Sensor, total: int, step: float, random: np.random.Generator) -> Array:
-    """After which it measures, the first anywhere in its first period."""
+    """Draw the steps (m,) after which a sensor measures, at a random phase of its period."""
     stride = 1.0 / (sensor.rate * step)
     steps = np.round(np.arange(random.uniform(0.0, stride), total, stride))
     return np.unique(steps.astype(int))
 
 
 def needed_steps(readings: Sequence[Reading], total: int) -> Array:
-    """Steps (n,), rising, whose states the readings tell of; an acceleration is of three."""
+    """Indices (n,), rising, of the steps whose states the readings need.
+
+    Neighbouring steps are included, because an acceleration is computed from three states.
+    """
     each = [reading.steps + k for reading in readings for k in (-1, 0, 1)]
     return np.unique(np.clip(np.concatenate(each), 0, total))
 
@@ -58,10 +68,10 @@ def needed_steps(readings: Sequence[Reading], total: int) -> Array:
 def export_channels(
     truth: TrueRun, readings: Sequence[Reading], surface: float, gravity: float, file: TextIO
 ) -> None:
-    """A csv in NED and FRD: one line for each time at which a sensor measured.
+    """Write a csv in NED and FRD, with one line for each reading of each sensor.
 
     Args:
-        truth: the run; it holds the needed steps.
+        truth: the run, with the states of `needed_steps`.
         readings: of every sensor.
         surface: coordinate z of the surface, m NED.
         gravity: m/s2.
@@ -83,7 +93,7 @@ def export_channels(
 
 
 def _measure(reading: Reading, truth: TrueRun, surface: float, gravity: float) -> Array:
-    """What it reports (m, c), its noise on it."""
+    """Values (m, c) that a sensor reports, with its noise, in NED or FRD and SI units."""
     state, place = truth.at(reading.steps), np.array(reading.sensor.at)
     q, nu = state[:, 3:7], state[:, 7:]
     if reading.kind == "attitude":
@@ -99,7 +109,14 @@ def _measure(reading: Reading, truth: TrueRun, surface: float, gravity: float) -
 
 
 def _specific_force(truth: TrueRun, steps: Array, place: Array, gravity: float) -> Array:
-    """Acceleration less gravity (m, 3) of a place in the body, along FRD."""
+    """Specific force (m, 3) at a place in the body: acceleration minus gravity, m/s2, FRD axes.
+
+    Args:
+        truth: the run, with the states of these steps and their neighbours.
+        steps: (m,) after which it is measured.
+        place: (3,) from CO in FRD, m.
+        gravity: m/s2.
+    """
     state = truth.at(steps)
     before, after = np.maximum(steps - 1, 0), np.minimum(steps + 1, truth.total)
     seconds = (after - before)[:, None] * truth.step

@@ -1,4 +1,4 @@
-"""A flight that a log of commands prescribes: sent as it is, nobody steers."""
+"""Flights whose commands come from a log, without a pilot."""
 
 from dataclasses import dataclass, replace
 from hashlib import sha256
@@ -22,9 +22,13 @@ SHORTEST, LONGEST = 2.0, 1800.0
 
 @dataclass(frozen=True, eq=False)
 class SentLog:
-    """Commands to be sent, for so many `seconds`, from rest at `place` (3,) m, `heading` rad, NED.
+    """Commands to be sent in a flight that begins at rest and level.
 
-    `place` and `heading` are None where nobody said: the middle of the tank, to the north.
+    Attributes:
+        commands: by time since the start, s.
+        seconds: duration of the flight, s.
+        place: (3,) where it starts, m NED; None: in the middle of the tank.
+        heading: with which it starts, rad from north.
     """
 
     commands: Commands
@@ -37,29 +41,34 @@ class SentLog:
         return self.commands.held_at(t + 1e-9)
 
     def start(self, tank: Array, random: np.random.Generator) -> Array:
-        """State (13,) at rest and level, near where it should be."""
+        """Draw the initial state (13,): at rest and level, placed about as exactly as people do.
+
+        Args:
+            tank: walls (3, 2) in NED, m.
+            random: generator.
+        """
         place = tank.mean(axis=1) if self.place is None else self.place
         heading = self.heading + TURNED * random.normal()
         return rest_state(place + PLACED * random.normal(size=3), heading)
 
 
 def described_by(path: Path) -> Path | None:
-    """The `experiment.json` beside a log of commands; None where there is none."""
+    """Path of the `.json` with the plan of a flight beside its log; None where there is none."""
     beside = path.with_suffix(".json")
     return beside if beside.is_file() else None
 
 
 def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
-    """Read a log; where it starts says `experiment.json` beside it, if it is there.
+    """Read a log of commands, and the start of the flight from the plan beside it, if there is one.
 
     Args:
         path: a csv of commands.
-        log: how the tank's own logs are.
-        up: the recordings' z axis points up.
+        log: format of the tank's own logs, which this one must have.
+        up: whether the z axis of recordings points up, so that the plan's position is converted.
 
     Raises:
-        BadInput: it is no log like these, too short or too long, or not the one that is described
-            beside it.
+        BadInput: the log has another format, is too short or too long, or is not the one that the
+            plan beside it describes.
     """
     found, _ = tidy_commands(read_commands(path, log), path)
     commands = replace(found, time=found.time - found.time[0])
@@ -84,7 +93,7 @@ def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
 
 
 def _require_the_same(path: Path, beside: Path, flight: Experiment) -> None:
-    """Another plan's start would lead this log into a wall."""
+    """Refuse a plan that describes another log: its start could lead this one into a wall."""
     if flight.commands_sha256 in (None, sha256(path.read_bytes()).hexdigest()):
         return
     raise BadInput(

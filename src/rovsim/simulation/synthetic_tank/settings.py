@@ -1,4 +1,4 @@
-"""What a synthetic campaign is made of."""
+"""Settings of a synthetic campaign: runs, tank, cameras, sensors, log and hidden effects."""
 
 import math
 from fractions import Fraction
@@ -28,9 +28,11 @@ PLACES: Mapping[SensorKind, str] = {
 
 
 class Release(Section):
-    """Let go, and nothing is commanded: how far from rest, along surge … yaw.
+    """A vehicle that is let go without commands: how its initial state differs from rest.
 
-    `pose` m and rad, `velocity` m/s and rad/s in the body's axes.
+    Attributes:
+        pose: displacement along and about the body axes, from surge to yaw, m and rad.
+        velocity: body velocity, m/s and rad/s.
     """
 
     pose: tuple[float, float, float, float, float, float] = (0.0,) * 6
@@ -38,7 +40,7 @@ class Release(Section):
 
 
 class TankRun(Section):
-    """One run to record; flown by a pilot, let go, or as a log of commands says (`fly`, a csv)."""
+    """One run to record: flown by a pilot, let go (`release`), or by a csv of commands (`fly`)."""
 
     id: str
     control: Literal["3dof", "6dof"]
@@ -67,7 +69,7 @@ class Box(Section):
 
 
 class Camera(Section):
-    """What the motion capture adds to the truth."""
+    """Rate and errors of the motion capture."""
 
     rate: PositiveFloat = 100.0  # Hz, the usual setting for slow vehicles
     position_noise: NonNegativeFloat = 0.7e-3  # m, as in the practice exports
@@ -84,9 +86,13 @@ class Camera(Section):
 
 
 class Sensor(Section):
-    """A sensor on board or ashore: its rate, white noise of each component, place and delay.
+    """A sensor on board or ashore.
 
-    Noise in the unit of the channel; `at` m in FRD from CO; `delay` s by which stamps are late.
+    Attributes:
+        rate: of its readings, Hz.
+        noise: standard deviation of the white noise of each component, in its unit.
+        at: place in the body from CO, m FRD.
+        delay: by how much its time stamps are late, s.
     """
 
     rate: PositiveFloat
@@ -105,7 +111,7 @@ class Log(Section):
 
 
 class Turbulence(Section):
-    """A Gauss-Markov force nobody logged: what no model can predict."""
+    """A Gauss-Markov wrench that is not logged, so that no model can predict it."""
 
     force: NonNegativeFloat = 0.35  # N, makes a perfect model err by some 8 mm/s after 2 s
     moment: NonNegativeFloat = 0.015  # N m, likewise some 20 mrad/s
@@ -137,7 +143,7 @@ class TankSettings(Section):
     @field_validator("sensors")
     @classmethod
     def _sit_at_the_origin(cls, sensors: dict[SensorKind, Sensor]) -> dict[SensorKind, Sensor]:
-        """A place means nothing to the other kinds."""
+        """Refuse a place for kinds of sensors whose readings do not depend on it."""
         for kind, sensor in sensors.items():
             if kind not in PLACES and any(sensor.at):
                 raise ValueError(f"a sensor of {kind} has no place: leave `at` out")
@@ -156,17 +162,17 @@ class TankSettings(Section):
 
     @property
     def raw_folder(self) -> str:
-        """Where its exports lie, unless another folder is given."""
+        """Folder of its raw exports, unless another one is given."""
         return f"results/{self.name}/raw"
 
     @property
     def _rates(self) -> list[float]:
-        """Of the frames, if there are cameras, and of the lines of the log, Hz."""
+        """Rates of the frames, if there are cameras, and of the lines of the log, Hz."""
         return [*([] if self.sensors else [self.camera.rate]), self.log.rate]
 
     @property
     def steps_per_second(self) -> float:
-        """Of the integration: so many that each frame and each command falls on one."""
+        """Integration steps per second, so that each frame and each command falls on a step."""
         given = [Fraction(rate).limit_denominator(1000) for rate in self._rates]
         rates = [max(rate, Fraction(1, 1000)) for rate in given]
         shared = Fraction(
@@ -179,8 +185,8 @@ class TankSettings(Section):
 MOST_STEPS = 10_000  # a second: a run of a minute then takes 60 MB
 
 
-# Where effects show that need more than the default vehicle: room to go ahead; waves that heave,
-# list and trim what floats.
+# Settings of a tank for effects that the default vehicle cannot show: one with room to go ahead for
+# a vehicle with control surfaces, and one whose waves heave, list and trim a floating vehicle.
 SUITABLE: Mapping[Requirement, Mapping[str, Any]] = {
     "demands": {"log": {"kind": "demand"}},
     "surfaces": {

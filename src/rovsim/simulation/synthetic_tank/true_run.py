@@ -1,7 +1,7 @@
-"""One run in the tank: pilot, thrusters, vehicle and turbulence, in closed loop.
+"""Simulate one run in the tank: pilot, thrusters, vehicle and turbulence in closed loop.
 
-The replay's integrator is Runge-Kutta 4 at 10 ms; this is Heun's method at 1 ms, so that the truth
-is not made by what will be compared with it.
+A replay integrates with Runge-Kutta 4 at 10 ms. Here it is Heun's method at 1 ms, so that the truth
+does not come from the integrator that will be compared with it.
 """
 
 from dataclasses import dataclass, replace
@@ -30,10 +30,14 @@ FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact
 
 @dataclass(frozen=True, eq=False)
 class TrueRun:
-    """What happened: states (n, 13) in NED after so many `steps` (n,), rising, of `step` s each.
+    """The true motion and commands of a run.
 
-    `state` holds the steps that were asked for alone; `commands` are as the pilot sent them, and
-    `total` is how many steps the run has.
+    Attributes:
+        steps: indices (n,), rising, of the integration steps after which states were kept.
+        state: states (n, 13) after these steps: pose in NED, body velocity in FRD.
+        commands: as the pilot sent them.
+        step: length of an integration step, s.
+        total: number of integration steps of the run.
     """
 
     steps: Array
@@ -48,7 +52,7 @@ class TrueRun:
         return self.steps * self.step
 
     def at(self, steps: Array) -> Array:
-        """States (m, 13) after these steps (m,), which were asked for."""
+        """States (m, 13) after some of the kept `steps`: their indices (m,)."""
         return np.asarray(self.state[np.searchsorted(self.steps, steps)])
 
 
@@ -56,7 +60,7 @@ Choose = Callable[[int, float], Array]
 
 
 def every_step(total: int, step: float) -> Array:
-    """Choose the state after each step."""
+    """Choose to keep the state after each of `total` steps."""
     return np.arange(total + 1)
 
 
@@ -74,17 +78,18 @@ def fly_run(
 
     Args:
         model: the true vehicle, hidden effects included.
-        settings: the campaign.
+        settings: of the campaign.
         control: 3dof or 6dof.
         tank: walls (3, 2) in NED, m.
         random: generator of this run.
-        release: how it is let go, in place of a pilot.
+        release: initial state of a vehicle that is let go, without a pilot.
         sent: commands that are sent in place of a pilot's.
-        choose: told how many steps there are and their length, s, says after which of them (n,),
-            rising, states are kept; called once all is drawn from `random` that the flight needs.
+        choose: gets the number of steps and their length in s, and returns the indices (n,),
+            rising, of those after which states are kept. It is called after all other draws from
+            `random`, and may use it.
 
     Raises:
-        LeftTank: the hidden effects are stronger than the pilot.
+        LeftTank: the vehicle reached a wall, because the hidden effects overpower the pilot.
     """
     h, tick = 1.0 / settings.steps_per_second, 1.0 / settings.log.rate
     duration = sent.seconds if sent else settings.duration
@@ -120,7 +125,12 @@ def fly_run(
 
 
 class _Kept:
-    """States (n, 13) after those steps (n,) that are asked for, as they pass."""
+    """Collects the states (n, 13) after chosen steps (n,) while a run is simulated.
+
+    Args:
+        steps: indices of the chosen steps, rising.
+        begin: initial state (13,).
+    """
 
     def __init__(self, steps: Array, begin: Array) -> None:
         self.steps, self.state = steps, np.empty((len(steps), 13))
@@ -128,7 +138,7 @@ class _Kept:
         self.take(begin[None])
 
     def take(self, states: Array) -> None:
-        """The next states (m, 13), one a step."""
+        """Keep the chosen ones of the next m states (m, 13), one for each step."""
         first, self.passed = self.passed + 1, self.passed + len(states)
         stop = int(np.searchsorted(self.steps, self.passed, side="right"))
         rows = slice(self.taken, stop)
@@ -137,7 +147,7 @@ class _Kept:
 
 
 def _let_go(rest: Array, release: Release) -> Array:
-    """State (13,) as far from this one as a release says."""
+    """Displace a state (13,) at rest as a release says."""
     pose = np.array(release.pose)
     place = rest[:3] + rotate(rest[3:7], pose[:3])
     attitude = multiply(rest[3:7], from_euler(*pose[3:]))
@@ -145,7 +155,18 @@ def _let_go(rest: Array, release: Release) -> Array:
 
 
 class _TrueVehicle:
-    """The true vehicle, tick by tick; remembers the commands and the thrusters' state."""
+    """The true vehicle, simulated from one command to the next.
+
+    It keeps the log of commands and the states of thrusters and fluid memory.
+
+    Args:
+        model: the true model.
+        tank: walls (3, 2) in NED, m.
+        settings: of the campaign.
+        tick: time between two commands, s.
+        h: length of an integration step, s.
+        duration: of the run, s.
+    """
 
     def __init__(
         self,
@@ -172,20 +193,21 @@ class _TrueVehicle:
         self.site, self.batch = site, Batch([model], site)
 
     def set_current(self, current: Array) -> None:
-        """Let the water move by (3,) m/s in NED on top of what the model knows."""
+        """Add a current (3,) in NED, m/s, to the one of the model, from now on."""
         if current.any():
             water = Current(north=current[0], east=current[1], down=current[2])
             self.batch = Batch([self.model + water], self.site)
 
     def log(self, demand: Array) -> Array:
-        """What a demand (6,) leaves in the log: itself, or what the thrusters are told."""
+        """Command that is logged for a demand (6,): itself, or the allocated actuator commands."""
         told = demand if self.kind == "demand" else self.allocation.command(demand)
         return round_as_logged(told, self.kind, self.model.vehicle)
 
     def _stamp(self, t: float) -> float:
-        """Time at which the log puts a command that is given at t.
+        """Time stamp that the log gives to a command given at true time t, s.
 
-        No command acts before it is given: where the clocks say so, the log's clock is ahead.
+        No command acts before it is given. Where the model's clocks say that it would, the log's
+        clock is ahead, and the stamp is moved until the command takes effect at t.
         """
         stamp, effective = t, self.model.thrust_path.effective_time
         if not self.model.thrust_path.timings:
@@ -195,7 +217,17 @@ class _TrueVehicle:
         return stamp
 
     def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
-        """Take the command of tick k; the states (steps, 13) up to the next tick."""
+        """Take the command of tick k, and simulate up to the next tick.
+
+        Args:
+            k: number of the tick.
+            command: (c,) as it is logged.
+            state: at this tick (13,).
+            pushes: acceleration (n, 6) by turbulence in each of n steps, m/s2 and rad/s2.
+
+        Returns:
+            The states (n, 13) after each step.
+        """
         self.times[k], self.commands[k] = self._stamp(k * self.tick), command
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(pushes)))
@@ -214,6 +246,7 @@ class LeftTank(BadInput):
 
 
 def _stay_inside(state: Array, tank: Array, t: float) -> None:
+    """Refuse a state (13,) outside the tank (3, 2), or one that is not finite, at t s."""
     if np.all((state[:3] > tank[:, 0]) & (state[:3] < tank[:, 1])):
         return
     if not np.isfinite(state).all():

@@ -1,4 +1,4 @@
-"""What pushes the true vehicle, or moves its water, and nobody logs."""
+"""Random wrenches on the true vehicle and random currents, which are not logged."""
 
 from copy import deepcopy
 from typing import Iterator
@@ -15,9 +15,19 @@ from rovsim.simulation.synthetic_tank.settings import Turbulence
 def draw_turbulence(
     settings: Turbulence, steps: int, h: float, random: np.random.Generator, rows: int
 ) -> Iterator[Array]:
-    """Gauss-Markov wrench (steps, 6) in body axes over steps of h s, stationary from the start.
+    """Draw a stationary Gauss-Markov wrench in body axes, N and N m.
 
-    It comes `rows` at a time, and is drawn at once: `random` has moved on when this returns.
+    `random` has made all its draws when this returns, before the first rows are computed.
+
+    Args:
+        settings: standard deviations and time constant.
+        steps: number of integration steps.
+        h: their length, s.
+        random: generator.
+        rows: number of steps of each array.
+
+    Returns:
+        Arrays (rows, 6), of which the last may be shorter, one after the other.
     """
     level = np.repeat([settings.force, settings.moment], 3)
     lengths = [min(rows, steps - first) for first in range(0, steps, rows)]
@@ -38,7 +48,10 @@ def _pushes(
 
 
 def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generator) -> Array:
-    """Current (ticks, 3) m/s in NED that wanders, drawn by generators of its own."""
+    """Draw the sum (ticks, 3) of a model's random currents, m/s NED, at ticks dt s apart.
+
+    Each current has a generator of its own, so that other draws do not depend on it.
+    """
     wandering = [effect for effect in model.effects if isinstance(effect, StochasticCurrent)]
     found = np.zeros((ticks, 3))
     for effect, own in zip(wandering, random.spawn(len(wandering)), strict=True):
