@@ -1,12 +1,12 @@
-"""A trained residual inside the loop: its features, its kernels, its file. Trains nothing.
+"""Evaluates a trained residual in a simulation: its features, kernels and file. Trains nothing.
 
-settings          the runs it learned from, and what it looks at
-features          that, of samples: velocity, thrust, acceleration, gravity
-layout            where things stand in an exported residual
-predictor         its evaluation, one sample or many
-neighbours        the k nearest points
+settings          settings of a residual: the runs it learned from, and its features
+features          assembles features of samples: velocity, thrust, acceleration, gravity
+layout            order of the numbers in the array that holds an exported residual
+predictor         evaluates a residual at one sample or at many
+neighbours        mean of the k nearest training points
 kernel_expansion  mean and variance of a Gaussian process
 simd              arithmetic on several points side by side
-residual          arrays and the rest, on disk
-checks            arrays that kernels can read safely
+residual          writes and reads trained residuals
+checks            refuses arrays that the kernels could not read safely
 """

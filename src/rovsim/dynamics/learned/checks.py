@@ -1,4 +1,4 @@
-"""Arrays that the kernels can read safely, and rows that fit them."""
+"""Check that kernels can read an exported residual safely, and that features fit it."""
 
 from typing import Any
 
@@ -33,7 +33,15 @@ from rovsim.dynamics.learned.settings import FeatureSettings, blocks_code, featu
 
 
 def check_exported(data: Any, features: FeatureSettings, where: object) -> Array:
-    """Refuse an array that the kernels could not read safely.
+    """Check that the kernels can read an array safely; they do not check anything themselves.
+
+    Args:
+        data: an exported residual, in the order of `layout`.
+        features: that the model file names.
+        where: the file, for messages.
+
+    Returns:
+        The array, contiguous.
 
     Raises:
         BadInput: wrong type, not finite, sizes that do not fit, or other features than named.
@@ -50,6 +58,7 @@ def check_exported(data: Any, features: FeatureSettings, where: object) -> Array
 
 
 def _fault(data: Any, features: FeatureSettings) -> str | None:
+    """What is wrong with an exported residual, for a message; None if nothing is."""
     if not isinstance(data, np.ndarray) or data.dtype != np.float64 or data.ndim != 1:
         return "the exported residual is not a flat float64 array"
     if data.size < HEADER or not np.isfinite(data).all():
@@ -65,7 +74,7 @@ def _fault(data: Any, features: FeatureSettings) -> str | None:
 
 
 def _size(*header: float) -> int:
-    """Length of an exported array with this header; 0 where no such array can exist."""
+    """Number of elements of an exported array with this header; 0 for an impossible header."""
     d, n, m, count = (int(header[slot]) for slot in (WIDTH, POINTS, OUTPUTS, COUNT))
     length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
     if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
@@ -80,12 +89,19 @@ def _size(*header: float) -> int:
 
 
 def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, Array]:
-    """Mean and variance (n, 6) of an exported process at unscaled features X (n, d); none fades.
+    """Evaluate mean and variance of an exported Gaussian process, without fading.
 
-    In m/s2 and rad/s2, and their squares; the variance is the process' own, without noise.
+    Args:
+        data: the exported residual.
+        X: unscaled features (n, d).
+        features: their settings.
+
+    Returns:
+        Mean (n, 6) in m/s2 and rad/s2, and variance (n, 6) in their squares: that of the latent
+        function, without the noise of targets.
 
     Raises:
-        BadInput: the residual is no process, or X has other columns.
+        BadInput: the residual is no Gaussian process, or X has other columns.
     """
     if has_variance(data):
         return posterior_many(data, checked_rows(X, features))
@@ -98,15 +114,20 @@ def posterior(data: Array, X: Array, features: FeatureSettings) -> tuple[Array, 
 
 
 def has_variance(data: Array) -> bool:
-    """Whether a variance was exported beside the mean."""
+    """Whether an exported residual has a variance beside its mean."""
     return bool(data[KIND] == EXPANSION and data[RANK] > 0.0)
 
 
 def checked_rows(X: Array, features: FeatureSettings, finite: bool = False) -> Array:
-    """Features as a contiguous float64 (n, d) with the columns that `features` name.
+    """Convert features to a contiguous float64 array (n, d), and check its columns.
+
+    Args:
+        X: features (n, d).
+        features: their settings, which say how many columns there are.
+        finite: whether to refuse numbers that are not finite, and arrays without rows.
 
     Raises:
-        BadInput: other shape; or, where `finite` is asked for, no rows or NaN.
+        BadInput: X has another shape; or, with `finite`, no rows or numbers that are not finite.
     """
     X = np.ascontiguousarray(X, dtype=np.float64)
     d = len(feature_names(features))

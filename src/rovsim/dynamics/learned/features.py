@@ -1,4 +1,4 @@
-"""What a learned residual looks at: velocity, thrust, the model's acceleration, gravity."""
+"""Features of a learned residual: velocity, thrust, the model's acceleration, gravity."""
 
 import numpy as np
 from numba import njit
@@ -19,13 +19,13 @@ from rovsim.dynamics.learned.settings import (
 def assemble(
     settings: FeatureSettings, nu: Array, nu_dot: Array, wrench: Array, attitude: Array
 ) -> Array:
-    """Feature matrix X (n, d) of n samples.
+    """Assemble the feature matrix X (n, d) of n samples.
 
     Args:
-        settings: which blocks.
+        settings: which blocks of features there are.
         nu: body velocity (n, 6), m/s and rad/s.
-        nu_dot: acceleration (n, 6) of the base model at that state, m/s2 and rad/s2.
-        wrench: thruster wrench (n, 6), N and N m.
+        nu_dot: body acceleration (n, 6) of the base model at that state, m/s2 and rad/s2.
+        wrench: thruster wrench (n, 6), N and N m, in body axes FRD at CO.
         attitude: unit quaternions (n, 4), body to world.
     """
     down = unrotate(attitude, np.array([0.0, 0.0, 1.0]))
@@ -35,7 +35,7 @@ def assemble(
 
 @njit(**UNSEEN)
 def _append(values, x, at):
-    """Write values into x from `at` on; returns where the next block starts."""
+    """Write values into x from index `at` on; returns the index after the last one."""
     for i in range(len(values)):
         x[at + i] = values[i]
     return at + len(values)
@@ -43,9 +43,15 @@ def _append(values, x, at):
 
 @njit(**FROM_PYTHON)
 def assemble_one(data, nu, nu_dot, wrench, R, x):
-    """Write the features of one sample into x (at least d long), as `assemble` would.
+    """Write the features of one sample into x, in the order of `assemble`.
 
-    `data` is an exported residual (only its blocks' code is read); R rotates body to world.
+    Args:
+        data: an exported residual, of which only the code of the feature blocks is read.
+        nu: (6,) body velocity, m/s and rad/s.
+        nu_dot: (6,) body acceleration of the base model, m/s2 and rad/s2.
+        wrench: (6,) thruster wrench, N and N m.
+        R: rotation matrix from body to world, three rows.
+        x: is written to; at least d long.
     """
     code, at = int(data[BLOCKS]), 0
     if code & VELOCITY:

@@ -5,9 +5,9 @@ variance, as a share of the prior variance (Rasmussen & Williams 2006, eqs. 2.25
 
     rho = 1 - identity |k|^2 - sum_j spectrum_j (v_j' k)^2
 
-is 0 where the process is certain and 1 where it has seen nothing; identity, spectrum and vectors
-come from `rovsim.learning.posterior_variance`. The correction fades: it counts fully up to the
-`limit` of rho, from there in proportion to what is known, 1 - rho, and not at all where rho = 1.
+is 0 where the process is certain and 1 far from all training points; identity, spectrum and vectors
+come from `rovsim.learning.posterior_variance`. The correction fades where it extrapolates: up to
+rho = `limit` it counts fully, beyond that it is multiplied by (1 - rho) / (1 - limit).
 """
 
 from typing import Any, NamedTuple
@@ -32,7 +32,20 @@ plain = njit(error_model="numpy", **UNSEEN)
 
 
 class Part(NamedTuple):
-    """One kernel of an expansion, as `layout` orders it; its outputs are first .. first + share."""
+    """Views of the arrays of one kernel of an expansion, see `layout`.
+
+    Attributes:
+        first: index of its first output.
+        share: number of its outputs.
+        identity: factor of |k|^2 in rho.
+        limit: of rho, up to which the correction counts fully.
+        prior: prior variance (share,) of each output.
+        scaling: index in the exported array at which shift and scale of the features begin.
+        points: scaled points (blocks, d', LANES).
+        spectrum: (r',) factors of (v_j' k)^2 in rho.
+        weights: flat (w', n'), of each output and point.
+        vectors: flat (r', n'), the v_j.
+    """
 
     first: int
     share: int
@@ -48,7 +61,7 @@ class Part(NamedTuple):
 
 @plain
 def _part(data, part):
-    """The views of one part."""
+    """Find the arrays of kernel number `part` in an exported residual."""
     d, n, m = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS])
     share, rank = m // int(data[COUNT]), (int(data[RANK]) + PASS - 1) // PASS * PASS
     wide, rows = (d + PASS - 1) // PASS * PASS, (share + PASS - 1) // PASS * PASS
@@ -78,7 +91,11 @@ def _part(data, part):
 
 @plain
 def _kernel(data, part, x, scratch):
-    """Kernel values k (n',) between features x and the points of a part."""
+    """Compute the kernel values k (n',) between features x and the points of a part.
+
+    The result is a view of `scratch`. Values of the points that fill up the last block are not 0,
+    but their weights and vectors are.
+    """
     blocks, wide = part.points.shape[0], part.points.shape[1]
     k, z = scratch[: blocks * LANES], scratch[blocks * LANES : blocks * LANES + wide]
     scaled(data, part.scaling, int(data[WIDTH]), x, z)
@@ -93,7 +110,7 @@ def _kernel(data, part, x, scratch):
 
 @plain
 def _mean(data, part, k, out):
-    """The mean's outputs of a part."""
+    """Write the mean of the outputs of a part into out (m,), from its kernel values k (n',)."""
     for row in range(0, part.share, PASS):
         four = products(part.weights, row, k)
         for o in range(min(PASS, part.share - row)):
@@ -102,7 +119,7 @@ def _mean(data, part, k, out):
 
 @plain
 def _variance_share(part, k, n, rank):
-    """rho, from the first `rank` vectors; n points are real."""
+    """Compute rho from the kernel values k at n points and the first `rank` vectors."""
     known = 0.0
     if part.identity != 0.0:
         for i in range(n):
@@ -117,7 +134,7 @@ def _variance_share(part, k, n, rank):
 
 @plain
 def faded(data, x, scratch, out):
-    """Mean out (m,), faded if the residual has a FADING_RANK."""
+    """Write the mean at features x into out (m,), faded if the residual has a FADING_RANK."""
     for number in range(int(data[COUNT])):
         part = _part(data, number)
         k = _kernel(data, part, x, scratch)
@@ -131,7 +148,7 @@ def faded(data, x, scratch, out):
 
 @plain
 def posterior(data, x, scratch, mean, variance):
-    """Mean (m,) and variance (m,) of the process itself: nothing fades."""
+    """Write mean (m,) and variance (m,) of the process at features x, without fading."""
     for number in range(int(data[COUNT])):
         part = _part(data, number)
         k = _kernel(data, part, x, scratch)

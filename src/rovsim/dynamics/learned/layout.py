@@ -1,4 +1,4 @@
-"""Where things stand in an exported residual: one flat float64 array, read by compiled kernels.
+"""Order of the numbers in an exported residual: one flat float64 array, read by compiled kernels.
 
     header     FORMAT, KIND, BLOCKS, WIDTH d, POINTS n, OUTPUTS m, COUNT, WEIGHTING, RANK,
                FADING_RANK
@@ -10,7 +10,7 @@
 
 scaling = shift (d), scale (d); points = (n' / LANES, d', LANES). n' is n filled up to whole blocks
 of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of PASS; all with zeros.
-An expansion of RANK 0 has no variance: it is the mean of no process.
+An expansion of RANK 0 has no variance: it is a sum of kernels, but no Gaussian process.
 """
 
 FORMAT, KIND, BLOCKS, WIDTH, POINTS, OUTPUTS, COUNT, WEIGHTING, RANK, FADING_RANK = range(10)
@@ -27,12 +27,12 @@ MOST_LEVELS = 8  # of a tree: 32^9 points
 
 
 def filled(count: int, unit: int) -> int:
-    """The next multiple of `unit`."""
+    """Round a count up to a multiple of `unit`."""
     return -(-count // unit) * unit
 
 
 def tree_levels(points: int) -> list[int]:
-    """Blocks on each level of a tree of so many points: leaves first, one root last."""
+    """Number of blocks on each level of a tree of so many points: leaves first, one root last."""
     counts = [-(-points // LANES)]
     while len(counts) == 1 or counts[-1] > 1:
         counts.append(-(-counts[-1] // LANES))

@@ -4,9 +4,19 @@ The tree has LANES children a node (`rovsim.learning.tree` builds it), so that t
 boxes of a node, and to all points of a leaf, are computed side by side. The nearest box is opened
 first; a box farther away than the k-th nearest point is not opened (Roussopoulos et al. 1995).
 
-Features hang together, so boxes along their principal axes are much smaller: tree and points are
-turned into these. What looks near enough there, rounding allowed for, is measured once more as it
-was given, so that turning changes neither an order nor a distance.
+Features are correlated, so boxes along their principal axes are much smaller: tree and points are
+rotated into these axes. Where a rotated point is near enough, rounding errors allowed for, its
+distance is computed again from the features as given. So the rotation changes neither the order nor
+the distances of neighbours.
+
+Arguments that many of these functions have (d features, n points, LANES points a block):
+    points: rotated points (blocks, d', LANES).
+    given: points (n, d) as given, scaled but not rotated.
+    rows: training row (n',) of each point.
+    x, z: the query, scaled: rotated (d',), and not rotated (d,).
+    near, row, place: squared distance, training row and index of the k nearest points so far,
+        nearest first.
+    s: squared distances (LANES,) that are computed side by side.
 """
 
 from math import inf, nan, sqrt
@@ -32,13 +42,13 @@ _OPEN = MOST_LEVELS * LANES  # boxes that wait to be opened: at most all of one 
 
 @exact
 def _outside(lower, upper, x):
-    """How far x lies outside an interval, with a sign."""
+    """Signed distance of x to an interval; 0 inside."""
     return x - min(max(x, lower), upper)
 
 
 @exact
 def _box_distances(boxes, b, x, s):
-    """Squared distances s (LANES,) of x to the children's boxes of node b."""
+    """Write the squared distances of x to the boxes of the children of node b into s."""
     for i in range(LANES):
         s[i] = 0.0
     for j in range(0, boxes.shape[2], PASS):
@@ -53,7 +63,11 @@ def _box_distances(boxes, b, x, s):
 
 @exact
 def _within(points, b, x, limit, s):
-    """Squared distances s (LANES,) to block b; False as soon as all are known to exceed `limit`."""
+    """Write the squared distances of x to the points of block b into s.
+
+    Returns:
+        False as soon as all of them exceed `limit`; s is then incomplete.
+    """
     for i in range(LANES):
         s[i] = 0.0
     for j in range(0, points.shape[1], PASS):
@@ -68,7 +82,11 @@ def _within(points, b, x, limit, s):
 
 @exact
 def _insert(near, row, place, k, distance, own, at):
-    """Put a point into the sorted list; at equal distance the earlier training row stays ahead."""
+    """Insert a point into the sorted list of the k nearest, if it belongs there.
+
+    At equal distance the earlier training row comes first. `own` is the training row of the point,
+    `at` its index.
+    """
     p = k - 1
     if distance == near[p] and own > row[p]:
         return
@@ -80,7 +98,20 @@ def _insert(near, row, place, k, distance, own, at):
 
 @exact
 def _open_node(s, child, last, limit, waiting, index, size):
-    """Let the boxes of a node wait, the nearest on top; returns how many wait now."""
+    """Push the children of a node onto the stack of waiting boxes, the nearest on top.
+
+    Args:
+        s: squared distances (LANES,) of their boxes.
+        child: index of the first child on its level.
+        last: number of boxes on that level.
+        limit: squared distance beyond which a box is left out.
+        waiting: squared distances of the boxes on the stack.
+        index: their indices on their levels.
+        size: of the stack.
+
+    Returns:
+        The new size of the stack.
+    """
     first = size
     for i in range(LANES):
         if s[i] <= limit and child + i < last:
@@ -95,13 +126,16 @@ def _open_node(s, child, last, limit, waiting, index, size):
 
 @exact
 def _allowed(distance, size):
-    """Squared distance up to which a turned point may be this near; `size`: the query's square."""
+    """Squared distance in rotated axes that a point may have whose true one is `distance`.
+
+    `size` is the squared length of the query, which bounds the rounding errors.
+    """
     return distance + _ROUNDING * (distance + size)
 
 
 @exact
 def _measured(given, at, z):
-    """Squared distance of z to a point as it was given."""
+    """Squared distance of z to the point with index `at`, as given."""
     total = 0.0
     for j in range(given.shape[1]):
         e = given[at, j] - z[j]
@@ -111,7 +145,7 @@ def _measured(given, at, z):
 
 @exact
 def _look_into_leaf(points, given, rows, b, n, x, z, size, s, near, row, place, k):
-    """Put the points of a leaf that are near enough into the list."""
+    """Insert the points of leaf b that are near enough into the list of the k nearest."""
     first = b * LANES
     if _within(points, b, x, _allowed(near[k - 1], size), s):
         for i in range(LANES):
@@ -123,7 +157,11 @@ def _look_into_leaf(points, given, rows, b, n, x, z, size, s, near, row, place, 
 
 @exact
 def _levels(n, counts, offsets):
-    """Blocks on each level and where its boxes begin; returns the root's level. See `layout`."""
+    """Write the number of blocks of each level, and the index of its first node, into arrays.
+
+    Returns:
+        The level of the root; leaves are level 0. See `layout.tree_levels`.
+    """
     counts[0], offsets[0], top, total = (n + LANES - 1) // LANES, 0.0, 0, 0.0
     while top == 0 or counts[top] > 1:
         top += 1
@@ -134,10 +172,7 @@ def _levels(n, counts, offsets):
 
 @exact
 def _search(boxes, points, given, rows, n, x, z, scratch, near, row, place, k):
-    """Squared distances, training rows and places of the k points nearest to z, nearest first.
-
-    `x` is z, turned as `boxes` and `points` are.
-    """
+    """Find the k points nearest to the query; fills `near`, `row` and `place`."""
     size_of_query = 0.0
     for j in range(given.shape[1]):
         size_of_query += z[j] * z[j]
@@ -167,7 +202,10 @@ def _search(boxes, points, given, rows, n, x, z, scratch, near, row, place, k):
 
 @exact
 def _weigh(near, k, weighting):
-    """Turn squared distances into weights; a point that was hit exactly leaves only such points."""
+    """Replace the squared distances of the k nearest by weights, all 1 or inverse distances.
+
+    With inverse distances, points at distance 0 have the weight 1 and all others 0.
+    """
     hit = weighting == DISTANCE and near[0] == 0.0
     for p in range(k):
         if hit:
@@ -178,7 +216,7 @@ def _weigh(near, k, weighting):
 
 @exact
 def _average(targets, m, near, place, k, out):
-    """Weighted mean out (m,) of the targets (n m,) of the k nearest."""
+    """Write the weighted mean of the targets (n m,) of the k nearest into out (m,)."""
     total = 0.0
     out[:m] = 0.0
     for p in range(k):
@@ -192,7 +230,7 @@ def _average(targets, m, near, place, k, out):
 
 @exact
 def _turn(axes, z, turned):
-    """Write z (d,) along the axes (d', d) into `turned`."""
+    """Rotate z (d,) into the principal axes (d', d); the result goes to `turned` (d',)."""
     for i in range(axes.shape[0]):
         turned[i] = 0.0
         for j in range(axes.shape[1]):
@@ -201,7 +239,7 @@ def _turn(axes, z, turned):
 
 @exact
 def neighbours(data, x, scratch, out):
-    """Mean of the nearest targets out (m,) at features x."""
+    """Write the mean of the nearest targets at unscaled features x (d,) into out (m,)."""
     d, n, m, k = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS]), int(data[COUNT])
     wide, leaves = (d + PASS - 1) // PASS * PASS, (n + LANES - 1) // LANES
     nodes, below = 0, leaves

@@ -1,7 +1,7 @@
-"""Evaluation of an exported residual (`layout`), one sample or many, by compiled kernels.
+"""Evaluate an exported residual (`layout`) at one sample or at many, by compiled kernels.
 
-`rovsim.learning.export` writes such arrays, and `checks` refuses those of a file that do not fit:
-the kernels trust them. They are safe to call from many threads: scratch lies on the caller's stack.
+`rovsim.learning.export` makes such arrays. The kernels trust them, so `checks` refuses arrays of a
+file that are not consistent. Many threads may call the kernels: scratch lies on the caller's stack.
 """
 
 import numpy as np
@@ -18,9 +18,12 @@ kept = keep(error_model="numpy", **FROM_PYTHON)
 
 @kept
 def evaluate(data, x, out):
-    """Residual body acceleration out (6,), m/s2 and rad/s2, at one sample's features x.
+    """Evaluate the residual at the features x of one sample.
 
-    x may be longer than the residual's features: the rest is not read. Not finite in, NaN out.
+    Args:
+        data: an exported residual.
+        x: unscaled features; elements after the residual's own features are not read.
+        out: is written to: body acceleration (6,), m/s2 and rad/s2. NaN where x is not finite.
     """
     scratch = carray(stack(), (SCRATCH,))  # type: ignore[call-arg]
     if data[KIND] == NEIGHBOURS:
@@ -31,7 +34,7 @@ def evaluate(data, x, out):
 
 @kept
 def evaluate_many(data, X):
-    """Residual body acceleration (n, 6) at features X (n, d), one row after the other."""
+    """Evaluate the body acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
     out = np.empty((X.shape[0], int(data[OUTPUTS])))
     for row in range(X.shape[0]):
         evaluate(data, X[row], out[row])
@@ -40,7 +43,7 @@ def evaluate_many(data, X):
 
 @kept
 def posterior_many(data, X):
-    """Mean and variance (n, 6) of an expansion at features X (n, d); nothing fades."""
+    """Evaluate mean and variance (n, 6) of an expansion at features X (n, d), without fading."""
     scratch = carray(stack(), (SCRATCH,))  # type: ignore[call-arg]
     mean = np.empty((X.shape[0], int(data[OUTPUTS])))
     variance = np.empty_like(mean)

@@ -1,4 +1,4 @@
-"""Trained residuals on disk: arrays in an `.npz`, everything else in the model file. No pickle."""
+"""Write and read trained residuals: arrays as `.npz`, all else in the model file. No pickle."""
 
 import zipfile
 from dataclasses import dataclass
@@ -24,13 +24,14 @@ ARRAYS = "residual.npz"  # file of the arrays, beside the model file
 
 
 def _beside(name: str) -> str:
+    """Refuse a file name with folders."""
     if Path(name).name != name or "\\" in name:
         raise ValueError("the name of a file beside the model file, without folders")
     return name
 
 
 class StoredResidual(Section):
-    """The residual's part of a model file."""
+    """The section of a model file that describes its residual."""
 
     kind: str
     control: Control  # runs it was trained on
@@ -46,8 +47,15 @@ class StoredResidual(Section):
 class Residual:
     """A trained residual, as a model holds it.
 
-    `data` goes into the compiled replay. `settings` and `arrays` are what the library that trained
-    it needs to be rebuilt (`rovsim.learning.learner`); `info` what training reported.
+    Attributes:
+        control: kind of the runs it was trained on.
+        kind: name of the learner that trained it.
+        features: its features, and how these were scaled.
+        settings: hyperparameters of the learner.
+        data: the exported residual that kernels evaluate, in the order of `layout`.
+        arrays: from which, with `settings`, the model of the library that trained it is rebuilt
+            (`rovsim.learning.learner`).
+        info: numbers that training reported.
     """
 
     control: Control
@@ -60,20 +68,20 @@ class Residual:
 
     @property
     def points(self) -> int:
-        """Points a prediction looks at."""
+        """Number of training or inducing points that it holds."""
         return int(self.data[POINTS])
 
     def predict(self, X: Array) -> Array:
-        """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
+        """Evaluate the body acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
         return evaluate_many(self.data, checked_rows(X, self.features))
 
     def posterior(self, X: Array) -> tuple[Array, Array]:
-        """Mean and variance of a process. See `rovsim.dynamics.learned.checks.posterior`."""
+        """Evaluate mean and variance of a Gaussian process; see `checks.posterior`."""
         return posterior(self.data, X, self.features)
 
 
 def write_residual(folder: Path, residual: Residual) -> StoredResidual:
-    """Write the arrays to a file of the folder; returns the description for the model file."""
+    """Write the arrays of a residual into a folder; returns the section for the model file."""
     library = {LIBRARY + key: array for key, array in residual.arrays.items()}
     write_arrays(folder / ARRAYS, data=residual.data, **library)
     return StoredResidual(
@@ -89,10 +97,10 @@ def write_residual(folder: Path, residual: Residual) -> StoredResidual:
 
 
 def read_residual(description: Any, folder: Path, where: object = "residual") -> Residual:
-    """Read back what `write_residual` described.
+    """Read a residual that `write_residual` wrote.
 
     Args:
-        description: the residual's part of a model file.
+        description: the section of a model file that describes the residual.
         folder: folder of that model file.
         where: the model file, for messages.
 
@@ -116,6 +124,7 @@ def read_residual(description: Any, folder: Path, where: object = "residual") ->
 
 
 def _digest(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal digits."""
     return sha256(path.read_bytes()).hexdigest()
 
 
@@ -138,6 +147,7 @@ def _refuse_altered(path: Path, digest: str) -> None:
 
 
 def _finite(array: Array, name: str, path: Path) -> Array:
+    """Refuse an array that is not of finite float64."""
     if array.dtype == np.float64 and np.isfinite(array).all():
         return array
     raise BadInput(

@@ -1,4 +1,4 @@
-"""What a trained residual is described by: the runs it learned from, what it looks at."""
+"""Settings of a trained residual: the runs it learned from, and its features."""
 
 from typing import Literal
 
@@ -25,10 +25,10 @@ CODES = dict(zip(COLUMNS, (VELOCITY, WRENCH, ACCELERATION, GRAVITY), strict=True
 
 
 class FeatureSettings(Section):
-    """Which blocks a residual sees, and how they are brought to one size.
+    """Which blocks of features a residual sees, and how they are scaled.
 
-    velocity + wrench are the 12 features of the thesis' small set; with acceleration they are the
-    18 of its large set. Blocks always stand in the order of `COLUMNS`.
+    The blocks velocity and wrench are the 12 features of the thesis' small set; with acceleration
+    they are the 18 of its large set. Blocks always stand in the order of `COLUMNS`.
     """
 
     blocks: tuple[Block, ...] = ("velocity", "wrench")
@@ -49,5 +49,5 @@ def feature_names(settings: FeatureSettings) -> list[str]:
 
 
 def blocks_code(settings: FeatureSettings) -> int:
-    """The blocks as one number, for `assemble_one`."""
+    """The blocks as one number, a bit for each block, for `assemble_one`."""
     return sum(CODES[block] for block in settings.blocks)

@@ -1,7 +1,7 @@
-"""What all exported residuals are computed with: arithmetic on LANES points side by side.
+"""Arithmetic on LANES points side by side, with which all exported residuals are computed.
 
-Loops run over slices of constant or plain length and take PASS features or rows at once: only so
-does LLVM turn them into vector instructions (a third of the time, measured).
+Loops run over slices of constant or plain length, and take PASS features or rows at once. Only then
+does LLVM turn them into vector instructions, which need a third of the time (measured).
 """
 
 from math import log
@@ -26,7 +26,7 @@ exact = njit(error_model="numpy", **UNSEEN)
 
 @intrinsic
 def stack(typing):
-    """Pointer to SCRATCH float64 on the stack of the calling function: no heap, no sharing."""
+    """Pointer to SCRATCH float64 on the stack of the calling function, which no thread shares."""
 
     def codegen(context, builder, signature, arguments):
         pointer = cgutils.alloca_once(builder, ir.DoubleType(), size=SCRATCH)
@@ -58,7 +58,15 @@ def _float(typing, bits):
 
 @exact
 def scaled(data, at, d, x, z):
-    """Write features x, scaled as the numbers from `at` on say, into z; what follows d is zero."""
+    """Write scaled features into z (d',); elements after the first d are zero.
+
+    Args:
+        data: an exported residual; its shift (d,) and scale (d,) begin at index `at`.
+        at: that index.
+        d: number of features.
+        x: unscaled features.
+        z: is written to.
+    """
     z[:] = 0.0
     for j in range(d):
         z[j] = (x[j] - data[at + j]) / data[at + d + j]
@@ -66,7 +74,15 @@ def scaled(data, at, d, x, z):
 
 @exact
 def add_squares(points, b, j, x, s):
-    """Add the squared distances to block b along PASS features from j on to s (LANES,)."""
+    """Add squared distances along PASS features, from feature j on, to s (LANES,).
+
+    Args:
+        points: (blocks, d', LANES).
+        b: block whose LANES points are taken.
+        j: first of the features.
+        x: the query (d',).
+        s: is added to.
+    """
     x0, x1, x2, x3 = x[j], x[j + 1], x[j + 2], x[j + 3]
     for i in range(LANES):
         e0, e1 = points[b, j, i] - x0, points[b, j + 1, i] - x1
@@ -101,7 +117,10 @@ def exponentials(s):
 
 @reordered
 def products(rows, first, k):
-    """Products of k with PASS rows of its length, from row `first` on, of the flat array rows."""
+    """Scalar products of k (n,) with PASS rows of a matrix, from row `first` on.
+
+    `rows` is the matrix as a flat array, with rows of length n.
+    """
     n = k.size
     at = first * n
     r0, r1 = rows[at : at + n], rows[at + n : at + 2 * n]
