@@ -1,7 +1,7 @@
-"""Judged on stretches of the training runs that were left out, not on rows beside those seen.
+"""Cross-validation on whole stretches of the training runs, not on single rows.
 
-Rows that follow one another share a disturbance. A marginal likelihood takes each for independent,
-and what they share for a function of the features.
+Rows that follow one another share a disturbance. A marginal likelihood takes their errors for
+independent, and so takes the shared disturbance for a function of the features.
 """
 
 from typing import Iterator
@@ -14,24 +14,28 @@ FACTORS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # on the noise
 
 
 def split_rows(rows: int) -> Iterator[Array]:
-    """Indices of each of `PARTS` stretches of rows in the order of time; none is empty."""
+    """Yield the row indices of each of `PARTS` stretches of consecutive rows; none is empty."""
     yield from (s for s in np.array_split(np.arange(rows), PARTS) if len(s))
 
 
 def noise_factor(
     values: Array, vectors: Array, error: Array, outputscale: float, noise: float
 ) -> float:
-    """By which of `FACTORS` to raise a process' noise so that it foresees left-out stretches best.
+    """Choose the factor on a process' noise with which it predicts left-out stretches best.
 
-    Without stretch B the process misses its rows by [S^-1]_BB^-1 [S^-1 y]_B, S = outputscale K +
-    noise I (Sundararajan & Keerthi 2001, of more than one row).
+    Trained without stretch B, the process predicts the rows of B with the error
+    [S^-1]_BB^-1 [S^-1 y]_B, where S = outputscale K + noise I (Sundararajan & Keerthi 2001,
+    generalised to more than one row).
 
     Args:
         values: eigenvalues (n,) of the kernel matrix K, which has 1 on its diagonal.
         vectors: the eigenvectors (n, n), one a column; rows in the order of time.
-        error: targets minus the mean (m, n).
+        error: targets minus the mean (m, n), of m outputs with this kernel.
         outputscale: prior variance.
-        noise: variance that was tuned.
+        noise: variance of the noise that maximises the marginal likelihood.
+
+    Returns:
+        One of `FACTORS`.
     """
     seen = vectors.T @ error.T
     missed = np.zeros(len(FACTORS))

@@ -1,4 +1,4 @@
-"""PyTorch made to give the same numbers for the same seed, without touching its global state."""
+"""Make PyTorch give the same numbers for the same seed, without lasting changes of its state."""
 
 import warnings
 from collections.abc import Iterator
@@ -11,7 +11,10 @@ THREADS = 1
 
 @contextmanager
 def seeded_torch(seed: int) -> Iterator[None]:
-    """Float64, own random stream, one thread, exact Cholesky; everything is put back after."""
+    """Compute in float64 with a seeded random stream, one thread and exact Cholesky factors.
+
+    All settings of PyTorch and GPyTorch are restored at the end of the context.
+    """
     import torch
 
     with warnings.catch_warnings():

@@ -1,4 +1,4 @@
-"""Trained residuals laid out for the kernels of `rovsim.dynamics.learned`."""
+"""Turn trained residuals into the arrays that the kernels of `rovsim.dynamics.learned` read."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -38,11 +38,15 @@ from rovsim.learning.tree import packed_tree, side_by_side
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """sum_i weights_i exp(-|(z - points_i) / lengthscale|^2 / 2) of scaled features z.
+    """A sum of RBF kernels, sum_i weights_i exp(-|(z - points_i) / lengthscale|^2 / 2).
 
-    `points` (n, d) in scaled features, `lengthscale` (d,), `weights` (n, outputs of this kernel).
-    Of a process, `prior` (outputs of this kernel,) is the variance before anything was seen and
-    `variance` what reduces it. Without them the sum has no variance, and nothing fades.
+    Attributes:
+        points: (n, d) in scaled features, as z is.
+        lengthscale: (d,) in scaled features.
+        weights: (n, p) of its p outputs, in units of the targets.
+        prior: prior variance (p,) of a Gaussian process, in squared units of the targets.
+        variance: gives the share of the prior variance that remains. Without `prior` and
+            `variance` the sum has no variance, and never fades.
     """
 
     points: Array
@@ -55,9 +59,18 @@ class Kernel:
 def export_neighbours(
     features: FeatureSettings, scaling: Scaling, Z: Array, Y: Array, k: int, weights: str
 ) -> Array:
-    """Mean of the targets Y (n, m) of the k nearest of the scaled points Z (n, d).
+    """Export a mean of the targets of the k nearest training points.
 
-    `weights`: `uniform`, or `distance` (inverse). At equal distance the earlier row counts.
+    Args:
+        features: settings of the features.
+        scaling: of the features.
+        Z: scaled features (n, d) of the training points; at equal distance the earlier row counts.
+        Y: targets (n, m).
+        k: number of neighbours.
+        weights: `uniform`, or `distance` for inverse distances.
+
+    Returns:
+        The exported residual, see `rovsim.dynamics.learned.layout`.
     """
     header = _header(NEIGHBOURS, features, len(Z), Y.shape[1], k)
     header[WEIGHTING] = DISTANCE if weights == "distance" else UNIFORM
@@ -79,7 +92,7 @@ def export_neighbours(
 
 
 def principal_axes(Z: Array) -> Array:
-    """Principal axes (d, d) of points (n, d), the widest first."""
+    """Principal axes (d, d) of points (n, d), one a row, that with the largest variance first."""
     return np.linalg.eigh(np.cov(Z.T, ddof=0).reshape(Z.shape[1], -1))[1].T[::-1]
 
 
@@ -90,12 +103,20 @@ def export_expansion(
     kernels: Sequence[Kernel],
     fades: bool = False,
 ) -> Array:
-    """Mean (m,) plus one shared RBF kernel with m outputs, or m kernels with one each.
+    """Export a constant mean plus sums of RBF kernels.
 
-    Either all kernels have a variance or none.
+    Args:
+        features: settings of the features.
+        scaling: of the features.
+        mean: (m,) in units of the targets.
+        kernels: one with m outputs, or m with one output each; all with a variance, or none.
+        fades: whether the correction fades where it extrapolates.
+
+    Returns:
+        The exported residual, see `rovsim.dynamics.learned.layout`.
 
     Raises:
-        BadInput: more points than the kernels have room for.
+        BadInput: more points than the scratch of the compiled code has room for.
     """
     points = len(kernels[0].points)
     if points > MOST_POINTS:
@@ -115,7 +136,7 @@ def export_expansion(
 
 
 def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
-    """One kernel, as `layout` orders it."""
+    """Flatten one kernel in the order of `layout`; its variance is filled up to `rank` vectors."""
     n, share = kernel.weights.shape
     variance = kernel.variance or PosteriorVariance(0.0, np.zeros(0), np.zeros((0, n)), 0)
     length, wide = sqrt(2.0) * kernel.lengthscale, filled(n, LANES)
@@ -134,16 +155,17 @@ def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
 
 
 def _row(values: Array, length: int) -> Array:
-    """Values filled up with zeros to a length."""
+    """Fill up values (n,) with zeros to a length."""
     return np.pad(values.astype(np.float64), (0, length - len(values)))
 
 
 def _sheet(matrix: Array, rows: int, columns: int) -> Array:
-    """A matrix filled up with zeros to a size."""
+    """Fill up a matrix with zeros to a number of rows and columns."""
     return np.pad(matrix, ((0, rows - matrix.shape[0]), (0, columns - matrix.shape[1])))
 
 
 def _header(kind: float, features: FeatureSettings, points: int, outputs: int, count: int) -> Array:
+    """Header (HEADER,) of an exported residual, see `layout`."""
     header = np.zeros(HEADER)
     header[[FORMAT, KIND, BLOCKS]] = VERSION, kind, blocks_code(features)
     header[[WIDTH, POINTS, OUTPUTS, COUNT]] = len(feature_names(features)), points, outputs, count

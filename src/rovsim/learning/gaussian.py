@@ -1,4 +1,4 @@
-"""What exact and variational Gaussian processes share (GPyTorch): parts, training, export.
+"""What exact and variational Gaussian processes share: GPyTorch modules, training, export.
 
 Both see scaled features and targets of mean 0 and standard deviation 1, and predict the mean
 mean_j + s_j^2 sum_i w_ij exp(-|(z - z_i) / l_j|^2 / 2): an RBF kernel with one lengthscale per
@@ -26,7 +26,7 @@ SHOWN = 2000  # training rows that show how sure a process is where it was taugh
 
 
 class GaussianSettings(LearnerSettings):
-    """What both processes have."""
+    """Settings that exact and variational Gaussian processes share."""
 
     # Share of the training rows at which the correction counts fully; beyond what these show it
     # fades, to nothing where nothing was seen. null: it never fades (docs/benchmark_speed.md).
@@ -36,11 +36,17 @@ class GaussianSettings(LearnerSettings):
 
 
 def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
-    """Targets (n, 6) brought within `huberized` robust standard deviations of what is usual there.
+    """Limit how far targets differ from those of similar rows.
 
-    Usual is the median of the nearest rows in X (n, d), unscaled. A command that falls inside a
-    sample leaves an acceleration far off, and a Gaussian likelihood explains such with lengthscales
-    too short for anything else. These are Huber's pseudo-values (Huber & Ronchetti 2009, sec. 7.8).
+    A command that changes within a sampling period leaves an outlier in the acceleration. A
+    Gaussian likelihood explains outliers by lengthscales that are too short for all other rows. So
+    targets are limited to `huberized` robust standard deviations from the median of the nearest
+    rows. These are Huber's pseudo-values (Huber & Ronchetti 2009, sec. 7.8).
+
+    Args:
+        X: unscaled features (n, d).
+        Y: targets (n, 6), m/s2 and rad/s2.
+        settings: with the limit, which may be None.
     """
     if settings.huberized is None or len(X) <= NEARBY:
         return Y
@@ -52,9 +58,17 @@ def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
 
 
 def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
-    """Scalings of features and targets as arrays, fitted on all training rows.
+    """Fit the scalings of features and targets on all training rows.
 
-    A constant target has scale 0: it is predicted as that constant, whatever the process thinks.
+    A constant target gets the scale 0, so that every prediction is that constant.
+
+    Args:
+        kind: scaling of the features, see `fit_scaling`.
+        X: unscaled features (n, d).
+        Y: targets (n, 6), m/s2 and rad/s2.
+
+    Returns:
+        Arrays `shift` and `scale` (d,), `target_shift` and `target_scale` (6,).
     """
     features, targets = fit_scaling(kind, X), fit_scaling("standard", Y)
     return {
@@ -66,21 +80,26 @@ def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
 
 
 def scaled_pairs(arrays: Mapping[str, Array], X: Array, Y: Array) -> tuple[Array, Array]:
-    """Scaled features (n, d) and scaled targets (6, n)."""
+    """Scale features (n, d) and targets (n, 6); returns them as (n, d) and transposed (6, n)."""
     scale = arrays["target_scale"]
     targets = Scaling(arrays["target_shift"], np.where(scale > 0.0, scale, 1.0))
     return _features(arrays).apply(X), np.ascontiguousarray(targets.apply(Y).T)
 
 
 def _features(arrays: Mapping[str, Array]) -> Scaling:
+    """The scaling of the features, from the arrays of `scalings`."""
     return Scaling(arrays["shift"], arrays["scale"])
 
 
 def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
-    """Mean, kernel and likelihood for scaled features Z; `outputs` kernels (1 or 6).
+    """Make GPyTorch's mean, kernel and likelihood for scaled features.
 
-    Lengthscales start at sqrt(d) standard deviations, about the distance between two points: at
-    GPyTorch's own start (0.7) no point of a 12-dimensional set would see another.
+    Lengthscales start at sqrt(d) standard deviations, about the distance between two points. At
+    GPyTorch's own start (0.7) no two points of a 12-dimensional set would be correlated.
+
+    Args:
+        Z: scaled features (n, d).
+        outputs: number of kernels: 1 for all six axes, or 6.
     """
     import torch
     from gpytorch.kernels import RBFKernel, ScaleKernel
@@ -91,7 +110,8 @@ def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
     kernel = ScaleKernel(RBFKernel(ard_num_dims=d, batch_shape=batch), batch_shape=batch)
     start = np.sqrt(d) * fit_scaling("standard", Z).scale
     kernel.base_kernel.lengthscale = torch.as_tensor(start).expand(*batch, 1, d)
-    # its noise stays above 1e-4 of the targets' variance: 1 % of their size, and well conditioned
+    # GPyTorch keeps this noise above 1e-4 of the targets' variance (1 % of their standard
+    # deviation), so that the kernel matrix is well conditioned
     likelihood = GaussianLikelihood(batch_shape=batch)
     return ConstantMean(batch_shape=torch.Size([len(AXES)])), kernel, likelihood
 
@@ -99,7 +119,18 @@ def modules(Z: Array, outputs: int) -> tuple[Any, Any, Any]:
 def optimise(
     parameters: list, loss: Callable[[], Any], rounds: int, rate: float, progress: Progress
 ) -> float:
-    """Minimise `loss` with Adam, its rate falling linearly to a tenth; returns the last loss."""
+    """Minimise a loss with Adam, whose learning rate falls linearly to a tenth.
+
+    Args:
+        parameters: PyTorch parameters that the loss depends on.
+        loss: computes the loss as a scalar tensor.
+        rounds: number of steps.
+        rate: initial learning rate.
+        progress: called with the number of steps done and their total number.
+
+    Returns:
+        The loss before the last step.
+    """
     import torch
 
     adam = torch.optim.Adam(parameters, lr=rate)
@@ -116,7 +147,11 @@ def optimise(
 
 
 def hyperparameters(model: Any) -> dict[str, Array]:
-    """Lengthscale (b, d), outputscale (b,), noise (b,) and mean (6,), in scaled units; b 1 or 6."""
+    """Read the hyperparameters of a GPyTorch model of b kernels (1 or 6), in scaled units.
+
+    Returns:
+        Arrays `lengthscale` (b, d), `outputscale` (b,), `noise` (b,) and `mean` (6,).
+    """
 
     def of(tensor: Any) -> Array:
         return tensor.detach().numpy().copy()
@@ -131,7 +166,7 @@ def hyperparameters(model: Any) -> dict[str, Array]:
 
 
 def set_hyperparameters(model: Any, arrays: Mapping[str, Array]) -> None:
-    """Give `model` the values that `hyperparameters` returned."""
+    """Set the hyperparameters of a GPyTorch model to those that `hyperparameters` returned."""
     import torch
 
     def into(name: str, like: Any) -> Any:
@@ -145,7 +180,15 @@ def set_hyperparameters(model: Any, arrays: Mapping[str, Array]) -> None:
 
 
 def library_predictor(model: Any, arrays: Mapping[str, Array]) -> Predict:
-    """GPyTorch's own predicted mean, from unscaled features; scaled here and nowhere else."""
+    """Make a function that predicts with GPyTorch itself.
+
+    Args:
+        model: a GPyTorch model of scaled features and targets.
+        arrays: scalings, see `scalings`.
+
+    Returns:
+        Function from unscaled features (n, d) to the mean acceleration (n, 6), m/s2 and rad/s2.
+    """
     import torch
     from gpytorch import settings
 
@@ -163,9 +206,16 @@ def library_predictor(model: Any, arrays: Mapping[str, Array]) -> Predict:
 
 
 def library_posterior(model: Any, arrays: Mapping[str, Array], fast: bool = False) -> Posterior:
-    """GPyTorch's own mean and variance; `fast`: its LOVE approximation (Pleiss et al. 2018).
+    """Make a function that computes mean and variance with GPyTorch itself.
 
-    Variances are those of the process, without noise.
+    Args:
+        model: a GPyTorch model of scaled features and targets.
+        arrays: scalings, see `scalings`.
+        fast: whether variances are those of the LOVE approximation (Pleiss et al. 2018).
+
+    Returns:
+        Function from unscaled features (n, d) to mean (n, 6) and variance (n, 6), in m/s2 and
+        rad/s2 and their squares. The variance is that of the latent function, without noise.
     """
     import torch
     from gpytorch import settings
@@ -194,7 +244,15 @@ def export(
     weights: Array,
     variances: Sequence[PosteriorVariance],
 ) -> Array:
-    """Kernel expansion around scaled points Z (n, d) with weights (6, n) in scaled units."""
+    """Export a Gaussian process as a kernel expansion in units of the targets.
+
+    Args:
+        settings: with the features, and whether the correction fades.
+        arrays: scalings and hyperparameters.
+        Z: training or inducing points (n, d), scaled features.
+        weights: w (6, n) of the scaled mean, mean + outputscale w k, where k is 1 at distance 0.
+        variances: of each kernel.
+    """
     mean = arrays["target_shift"] + arrays["target_scale"] * arrays["mean"]
     scale = arrays["target_scale"] * arrays["outputscale"]
     prior = arrays["target_scale"] * scale
@@ -217,7 +275,18 @@ def fade_beyond(
     X: Array,
     settings: GaussianSettings,
 ) -> list[PosteriorVariance]:
-    """The same, fading beyond what the training features X (n, d) show."""
+    """Set the limits beyond which the correction fades, from the training features.
+
+    Args:
+        variances: of each kernel.
+        arrays: scalings and hyperparameters.
+        points: training or inducing points (n, d), scaled.
+        X: unscaled features (rows, d) of the training set.
+        settings: with the share of the training rows at which the correction counts fully.
+
+    Returns:
+        The variances with these limits; unchanged where the correction never fades.
+    """
     if settings.extrapolation_quantile is None:
         return list(variances)
     some = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])

@@ -1,4 +1,4 @@
-"""What every learner declares, and how learners are found: one file of `learners/` each."""
+"""What every learner declares, how learners are found (one file each in `learners/`), training."""
 
 import pkgutil
 from collections.abc import Callable, Mapping
@@ -27,11 +27,14 @@ Progress = Callable[[int, int], None]  # rounds done, rounds in all
 
 @dataclass(frozen=True, eq=False)
 class Trained:
-    """A residual fresh from training.
+    """What a training returns.
 
-    `data`: exported for the kernels. `arrays`: what the library's own model is rebuilt from.
-    `info`: numbers to report (points, hyperparameters, final loss). No times: equal inputs make
-    equal files.
+    Attributes:
+        settings: of the learner.
+        data: the exported residual that kernels evaluate.
+        arrays: from which the model of the library that trained it is rebuilt.
+        info: numbers to report (points, hyperparameters, final loss), but no times, so that equal
+            inputs make equal files.
     """
 
     settings: LearnerSettings
@@ -50,18 +53,18 @@ class Trained:
         return self.settings.features
 
     def residual(self, control: Control) -> Residual:
-        """What a model holds of it; `control`: the runs it was trained on."""
+        """Convert to the residual that a model holds; `control` says what runs it learned from."""
         settings = self.settings.model_dump(mode="json", exclude={"kind", "features"})
         return Residual(
             control, self.kind, self.features, settings, self.data, self.arrays, self.info
         )
 
     def predict(self, X: Array) -> Array:
-        """Residual acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
+        """Evaluate the body acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
         return evaluate_many(self.data, checked_rows(X, self.features))
 
     def posterior(self, X: Array) -> tuple[Array, Array]:
-        """Mean and variance of a process. See `posterior`."""
+        """Evaluate mean and variance of a Gaussian process; see `checks.posterior`."""
         return posterior(self.data, X, self.features)
 
 
@@ -69,12 +72,18 @@ class Trained:
 class Learner:
     """A way to learn a residual.
 
-    `title` is what people call it, `meaning` the same in full ("a Gaussian process").
-    `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual accelerations
-    Y (n, 6). `library_from(arrays, settings)` rebuilds the library's own prediction from
-    `Trained.arrays`, without pickle; `posterior_from(arrays, settings, fast)` its mean and
-    variance, where it has one. `shrinkage` is the largest share of a target that it leaves out
-    where all rows agree: one that is regularised keeps away from what it was told.
+    Attributes:
+        title: what people call it ("GP").
+        meaning: the same in full ("a Gaussian process").
+        settings: class of its settings.
+        fit: `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual
+            accelerations Y (n, 6).
+        library_from: `library_from(arrays, settings)` rebuilds the prediction of the library
+            itself from `Trained.arrays`, without pickle.
+        posterior_from: `posterior_from(arrays, settings, fast)` rebuilds mean and variance of the
+            library itself; None for learners without a variance.
+        shrinkage: largest share of a target by which a prediction may fall short of it where all
+            training rows agree, because the learner is regularised.
     """
 
     title: str
@@ -87,7 +96,7 @@ class Learner:
 
 
 def learners() -> Mapping[str, Learner]:
-    """Every learner by kind: what the modules of `rovsim.learning.learners` declare."""
+    """Find every learner that a module of `rovsim.learning.learners` declares, by its kind."""
     package = rovsim.learning.learners
     names = [module.name for module in pkgutil.iter_modules(package.__path__)]
     found = [import_module(f"{package.__name__}.{name}").LEARNER for name in names]
@@ -95,10 +104,10 @@ def learners() -> Mapping[str, Learner]:
 
 
 def learner(kind: str, where: object = "residual") -> Learner:
-    """The learner of that kind.
+    """Look up a learner by its kind.
 
     Raises:
-        BadInput: there is none; the nearest known kind is named.
+        BadInput: there is no learner of this kind; the nearest known kind is named.
     """
     known = learners()
     if kind in known:
@@ -107,7 +116,9 @@ def learner(kind: str, where: object = "residual") -> Learner:
 
 
 def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:
-    """Settings from plain values such as a file of `conf/residual`; `kind` names the learner.
+    """Make settings from plain values such as those of a file in `conf/residual`.
+
+    The value of `kind` says which learner they are for.
 
     Raises:
         BadInput: unknown kind, unknown key or impossible value.
@@ -117,20 +128,20 @@ def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:
 
 
 def settings_of(residual: Residual) -> LearnerSettings:
-    """What a stored residual was trained with.
+    """The settings that a stored residual was trained with.
 
     Raises:
-        BadInput: no learner here has these settings.
+        BadInput: no known learner has these settings.
     """
     features = {"blocks": residual.features.blocks, "scaling": residual.features.scaling}
     return learner_settings(residual.settings | {"kind": residual.kind, "features": features})
 
 
 def library_of(residual: Residual) -> Predict:
-    """The library's own prediction, rebuilt from the stored arrays.
+    """Rebuild the prediction of the library that trained a residual, from the stored arrays.
 
     Raises:
-        BadInput: no learner here has these settings, or its library is not installed.
+        BadInput: no known learner has these settings, or its library is not installed.
     """
     require("learn", by=f"residual={residual.kind}")
     return learner(residual.kind).library_from(residual.arrays, settings_of(residual))
@@ -169,10 +180,18 @@ def train(
 
 
 def spread_rows(rows: int, most: int | None, seed: int) -> Array:
-    """Which of `rows` rows to keep, at most `most`, in order.
+    """Choose at most `most` of some rows, spread over all of them.
 
-    Time is cut into `most` equally long stretches and one row is drawn from each, so that every
-    manoeuvre is represented and no rhythm of the sampling is picked out.
+    The rows are cut into `most` equally long stretches, and one row is drawn from each. So every
+    manoeuvre is represented, and no regular subsampling can alias a periodic motion.
+
+    Args:
+        rows: number of rows, in the order of time.
+        most: largest number of rows to keep; None: all.
+        seed: of the draws.
+
+    Returns:
+        Indices of the kept rows, rising.
     """
     if most is None or rows <= most:
         return np.arange(rows)

@@ -1,4 +1,4 @@
-"""Training pairs for a learned residual: features, and what the model's acceleration misses."""
+"""Training pairs for a learned residual: features, and the acceleration that the model lacks."""
 
 from dataclasses import dataclass, field
 from typing import Any, Iterable, Iterator
@@ -19,11 +19,12 @@ MOST_ROWS = 1 << 18  # 44 min at 100 Hz, some 40 MB; of more, every second, four
 
 
 def flown_with(control: str, run: Any) -> bool:
-    """Whether a run (with its `control`) is one of those that `control` means; `all` means each."""
+    """Whether a run was flown with this control; `all` includes every run."""
     return control in ("all", run.control)
 
 
 def _refuse_parts(motion: Motion) -> None:
+    """Refuse a run of which not all six axes were measured."""
     known = np.ones(6, bool) if motion.measured is None else motion.measured.axes
     if not known.all():
         missing = ", ".join(axis for axis, yes in zip(AXES, known, strict=True) if not yes)
@@ -36,10 +37,10 @@ def _refuse_parts(motion: Motion) -> None:
 
 
 def training_runs(motions: Iterable[Motion], control: str) -> Iterator[Motion]:
-    """The runs a residual of this control may learn from, one after the other.
+    """Yield the train runs with this control, one after the other.
 
     Raises:
-        BadInput: there is none, or one of them was measured in part only.
+        BadInput: there is no such run, or not all axes of one were measured.
     """
     seen, none = [], True
     for motion in motions:
@@ -60,9 +61,14 @@ def training_runs(motions: Iterable[Motion], control: str) -> Iterator[Motion]:
 
 @dataclass
 class Gathered:
-    """Training pairs, taken in run by run; memory holds `most` rows, spread over all runs.
+    """Training pairs, gathered run by run; at most `most` rows are kept, spread over all runs.
 
-    Of each run it keeps one row at least. `runs`: their ids. `rows`: how many they had.
+    Attributes:
+        features: settings of the features.
+        seed: of the choice of rows.
+        most: largest number of rows to keep; at least one of each run is kept.
+        runs: ids of the runs so far.
+        rows: total number of rows of these runs.
     """
 
     features: FeatureSettings
@@ -74,7 +80,7 @@ class Gathered:
     _kept: list[tuple[Array, Array]] = field(default_factory=list)
 
     def take(self, run: str, samples: Samples) -> None:
-        """Take in a run."""
+        """Add the samples of a run; where there are too many rows, keep every second one of all."""
         pairs = samples.features(self.features), samples.a_res
         self.runs.append(run)
         self.rows += len(samples.a_res)
@@ -84,13 +90,14 @@ class Gathered:
             self._kept = [self._thinned(kept, 2) for kept in self._kept]
 
     def _thinned(self, pairs: tuple[Array, Array], every: int) -> tuple[Array, Array]:
+        """Keep one of `every` rows of X (n, d) and Y (n, 6)."""
         X, Y = pairs
         rows = spread_rows(len(Y), -(-len(Y) // every), self.seed)
         return X[rows], Y[rows]
 
     @property
     def pairs(self) -> tuple[Array, Array]:
-        """X (n, d), features, and Y (n, 6), residual accelerations in m/s2 and rad/s2."""
+        """Features X (n, d), and residual accelerations Y (n, 6) in m/s2 and rad/s2."""
         X, Y = zip(*self._kept, strict=True)
         return np.concatenate(X), np.concatenate(Y)
 
@@ -103,7 +110,15 @@ def gather_pairs(
     how: SimulationSettings,
     seed: int,
 ) -> Gathered:
-    """What a residual on top of a model learns from: the train runs with this control.
+    """Gather the pairs from which a residual on top of a model learns.
+
+    Args:
+        model: of physics alone.
+        motions: the runs of a campaign, of which train runs with this control are used.
+        control: `3dof`, `6dof` or `all`.
+        features: settings of the features.
+        how: filter and derivative of the measurement, step length, and how commands are held.
+        seed: of the choice of rows.
 
     Raises:
         BadInput: the model has a residual already, or there is nothing to train on.

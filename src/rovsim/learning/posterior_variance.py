@@ -1,6 +1,9 @@
-"""The variance of a Gaussian process, cheap enough for a control loop, exact within a bound.
+"""The variance of a Gaussian process, cheap enough for a control loop, and exact within a bound.
 
-The variance needs k' (K + s2)^-1 k: n^2 numbers to read. In the eigenvectors v_j of K this is
+To compute the variance, k' (K + s2)^-1 k is needed, which reads n^2 numbers: k are the kernel
+values between the query and n training points, K is the kernel matrix of these points, and s2 the
+noise variance, in units of the prior variance. In the eigenvectors v_j and eigenvalues l_j of K it
+is
 
     |k|^2 / s2 - sum_j (v_j' k)^2 l_j / (s2 (l_j + s2)),
 
@@ -21,12 +24,16 @@ ROUGH = 5e-2  # the same for fading, at a tenth of the cost; 1 - rho stays right
 
 @dataclass(frozen=True, eq=False)
 class PosteriorVariance:
-    """What reduces the prior variance at a query with kernel values k (n,), to the share
+    """Gives the share rho of the prior variance that remains at a query with kernel values k (n,).
 
-    rho = 1 - identity |k|^2 - sum_j spectrum_j (vectors_j k)^2.
+    rho = 1 - identity |k|^2 - sum_j spectrum_j (vectors_j k)^2
 
-    `spectrum` (r,), `vectors` (r, n), the weightiest first; fading uses the first `fading_rank` of
-    them, and counts a correction fully where rho is at most `limit`.
+    Attributes:
+        identity: factor of |k|^2.
+        spectrum: (r,) factors of the other terms, those that matter most first.
+        vectors: (r, n) in the same order.
+        fading_rank: how many of these terms are computed where only fading needs rho.
+        limit: of rho, up to which the correction counts fully.
     """
 
     identity: float
@@ -36,12 +43,12 @@ class PosteriorVariance:
     limit: float = 0.0
 
     def prior_share(self, k: Array, rank: int) -> Array:
-        """rho (q,) at kernel values k (q, n), from the first `rank` vectors."""
+        """Compute rho (q,) at q queries with kernel values k (q, n), from `rank` vectors."""
         seen = (k @ self.vectors[:rank].T) ** 2 @ self.spectrum[:rank]
         return np.clip(1.0 - self.identity * (k**2).sum(1) - seen, 0.0, 1.0)
 
     def faded_from(self, k: Array, share: float) -> "PosteriorVariance":
-        """The same with the limit that leaves this share of the queries as they are."""
+        """Set the limit so that the correction counts fully at this share of q queries k (q, n)."""
         limit = float(np.quantile(self.prior_share(k, self.fading_rank), share))
         return PosteriorVariance(
             self.identity, self.spectrum, self.vectors, self.fading_rank, limit
@@ -49,21 +56,21 @@ class PosteriorVariance:
 
 
 def rbf(X: Array, Z: Array, lengthscale: Array) -> Array:
-    """Kernel matrix (x, z) of scaled features, with the value 1 at distance 0."""
+    """RBF kernel matrix (x, z) of scaled features X (x, d) and Z (z, d); 1 at distance 0."""
     squares = scipy.spatial.distance.cdist(X / lengthscale, Z / lengthscale, "sqeuclidean")
     return np.exp(-0.5 * squares)
 
 
 def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVariance:
-    """An exact process with noise variance > 0.
+    """Make the variance of an exact Gaussian process from the eigenvectors of its kernel matrix.
 
     Args:
-        values: eigenvalues (n,), in ascending order, of its kernel matrix with 1 on the diagonal.
+        values: eigenvalues (n,), in ascending order, of the kernel matrix with 1 on the diagonal.
         vectors: the eigenvectors (n, n), one a column.
-        noise: in units of the prior variance.
+        noise: variance of the noise, > 0, in units of the prior variance.
     """
     kept = values > _least(noise, EXACT)
-    kept[-1] = True  # however noisy: none would say that there is no variance
+    kept[-1] = True  # even with much noise: rank 0 would mean that there is no variance
     values, vectors = values[kept][::-1], vectors[:, kept][:, ::-1]
     spectrum = -values / (noise * (values + noise))
     fading_rank = int(np.sum(values > _least(noise, ROUGH)))
@@ -78,7 +85,7 @@ def _least(noise: float, bound: float) -> float:
 
 
 def decompose_quadratic(A: Array) -> PosteriorVariance:
-    """A process with rho = 1 - k' A k, for a symmetric A (n, n)."""
+    """Make the variance of a process with rho = 1 - k' A k, for a symmetric A (n, n)."""
     values, vectors = scipy.linalg.eigh(0.5 * (A + A.T))
     order = np.argsort(-np.abs(values))
     return PosteriorVariance(

@@ -1,4 +1,4 @@
-"""Features brought to one size, with numbers taken from the training set alone."""
+"""Scale features by shifts and scales that are fitted on the training set alone."""
 
 from dataclasses import dataclass
 
@@ -12,21 +12,22 @@ CONSTANT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Scaling:
-    """Scaled features are (X - shift) / scale; shift and scale (d,)."""
+    """Scales features to (X - shift) / scale; shift and scale are (d,)."""
 
     shift: Array
     scale: Array
 
     def apply(self, X: Array) -> Array:
-        """Scaled copy of X (n, d)."""
+        """Return scaled features (n, d) of unscaled ones X (n, d)."""
         return (X - self.shift) / self.scale
 
 
 def fit_scaling(kind: str, X: Array) -> Scaling:
-    """Scaling fitted on training rows X (n, d).
+    """Fit a scaling on training rows.
 
-    `standard`: mean 0, standard deviation 1; `range`: 0 to 1; `none`: as they are. A constant
-    column keeps its unit (scale 1).
+    Args:
+        kind: `standard` for mean 0 and standard deviation 1, `range` for 0 to 1, or `none`.
+        X: unscaled features (n, d). A constant column gets the scale 1.
     """
     d = X.shape[1]
     if kind == "none":

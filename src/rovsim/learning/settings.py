@@ -5,7 +5,7 @@ from rovsim.dynamics.learned.settings import FeatureSettings
 
 
 class LearnerSettings(Section):
-    """Each learner adds its own `kind` and hyperparameters."""
+    """Settings that every learner has; each adds its own `kind` and hyperparameters."""
 
     kind: str
     features: FeatureSettings = FeatureSettings()

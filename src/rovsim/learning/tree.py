@@ -1,7 +1,8 @@
-"""A packed tree of bounding boxes, as `rovsim.dynamics.learned.neighbours` searches it.
+"""Build the packed tree of bounding boxes that `rovsim.dynamics.learned.neighbours` searches.
 
-Points are halved along their widest feature, at whole subtrees (White & Jain 1996, the VAMSplit
-R-tree): all leaves but the last are full, and no pointers are needed.
+Points are split in two along the feature with the largest variance, so that the first part fills
+whole subtrees (White & Jain 1996, the VAMSplit R-tree). Then all leaves but the last are full, and
+no pointers are needed.
 """
 
 from dataclasses import dataclass
@@ -15,9 +16,12 @@ from rovsim.dynamics.learned.layout import LANES, PASS, filled, tree_levels
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """`order` (n,) of the points in the leaves; `boxes` (nodes, 2, d', LANES), lowest level first.
+    """A packed tree of bounding boxes, with LANES children a node and LANES points a leaf.
 
-    A node's two sheets are the lower and upper corners of its children's boxes.
+    Attributes:
+        order: indices (n,) of the points, leaf after leaf.
+        boxes: (nodes, 2, d', LANES), lowest level first: lower and upper corners of the bounding
+            boxes of each node's children. d' is the number of features, filled up (`layout`).
     """
 
     order: Array
@@ -25,7 +29,7 @@ class Tree:
 
 
 def packed_tree(points: Array) -> Tree:
-    """The tree of points (n, d)."""
+    """Build the tree of points (n, d)."""
     order = _ordered(points, np.arange(len(points)))
     starts = np.arange(0, len(points), LANES)
     lower = np.minimum.reduceat(points[order], starts)
@@ -40,7 +44,7 @@ def packed_tree(points: Array) -> Tree:
 
 
 def _ordered(points: Array, rows: Array) -> Array:
-    """Rows in the order of the leaves they belong to."""
+    """Order some row indices of points (n, d) so that each leaf's rows follow one another."""
     if len(rows) <= LANES:
         return rows
     subtree = LANES
@@ -53,7 +57,7 @@ def _ordered(points: Array, rows: Array) -> Array:
 
 
 def side_by_side(points: Array) -> Array:
-    """Points (n, d) as (blocks, d', LANES), filled up with zeros. See `layout`."""
+    """Arrange points (n, d) as (blocks, d', LANES), filled up with zeros; see `layout`."""
     n, d = points.shape
     full = np.zeros((filled(n, LANES), filled(d, PASS)))
     full[:n, :d] = points

@@ -1,5 +1,5 @@
-"""The learners of residuals: one file each, found by looking into this folder.
+"""The learners of residuals, one file each; every file in this folder is found.
 
-A file declares `LEARNER` (`rovsim.learning.learner.Learner`) and nothing else is registered; its
-defaults stand in `conf/residual/`. What several of them use lies in `rovsim.learning`.
+A file declares `LEARNER` (`rovsim.learning.learner.Learner`); it need not be registered anywhere.
+Its defaults are in `conf/residual/`. What several learners use is in `rovsim.learning`.
 """

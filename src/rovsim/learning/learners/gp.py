@@ -1,4 +1,4 @@
-"""Exact Gaussian process (GPyTorch): a smooth residual, sure of itself only where data is."""
+"""Exact Gaussian process (GPyTorch): a smooth residual, whose variance grows away from the data."""
 
 from typing import Any, Literal, Mapping, Sequence
 
@@ -26,7 +26,7 @@ Spectrum = tuple[Array, Array]  # eigenvalues (n,) and eigenvectors (n, n) of a 
 
 
 class GpSettings(gaussian.GaussianSettings):
-    """Exact multi-output Gaussian process."""
+    """Settings of exact Gaussian processes, one for each axis."""
 
     kind: Literal["gp"] = "gp"
     # independent: each axis has its own lengthscales and noise. shared: one kernel for all six,
@@ -42,7 +42,10 @@ class GpSettings(gaussian.GaussianSettings):
 
 
 def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress) -> Trained:
-    """Tune on some rows, condition on more. See `rovsim.learning.learner.train`."""
+    """Tune hyperparameters on some rows, and condition the process on more of them.
+
+    See `rovsim.learning.learner.train` for the arguments.
+    """
     Y = gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
@@ -66,7 +69,7 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
 
 
 def library_from(arrays: Mapping[str, Array], settings: GpSettings) -> Predict:
-    """GPyTorch's own model, with its hyperparameters and the data it is conditioned on."""
+    """Rebuild GPyTorch's own prediction from hyperparameters and training rows."""
     with seeded_torch(0):
         model = _model(arrays["points"], arrays["targets"], settings)
         gaussian.set_hyperparameters(model, arrays)
@@ -76,7 +79,7 @@ def library_from(arrays: Mapping[str, Array], settings: GpSettings) -> Predict:
 def posterior_from(
     arrays: Mapping[str, Array], settings: GpSettings, fast: bool = False
 ) -> Posterior:
-    """GPyTorch's own mean and variance; `fast`: by LOVE."""
+    """Rebuild GPyTorch's own mean and variance; with `fast`, its LOVE approximation."""
     with seeded_torch(0):
         model = _model(arrays["points"], arrays["targets"], settings)
         gaussian.set_hyperparameters(model, arrays)
@@ -84,7 +87,7 @@ def posterior_from(
 
 
 def _factors(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> Array:
-    """What to raise each kernel's noise by."""
+    """Factor (b,) by which the noise of each of b kernels is raised; see `noise_factor`."""
     errors = np.split(arrays["targets"] - arrays["mean"][:, None], len(spectra))
     kernels = zip(spectra, errors, arrays["outputscale"], arrays["noise"], strict=True)
     return np.array([noise_factor(*spectrum, *rest) for spectrum, *rest in kernels])
@@ -93,12 +96,13 @@ def _factors(arrays: Mapping[str, Array], spectra: Sequence[Spectrum]) -> Array:
 def _posterior_variances(
     arrays: Mapping[str, Array], spectra: Sequence[Spectrum]
 ) -> list[PosteriorVariance]:
-    """What reduces the variance of each kernel's process."""
+    """Make the posterior variance of each kernel's process."""
     noise = arrays["noise"] / arrays["outputscale"]
     return [decompose_exact(*own, float(ratio)) for own, ratio in zip(spectra, noise, strict=True)]
 
 
 def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
+    """Make the GPyTorch model of scaled features Z (n, d) and scaled targets T (6, n)."""
     import torch
     from gpytorch.distributions import MultivariateNormal
     from gpytorch.models import ExactGP
@@ -117,7 +121,11 @@ def _model(Z: Array, T: Array, settings: GpSettings) -> Any:
 
 
 def _tune(model: Any, settings: GpSettings, progress: Progress) -> float:
-    """Maximise the marginal likelihood, summed over the axes; returns minus it per row."""
+    """Maximise the log marginal likelihood, summed over the axes.
+
+    Returns:
+        Minus the log marginal likelihood per row, at the last step.
+    """
     from gpytorch.mlls import ExactMarginalLogLikelihood
 
     model.train()
@@ -141,6 +149,7 @@ def _tune(model: Any, settings: GpSettings, progress: Progress) -> float:
 
 
 def _condition(model: Any, Z: Array, T: Array) -> None:
+    """Replace the training rows of a model by scaled features Z (n, d) and targets T (6, n)."""
     import torch
 
     model.set_train_data(torch.as_tensor(Z), torch.as_tensor(T), strict=False)

@@ -1,4 +1,4 @@
-"""k nearest neighbours (scikit-learn): the mean residual of the most similar moments seen."""
+"""k nearest neighbours (scikit-learn): the mean residual of the most similar training rows."""
 
 from typing import Literal, Mapping
 
@@ -25,17 +25,17 @@ TRIED = (3, 5, 10, 20, 30)
 
 
 class KnnSettings(LearnerSettings):
-    """k nearest neighbours in scaled features."""
+    """Settings of k nearest neighbours in scaled features."""
 
     kind: Literal["knn"] = "knn"
-    # null: as many as foresee stretches of the training runs best that were left out
+    # null: the number that predicts left-out stretches of the training runs best
     k: int | None = Field(default=None, ge=1, le=MOST_NEIGHBOURS)
-    # by inverse distance the prediction is continuous while the nearest point changes
+    # with inverse distances the prediction is continuous where the nearest point changes
     weights: Literal["uniform", "distance"] = "distance"
 
 
 def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress) -> Trained:
-    """Keep the training rows. See `rovsim.learning.learner.train`."""
+    """Store the training rows, and choose k. See `rovsim.learning.learner.train`."""
     scaling = fit_scaling(settings.features.scaling, X)
     rows = spread_rows(len(X), settings.max_points, seed)
     if len(rows) < (settings.k or 1):
@@ -56,14 +56,15 @@ def fit(X: Array, Y: Array, settings: KnnSettings, seed: int, progress: Progress
 
 
 def best_k(Z: Array, Y: Array, weights: str) -> int:
-    """How many neighbours foresee left-out stretches of the rows best.
+    """Choose the number of neighbours that predicts left-out stretches of the rows best.
 
-    One neighbour repeats its measurement noise, which falls with sqrt(k); many blur the residual.
+    A single neighbour passes on its measurement noise, which a mean of k reduces by sqrt(k); too
+    many neighbours blur the residual.
 
     Args:
         Z: scaled features (n, d), rows in the order of time.
-        Y: targets (n, 6).
-        weights: uniform or distance.
+        Y: targets (n, 6), m/s2 and rad/s2.
+        weights: `uniform`, or `distance` for inverse distances.
     """
     tried = [k for k in TRIED if k <= len(Z) - -(-len(Z) // PARTS)]
     if len(tried) < 2:
@@ -82,7 +83,7 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
 
 
 def library_from(arrays: Mapping[str, Array], settings: KnnSettings) -> Predict:
-    """Scikit-learn's own predictor, fitted on the stored points."""
+    """Rebuild scikit-learn's own prediction from the stored training rows."""
     from sklearn.neighbors import KNeighborsRegressor
 
     scaling = Scaling(arrays["shift"], arrays["scale"])

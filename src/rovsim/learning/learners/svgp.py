@@ -1,4 +1,4 @@
-"""Sparse variational Gaussian process (GPyTorch; Hensman et al. 2015): all rows, few points."""
+"""Sparse variational Gaussian process (GPyTorch; Hensman et al. 2015), around inducing points."""
 
 from typing import Any, Literal, Mapping
 
@@ -22,19 +22,19 @@ from rovsim.learning.posterior_variance import PosteriorVariance, decompose_quad
 
 
 class SvgpSettings(gaussian.GaussianSettings):
-    """Sparse variational Gaussian process, one per axis, around common inducing points."""
+    """Settings of sparse variational Gaussian processes, one per axis, same inducing points."""
 
     kind: Literal["svgp"] = "svgp"
     inducing: int = Field(
         default=100, ge=1, le=MOST_POINTS
-    )  # points it thinks with; cost grows with their cube
+    )  # inducing points; the cost grows with the cube of their number
     batch: int = Field(default=512, ge=1)  # rows per step
     iterations: int = Field(default=250, ge=1)  # 12 passes over 11,000 rows
     learning_rate: float = Field(default=0.1, gt=0)  # Adam; whitened parameters of order 1
 
 
 def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progress) -> Trained:
-    """Maximise the evidence bound by minibatches. See `rovsim.learning.learner.train`."""
+    """Maximise the evidence lower bound in minibatches. See `rovsim.learning.learner.train`."""
     Y = gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
@@ -53,7 +53,7 @@ def fit(X: Array, Y: Array, settings: SvgpSettings, seed: int, progress: Progres
 
 
 def library_from(arrays: Mapping[str, Array], settings: SvgpSettings) -> Predict:
-    """GPyTorch's own model, with its hyperparameters and variational distribution."""
+    """Rebuild GPyTorch's own prediction from hyperparameters and variational distribution."""
     with seeded_torch(0):
         return gaussian.library_predictor(_rebuilt(arrays), arrays)
 
@@ -61,12 +61,13 @@ def library_from(arrays: Mapping[str, Array], settings: SvgpSettings) -> Predict
 def posterior_from(
     arrays: Mapping[str, Array], settings: SvgpSettings, fast: bool = False
 ) -> Posterior:
-    """GPyTorch's own mean and variance."""
+    """Rebuild GPyTorch's own mean and variance; with `fast`, its LOVE approximation."""
     with seeded_torch(0):
         return gaussian.library_posterior(_rebuilt(arrays), arrays, fast)
 
 
 def _rebuilt(arrays: Mapping[str, Array]) -> Any:
+    """Rebuild the trained GPyTorch model from its stored arrays."""
     import torch
 
     model = _model(arrays["inducing"])
@@ -80,7 +81,10 @@ def _rebuilt(arrays: Mapping[str, Array]) -> Any:
 
 
 def _centres(Z: Array, number: int, seed: int) -> Array:
-    """Inducing points: centres of a seeded k-means of the scaled features, at most one a row."""
+    """Choose at most `number` inducing points: cluster centres (seeded k-means) of Z (n, d).
+
+    Where there are no more distinct rows than that, the rows themselves are returned.
+    """
     from sklearn.cluster import KMeans
 
     distinct = np.unique(Z, axis=0)
@@ -90,6 +94,7 @@ def _centres(Z: Array, number: int, seed: int) -> Array:
 
 
 def _model(centres: Array) -> Any:
+    """Make the GPyTorch model around inducing points (n, d), in scaled features."""
     import torch
     from gpytorch.distributions import MultivariateNormal
     from gpytorch.models import ApproximateGP
@@ -110,7 +115,18 @@ def _model(centres: Array) -> Any:
 
 
 def _train(model: Any, Z: Array, T: Array, settings: SvgpSettings, progress: Progress) -> float:
-    """Maximise the evidence lower bound, summed over the axes; returns minus it per row."""
+    """Maximise the evidence lower bound, summed over the axes, in minibatches.
+
+    Args:
+        model: of `_model`.
+        Z: scaled features (n, d).
+        T: scaled targets (6, n).
+        settings: of the learner.
+        progress: called with the number of steps done and their total number.
+
+    Returns:
+        Minus the bound per row, at the last step.
+    """
     import torch
     from gpytorch.mlls import VariationalELBO
 
@@ -128,7 +144,10 @@ def _train(model: Any, Z: Array, T: Array, settings: SvgpSettings, progress: Pro
 
 
 def _batches(rows: int, size: int) -> Any:
-    """Endless minibatches: shuffled passes over all rows, the incomplete last batch left out."""
+    """Yield row indices (size,) of minibatches without end: shuffled passes over all rows.
+
+    The incomplete last minibatch of each pass is left out.
+    """
     import torch
 
     while True:
@@ -136,6 +155,7 @@ def _batches(rows: int, size: int) -> Any:
 
 
 def _variational(model: Any) -> dict[str, Array]:
+    """Arrays of the inducing points (n, d) and the variational distribution of a model."""
     distribution = model.variational_strategy._variational_distribution
     return {
         "inducing": model.variational_strategy.inducing_points.detach().numpy().copy(),
@@ -145,7 +165,10 @@ def _variational(model: Any) -> dict[str, Array]:
 
 
 def _weights(model: Any) -> Array:
-    """w (6, n) of the mean k(z, Z) w: with K_ZZ = L L' and whitened mean m, w = L^-T m."""
+    """Compute the weights w (6, n) of the inducing points Z in the mean k(z, Z) w.
+
+    w = L^-T m, with K_ZZ = L L' and the whitened variational mean m.
+    """
     import torch
 
     strategy = model.variational_strategy
@@ -165,7 +188,10 @@ def _root(model: Any) -> Any:
 
 
 def _posterior_variances(model: Any, arrays: Mapping[str, Array]) -> list[PosteriorVariance]:
-    """What reduces each axis' variance: A = L^-T (I - S) L^-1 with whitened covariance S."""
+    """Make the posterior variance of each axis: rho = 1 - outputscale k' A k.
+
+    A = L^-T (I - S) L^-1, with K_ZZ = L L' and the whitened variational covariance S.
+    """
     import torch
 
     with torch.no_grad():
