@@ -51,7 +51,7 @@ class Actuation(NamedTuple):
 
     @staticmethod
     def by(model: Model, thrust: Thrust) -> "Actuation":
-        """Resolve a thrust along the axes of a model's thrusters."""
+        """Make the actuation of a thrust, with forces along the components of each thruster."""
         force = model.thrust_path.thrusters.resolved(thrust.force, thrust.cosine, thrust.sine)
         angle = thrust.angle
         if angle is None:
@@ -164,7 +164,7 @@ class Drive:
         return replace(self, wrench=self.wrench + wrench)
 
     def idle(self) -> "Drive":
-        """The drive with the same demands, but without any force of thrusters or commands."""
+        """The drive with the same demands and surface angles, but no wrench or thruster force."""
         return replace(self, wrench=0 * self.wrench, force=0 * self.force, read=0 * self.read)
 
 
@@ -201,6 +201,7 @@ class Drives:
         return [self._of(model) for model in models]
 
     def _of(self, model: Model) -> Drive:
+        """Look up or make the drive of a model; the key holds all numbers that it depends on."""
         path = model.thrust_path
         key = (self._own, id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
@@ -209,6 +210,7 @@ class Drives:
         return self._kept.get(whole, lambda: self._drive(model, key))
 
     def _drive(self, model: Model, key: tuple) -> Drive:
+        """Make the drive of a model from the actuation with this key, which models may share."""
         mean, *growth = self._kept.get((key,), lambda: self._actuate(model))
         commands, edges, _ = self._given
         drive = mean.drive(model, commands.recording(edges)[1])

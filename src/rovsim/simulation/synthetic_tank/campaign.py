@@ -125,6 +125,7 @@ def _list_written(out: Path) -> set[str]:
 
 
 def _refuse_other_files(out: Path) -> None:
+    """Refuse a folder with files, unless a tank wrote them."""
     if out.exists() and not (out.is_dir() and (not any(out.iterdir()) or (out / SEALED).exists())):
         raise BadInput(
             "holds files that no tank wrote",
@@ -182,6 +183,7 @@ def _record(
 
 
 def _read_sent(settings: TankSettings, run: TankRun) -> SentLog:
+    """Read the log of commands that prescribes a run."""
     log = describe(settings).commands
     assert run.fly is not None
     assert log is not None

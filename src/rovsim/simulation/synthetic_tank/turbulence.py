@@ -41,6 +41,7 @@ def draw_turbulence(
 def _pushes(
     lengths: list[int], a: Array, level: Array, random: np.random.Generator, begin: Array
 ) -> Iterator[Array]:
+    """Yield wrenches (length, 6), each continuing the process where the last one ended."""
     for length in lengths:
         found = gauss_markov.propagate(a, random.normal(size=(length, 6)), begin)
         begin = found[-1]
