@@ -48,11 +48,6 @@ class SettledAnswer:
     whole_file_fit: Fit | None = None
 
     @property
-    def size(self) -> int:
-        """How many numbers were fitted."""
-        return len(self.fit.hypothesis.x)
-
-    @property
     def complete(self) -> bool:
         """Whether nothing but noise is left."""
         return self.fit.is_finite and not (self.structures or self.refused)
@@ -129,7 +124,7 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer
 def choose_answer(
     one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation
 ) -> SettledAnswer:
-    """Choose the answer that surely replays better; else the complete or the smaller one.
+    """Choose the answer that surely replays better; else the complete or the likelier one.
 
     The likelihood alone cannot choose: where an answer is not complete, it takes physics for noise.
     So both answers first replay the held-out stretches, each at the values that replay the other
@@ -141,7 +136,7 @@ def choose_answer(
         better = holdout.prefers_between_runs(one.fit, other.fit)
     if better is not None:
         return one if better else other
-    return other if other.complete else min(one, other, key=lambda a: (a.size, -a.score))
+    return one if not other.complete and one.score >= other.score else other
 
 
 class FinalAnswer(NamedTuple):
@@ -169,7 +164,7 @@ def finish(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> FinalAnswer:
         answer: the answer.
         runs: all train runs, which it was fitted to.
     """
-    if answer.leaves_physics and answer.size:
+    if answer.leaves_physics and len(answer.fit.hypothesis.x):
         answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
     whole, selected = answer.whole_file_fit, answer.fit.hypothesis
     if answer.leaves_physics or whole is None:
