@@ -119,7 +119,7 @@ class Envelope:
         return (float(beyond.sum()), *(max(r, 0.0) for r in ratios))
 
     @property
-    def _most(self) -> "Extremes":
+    def _most(self) -> Extremes:
         return Extremes(self.limits.speed, self.limits.turn_rate, self.limits.tilt)
 
     def holds(self, paths: Array) -> bool:

@@ -143,7 +143,7 @@ class _AxisInnovations:
         scaled = noise._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)
         return scaled, cost
 
-    def _misfit(self, noise: AxisNoise) -> "_Misfit":
+    def _misfit(self, noise: AxisNoise) -> _Misfit:
         """What the likelihood of a noise is made of, summed over all runs."""
         values, squares, logs, count = np.array(noise), 0.0, 0.0, 0.0
         for known in self._known:
