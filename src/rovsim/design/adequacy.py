@@ -39,14 +39,14 @@ def warn_of_misfit(prior: PriorInformation, question: Question) -> tuple[str, ..
     Of two rivals the likelier one is judged.
     """
     rival = max(range(len(prior.rivals)), key=lambda k: prior.rivals[k].two_log_likelihood)
-    lasting, model = prior.low_frequency[rival], prior.rivals[rival].hypothesis.model
-    if not lasting.large.any():
+    disturbance, model = prior.low_frequency[rival], prior.rivals[rival].hypothesis.model
+    if not disturbance.large.any():
         return ()
-    far = measure_replay_error(model, prior.runs, question)
-    after = "" if far is None else f", and after {AFTER:g} s it is {far:.2g} m off"
+    error = measure_replay_error(model, prior.runs, question)
+    error_text = "" if error is None else f", and after {AFTER:g} s it is {error:.2g} m off"
     return (
-        f"The model errs on the train runs: {_name(lasting)} push the vehicle all the time, of "
-        f"which it does not know{after}. {DIAGNOSE}.",
+        f"The model errs on the train runs: {_name(disturbance)} push the vehicle all the time, of "
+        f"which it does not know{error_text}. {DIAGNOSE}.",
     )
 
 
@@ -55,18 +55,18 @@ def warn_of_walls(paths: Array, start: Array, envelope: Envelope) -> tuple[str, 
     open_axes = ~np.isfinite(envelope.box[:2]).all(axis=1)
     if not open_axes.any():
         return ()
-    far = float(np.linalg.norm(paths[:, :, :2] - start[:2], axis=-1).max())
+    reach = float(np.linalg.norm(paths[:, :, :2] - start[:2], axis=-1).max())
     return (
         "campaign.yaml has no tank, so that no wall is known: the flight begins in the middle of "
-        f"where the train runs swam, and leads up to {far:.1f} m away. Keep that much free, or "
+        f"where the train runs swam, and leads up to {reach:.1f} m away. Keep that much free, or "
         "describe the tank.",
     )
 
 
 def warn_of_wider(model: Model, now: Mapping[str, float | None]) -> tuple[str, ...]:
     """What a model file knows less well than the train runs alone say, by `effect.parameter`."""
-    stated = {f"{e.id}.{name}": std for e in model.added for name, std in e.std.items()}
-    wider = [name for name, std in now.items() if std and stated.get(name, 0.0) > WIDER * std]
+    file_std = {f"{e.id}.{name}": std for e in model.added for name, std in e.std.items()}
+    wider = [name for name, std in now.items() if std and file_std.get(name, 0.0) > WIDER * std]
     if not wider:
         return ()
     return (
@@ -95,27 +95,27 @@ def measure_replay_error(
         spans = list(find_windows(motion, AFTER))
         if not spans:
             continue
-        found = replay(model, motion, spans, question)
-        ends = last_predicted(motion, spans)
-        off = found.eta[ends, :3] - motion.eta[ends, :3]
-        squares += list(np.sum(off**2, axis=1))
-    known = np.array(squares)[np.isfinite(squares)] if squares else np.empty(0)
-    return float(np.sqrt(known.mean())) if len(known) else None
+        prediction = replay(model, motion, spans, question)
+        last = last_predicted(motion, spans)
+        error = prediction.eta[last, :3] - motion.eta[last, :3]
+        squares += list(np.sum(error**2, axis=1))
+    finite = np.array(squares)[np.isfinite(squares)] if squares else np.empty(0)
+    return float(np.sqrt(finite.mean())) if len(finite) else None
 
 
 def explain_infeasible(problem: DesignProblem, question: Question) -> BadInput:
     """Why no flight stays within the limits, as the error to be raised."""
-    resting = np.zeros((len(ticks(question.seconds)), len(AXES)))
+    no_inputs = np.zeros((len(ticks(question.seconds)), len(AXES)))
     heading = problem.envelope.longest
-    still = next(problem.evaluate_all([resting], [heading]))
+    flight = next(problem.evaluate_all([no_inputs], [heading]))
     start = problem.pilot.starts(np.array([heading]))[0]
-    paths = problem.scenarios.predict(problem.setup.drives(still.commands), start)
-    why = problem.envelope.describe_excess(paths)
-    told = f"a vehicle told to stay where it is already {why}" if why else NARROW
+    paths = problem.scenarios.predict(problem.setup.drives(flight.commands), start)
+    excess = problem.envelope.describe_excess(paths)
+    reason = f"a vehicle told to stay where it is already {excess}" if excess else NARROW
     misfit = warn_of_misfit(problem.prior, question)
-    found = f"no flight of {question.seconds:g} s stays within the limits: {told}"
+    fault = f"no flight of {question.seconds:g} s stays within the limits: {reason}"
     return BadInput(
-        f"{found}. {misfit[0].removesuffix('.')}" if misfit else found,
+        f"{fault}. {misfit[0].removesuffix('.')}" if misfit else fault,
         where="rovsim design",
         expected="room for a flight that nobody steers",
         remedy="Or give fewer seconds, or wider design.limits." if misfit else REMEDY,

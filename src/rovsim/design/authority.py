@@ -39,43 +39,43 @@ class Authority:
         if self.kind == "wrench":
             return np.flatnonzero(self.logged & free & (self.largest > 0.0))
         B = np.where(free[:, None], self.model.body.B, 0.0)
-        elsewhere = np.linalg.norm(B @ np.linalg.pinv(B) - np.eye(len(AXES)), axis=0)
-        able = (elsewhere < ALONE) | self._looped
-        return np.flatnonzero(able & free & (self.logged | (self.kind == "thruster")))
+        coupling = np.linalg.norm(B @ np.linalg.pinv(B) - np.eye(len(AXES)), axis=0)
+        reachable = (coupling < ALONE) | self._looped
+        return np.flatnonzero(reachable & free & (self.logged | (self.kind == "thruster")))
 
     @cached_property
     def full(self) -> Array:
         """Wrench (6,) that is reached both ways along each axis; 0 where there is none."""
-        found = np.zeros(len(AXES))
+        wrench = np.zeros(len(AXES))
         for i in self.axes:
-            found[i] = self.largest[i] if self.kind == "wrench" else self._reach(i)
-        return found
+            wrench[i] = self.largest[i] if self.kind == "wrench" else self._reach(i)
+        return wrench
 
     def _reach(self, axis: int) -> float:
         if self._looped[axis]:
             return abs(float(self._slopes[axis]))
         share = np.linalg.norm(self._parts(self._spread[:, [axis]].T), axis=0)[0]
-        least = np.minimum(self._forces[1][-1], -self._forces[1][0])
+        limit = np.minimum(self._forces[1][-1], -self._forces[1][0])
         used = share > 1e-6
-        return float(np.min(least[used] / share[used]))
+        return float(np.min(limit[used] / share[used]))
 
     def values(self, wrench: Array) -> Array:
         """What a log would hold (m, c) for a wrench (m, 6), as far as it goes."""
         if self.kind == "wrench":
             return np.clip(wrench, -self.largest, self.largest)
-        along, aside = self._parts(wrench @ self._spread.T)
-        turning = self.model.thrust_path.thrusters.turning
-        force = np.where(turning, np.hypot(along, aside), along)
+        along, across = self._parts(wrench @ self._spread.T)
+        azimuthing = self.model.thrust_path.thrusters.turning
+        force = np.where(azimuthing, np.hypot(along, across), along)
         command = np.stack(
             [
-                np.interp(f, own, c)
-                for f, own, c in zip(force.T, self._forces[1].T, self._forces[0].T, strict=True)
+                np.interp(f, curve, c)
+                for f, curve, c in zip(force.T, self._forces[1].T, self._forces[0].T, strict=True)
             ],
             axis=1,
         )
         if self.kind == "demand":
             return self._demands(command, wrench)
-        angle = np.arctan2(aside, along)[:, turning]
+        angle = np.arctan2(across, along)[:, azimuthing]
         columns = np.empty((len(wrench), self.model.thrust_path.columns("thruster")))
         columns[:, ~self._angles] = command
         columns[:, self._angles] = np.hstack([angle, np.zeros((len(wrench), self._fins))])
@@ -84,10 +84,10 @@ class Authority:
     def _demands(self, command: Array, wrench: Array) -> Array:
         """Demands (m, 6) that mix to these commands (m, n) as nearly as they can."""
         mixing = self.model.thrust_path.thrusters.mixing
-        found = command @ np.linalg.pinv(mixing).T
+        demands = command @ np.linalg.pinv(mixing).T
         loops = self._looped
-        found[:, loops] = wrench[:, loops] / self._slopes[loops]
-        return np.clip(np.where(np.isin(np.arange(6), self.axes), found, 0.0), -1.0, 1.0)
+        demands[:, loops] = wrench[:, loops] / self._slopes[loops]
+        return np.clip(np.where(np.isin(np.arange(6), self.axes), demands, 0.0), -1.0, 1.0)
 
     def round(self, value: Array) -> Array:
         """Values (m, c) to the digits that a log keeps."""
@@ -114,10 +114,10 @@ class Authority:
 
         Angles hold from one to the next: between them they may turn either way.
         """
-        held = latest(time, at + 1e-9)
+        latest_lines = latest(time, at + 1e-9)
         lines = np.stack([np.interp(at, time, column) for column in value.T], axis=1)
         if self.kind == "thruster":
-            lines[:, self._angles] = value[held][:, self._angles]
+            lines[:, self._angles] = value[latest_lines][:, self._angles]
         return Commands(at, self.round(lines), self.kind)
 
     @cached_property
@@ -131,17 +131,17 @@ class Authority:
     @cached_property
     def _spread(self) -> Array:
         """Forces (k, 6) of the components of all thrusters per unit of wrench."""
-        found = np.zeros((self.model.body.B.shape[1], len(AXES)))
-        own = [i for i in self.axes if not self._looped[i]]
-        found[:, own] = np.linalg.pinv(self.model.body.B[own])
-        return found
+        allocation = np.zeros((self.model.body.B.shape[1], len(AXES)))
+        axes = [i for i in self.axes if not self._looped[i]]
+        allocation[:, axes] = np.linalg.pinv(self.model.body.B[axes])
+        return allocation
 
     def _parts(self, force: Array) -> tuple[Array, Array]:
         """Along and aside (m, n) of forces of the components (m, k)."""
         thrusters = self.model.thrust_path.thrusters
-        along, aside = force[:, : thrusters.count], np.zeros((len(force), thrusters.count))
-        aside[:, thrusters.turning] = force[:, thrusters.count :]
-        return along, aside
+        along, across = force[:, : thrusters.count], np.zeros((len(force), thrusters.count))
+        across[:, thrusters.turning] = force[:, thrusters.count :]
+        return along, across
 
     @cached_property
     def _forces(self) -> tuple[Array, Array]:
@@ -157,10 +157,10 @@ class Authority:
     def _looped(self) -> Array:
         """Axes (6,) whose demands a loop on board takes."""
         loops = self.model.thrust_path.autopilots if self.kind == "demand" else []
-        left = np.ones(len(AXES))
+        remainder = np.ones(len(AXES))
         for loop in loops:
-            left = left * np.diag(loop.mixer_demand(np.eye(len(AXES))))
-        return left == 0.0
+            remainder = remainder * np.diag(loop.mixer_demand(np.eye(len(AXES))))
+        return remainder == 0.0
 
     @cached_property
     def _slopes(self) -> Array:

@@ -67,9 +67,9 @@ class Envelope:
     @property
     def middle(self) -> Array:
         """The middle (3,) of the box, m NED; without walls, that of what the train runs reached."""
-        known = np.isfinite(self.box).all(axis=1)
-        inside = np.where(known[:, None], self.box, np.nan_to_num(self.swum))
-        return np.asarray(inside.mean(axis=1))
+        walled = np.isfinite(self.box).all(axis=1)
+        box = np.where(walled[:, None], self.box, np.nan_to_num(self.swum))
+        return np.asarray(box.mean(axis=1))
 
     @property
     def longest(self) -> float:
@@ -93,14 +93,18 @@ class Envelope:
 
     def describe_excess(self, paths: Array) -> str:
         """How paths (s, k, 13) leave the limits, in words; empty if they do not."""
-        place, *shares = self._beyond(paths, each_alone=False)
-        if not np.isfinite(place):
+        distance, *ratios = self._beyond(paths, each_alone=False)
+        if not np.isfinite(distance):
             return "moves beyond all numbers"
-        told = [f"comes {place:.2g} m too near to a wall, the floor or the surface"]
-        told += [
-            f"{v} {100.0 * s:.0f} % more than it may" for v, s in zip(MOVES, shares, strict=True)
+        phrases = [f"comes {distance:.2g} m too near to a wall, the floor or the surface"]
+        phrases += [
+            f"{v} {100.0 * s:.0f} % more than it may" for v, s in zip(MOVES, ratios, strict=True)
         ]
-        return " and ".join(one for one, by in zip(told, (place, *shares), strict=True) if by > 0.0)
+        return " and ".join(
+            phrase
+            for phrase, excess in zip(phrases, (distance, *ratios), strict=True)
+            if excess > 0.0
+        )
 
     def _beyond(self, paths: Array, each_alone: bool) -> tuple[float, ...]:
         """By how much paths (s, k, 13) leave each limit; 0 where they do not.
@@ -109,14 +113,14 @@ class Envelope:
         """
         if not np.isfinite(paths).all():
             return (np.inf,) * 4
-        place = paths[:, :, :3]
-        low, high = place.min(axis=(0, 1)), place.max(axis=(0, 1))
+        position = paths[:, :, :3]
+        low, high = position.min(axis=(0, 1)), position.max(axis=(0, 1))
         if not each_alone:
-            mean, spread = place.mean(axis=0), SURE * place.std(axis=0, ddof=1)
+            mean, spread = position.mean(axis=0), SURE * position.std(axis=0, ddof=1)
             low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
-        beyond = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
+        overshoot = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
         ratios = [v / w - 1.0 for v, w in zip(find_extremes(paths), self._most, strict=True)]
-        return (float(beyond.sum()), *(max(r, 0.0) for r in ratios))
+        return (float(overshoot.sum()), *(max(r, 0.0) for r in ratios))
 
     @property
     def _most(self) -> Extremes:
@@ -124,8 +128,8 @@ class Envelope:
 
     def holds(self, paths: Array) -> bool:
         """Whether all paths (s, k, 13) stay in the box and within the limits."""
-        place = paths[:, :, :3]
-        inside = ((place > self.box[:, 0]) & (place < self.box[:, 1])).all()
+        position = paths[:, :, :3]
+        inside = ((position > self.box[:, 0]) & (position < self.box[:, 1])).all()
         return bool(inside and self.excess(paths) == 0.0)
 
 
@@ -133,13 +137,13 @@ def _require_room(box: Array, tank: Array, surface: float, limits: FlightLimits)
     if (box[:, 0] < box[:, 1]).all():
         return
     axis = int(np.argmax(box[:, 0] >= box[:, 1]))
-    found = f"walls {tank[axis, 1] - tank[axis, 0]:.2f} m apart along {'xy'[axis % 2]}"
+    room = f"walls {tank[axis, 1] - tank[axis, 0]:.2f} m apart along {'xy'[axis % 2]}"
     if axis == 2:
         low, high = (minus(f"{depth:.2f}") for depth in tank[2] - surface)
-        wanted = f", design.limits.depth={list(limits.depth)}" if limits.depth else ""
-        found = f"floor and surface at {high} m and {low} m of depth{wanted}"
+        depth_limits = f", design.limits.depth={list(limits.depth)}" if limits.depth else ""
+        room = f"floor and surface at {high} m and {low} m of depth{depth_limits}"
     raise BadInput(
-        f"{found}, and a clearance of {limits.clearance:g} m: they leave no room",
+        f"{room}, and a clearance of {limits.clearance:g} m: they leave no room",
         where="rovsim design",
         expected="some metres in which the vehicle's middle may move",
         remedy="Choose design.limits.depth and design.limits.clearance that fit into the tank.",

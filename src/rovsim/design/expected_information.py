@@ -63,8 +63,8 @@ class ExpectedInformation:
         """
         if len(self.log_odds_gain):
             return float(np.min(self.log_odds_gain[self.likely]))
-        gained = np.maximum(self.std_ratio[0] ** 2 - 1.0, NEGLIGIBLE)
-        return float(np.exp(np.mean(np.log(gained))))
+        gain = np.maximum(self.std_ratio[0] ** 2 - 1.0, NEGLIGIBLE)
+        return float(np.exp(np.mean(np.log(gain))))
 
     @property
     def informative(self) -> bool:
@@ -96,7 +96,7 @@ def expect_information(
     """
     if not exact:
         setup = setup.coarser
-    information, gains, error_dynamics, alone = [], [], None, len(prior.rivals) == 1
+    information, gains, error_dynamics, single = [], [], None, len(prior.rivals) == 1
     for k, (path, rival) in enumerate(zip(paths, prior.rivals, strict=True)):
         if not (exact or prior.likely[k]):
             information.append(np.zeros_like(rival.information))
@@ -106,25 +106,25 @@ def expect_information(
         if exact or error_dynamics is None:
             error_dynamics = _mix_error_dynamics(run, rival, prior)
         bank = _observe(run, rival, prior, error_dynamics, exact)
-        own = bank.linearise(rival.hypothesis if exact or alone else rival.fixed)
-        information.append(measure_information(bank, own, rival, prior))
-        if not alone:
-            gains.append(_expect_log_odds(bank, own, prior.rivals[1 - k], prior, exact))
-    then = [one.std(of) for one, of in zip(prior.rivals, information, strict=True)]
-    now = [one.std() for one in prior.rivals]
-    std_ratio = tuple(a / b for a, b in zip(now, then, strict=True))
-    return ExpectedInformation(std_ratio, tuple(then), np.array(gains), prior.likely)
+        linearised = bank.linearise(rival.hypothesis if exact or single else rival.fixed)
+        information.append(measure_information(bank, linearised, rival, prior))
+        if not single:
+            gains.append(_expect_log_odds(bank, linearised, prior.rivals[1 - k], prior, exact))
+    std_after = [r.std(info) for r, info in zip(prior.rivals, information, strict=True)]
+    std_before = [r.std() for r in prior.rivals]
+    std_ratio = tuple(a / b for a, b in zip(std_before, std_after, strict=True))
+    return ExpectedInformation(std_ratio, tuple(std_after), np.array(gains), prior.likely)
 
 
 def _mix_error_dynamics(
     run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation
 ) -> tuple[AxisErrorDynamics, ...]:
     """The error dynamics of the train runs and the flight, averaged over the time of both."""
-    some = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
-    own = np.array(estimate_errors(rival.hypothesis.model, [some]).by_axis)
-    before, lasts = prior.seconds, float(run.reading_times[-1])
-    both = (before * np.array(prior.error_dynamics) + lasts * own) / (before + lasts)
-    return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in both)
+    thinned = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
+    of_flight = np.array(estimate_errors(rival.hypothesis.model, [thinned]).by_axis)
+    t_train, t_flight = prior.seconds, float(run.reading_times[-1])
+    mixed = (t_train * np.array(prior.error_dynamics) + t_flight * of_flight) / (t_train + t_flight)
+    return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in mixed)
 
 
 def _observe(
@@ -166,22 +166,22 @@ def _expect_log_odds(
 
     The other rival has all its parameters free, within the reach that a fit gives them.
     """
-    seen, held = bank.linearise(other.widest), other.widest_information
-    if not seen.finite:
-        seen, held = bank.linearise(other.hypothesis), other.information
-    if not seen.finite:
+    rival, information = bank.linearise(other.widest), other.widest_information
+    if not rival.finite:
+        rival, information = bank.linearise(other.hypothesis), other.information
+    if not rival.finite:
         return np.inf
-    beside = [a - b for a, b in zip(seen.e, true.e, strict=True)]
-    beside = [*(0.0 * one for one in beside[:-1]), beside[-1]]  # the train runs count already
-    rows = [np.concatenate([e[None], J]) for e, J in zip(beside, seen.J, strict=True)]
+    errors = [a - b for a, b in zip(rival.e, true.e, strict=True)]
+    errors = [*(0.0 * error for error in errors[:-1]), errors[-1]]  # the train runs count already
+    rows = [np.concatenate([e[None], J]) for e, J in zip(errors, rival.J, strict=True)]
     e, J = np.split(bank.flatten(rows, prior.noise), [1])
     e = e[0]
-    near = np.eye(len(J)) / REACH**2 + (0.0 if exact else held)
-    x = -solve(gram(J) + near, J @ e)
-    left = (e + x @ J).reshape(6, -1)
-    before = float(x @ near @ x)
-    more = 0 if exact else prior.readings  # of the train runs, which are not in the bank
-    return 0.5 * (before + surprise(left, 1.0 + more / left.shape[1]))
+    prior_precision = np.eye(len(J)) / REACH**2 + (0.0 if exact else information)
+    x = -solve(gram(J) + prior_precision, J @ e)
+    residual = (e + x @ J).reshape(6, -1)
+    prior_cost = float(x @ prior_precision @ x)
+    train_readings = 0 if exact else prior.readings  # of the train runs, which are not in the bank
+    return 0.5 * (prior_cost + surprise(residual, 1.0 + train_readings / residual.shape[1]))
 
 
 def surprise(left: Array, lasting: float) -> float:

@@ -38,21 +38,21 @@ def fit_prior(
     Raises:
         BadInput: an effect or parameter that is unknown, or that these recordings cannot show.
     """
-    known = catalogue.on(model.vehicle)
-    asked = {name.partition(".")[0] for name in question.know}
+    effects = catalogue.on(model.vehicle)
+    asked_effects = {name.partition(".")[0] for name in question.know}
     candidates = list_candidates(runs, catalogue, model.vehicle)
-    for name in (*question.between, *sorted(asked)):
-        _check_shown(known.find(name).id, candidates)
+    for name in (*question.between, *sorted(asked_effects)):
+        _check_shown(effects.find(name).id, candidates)
     start = separate(model)
     for name in question.know:
         start = _free(start, name, runs, candidates)
     if not question.between and not len(start.x):
         raise _nothing_asked(model)
     if not question.between:
-        found, bank = _fit(start, runs)
-        wanted = [n for n in start.parameter_names if not question.know or n in question.know]
-        one = _summarise(found, bank, wanted)
-        return PriorInformation(tuple(runs), (), (one,), found.noise, bank.error_dynamics)
+        start_fit, bank = _fit(start, runs)
+        names = [n for n in start.parameter_names if not question.know or n in question.know]
+        rival = _summarise(start_fit, bank, names)
+        return PriorInformation(tuple(runs), (), (rival,), start_fit.noise, bank.error_dynamics)
     return _fit_rivals(start, runs, question, candidates)
 
 
@@ -66,7 +66,7 @@ def _nothing_asked(model: Model) -> BadInput:
 
 
 def _check_shown(name: str, candidates: Sequence[Candidate]) -> None:
-    if any(one.effect.id == name for one in candidates):
+    if any(candidate.effect.id == name for candidate in candidates):
         return
     raise BadInput(
         f"{name} cannot show in recordings like these",
@@ -84,23 +84,25 @@ def check_fitted(name: str, effect: type[Effect]) -> None:
     """
     parameter = name.partition(".")[2]
     names = [p.name for p in effect.parameters if not p.discrete]
-    able = f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
+    options = (
+        f"{effect.id}. and one of {', '.join(names)}" if names else "a value that can be fitted"
+    )
     if parameter in names:
         return
-    tried = any(p.name == parameter for p in effect.parameters)
+    discrete = any(p.name == parameter for p in effect.parameters)
     raise BadInput(
-        f"{parameter} is tried, not fitted" if tried else f"unknown parameter '{parameter}'",
+        f"{parameter} is tried, not fitted" if discrete else f"unknown parameter '{parameter}'",
         where=f"know, effect {effect.id}",
-        expected=able,
-        remedy=f"Ask between=[{effect.id},…]." if tried else nearest(parameter, names),
+        expected=options,
+        remedy=f"Ask between=[{effect.id},…]." if discrete else nearest(parameter, names),
     )
 
 
 def separate(model: Model) -> Hypothesis:
     """A model as a hypothesis whose free parameters are those that its file says were fitted."""
-    fitted = [one for one in model.added if one.std]
-    kept = tuple(one for one in model.effects if one not in fitted)
-    return Hypothesis(model.with_effects(kept), tuple(Term(one, tuple(one.std)) for one in fitted))
+    fitted = [e for e in model.added if e.std]
+    fixed = tuple(e for e in model.effects if e not in fitted)
+    return Hypothesis(model.with_effects(fixed), tuple(Term(e, tuple(e.std)) for e in fitted))
 
 
 def _free(
@@ -109,20 +111,20 @@ def _free(
     """Free one more parameter of a hypothesis, from the likeliest of its effect's starts."""
     effect, _, parameter = name.partition(".")
     check_fitted(name, next(c for c in candidates if c.effect.id == effect).effect)
-    own = next((t for t in h.terms if t.id == effect), None)
-    if own is not None:
-        free = own.free if parameter in own.free else (*own.free, parameter)
-        terms = tuple(replace(t, free=free) if t is own else t for t in h.terms)
+    term = next((t for t in h.terms if t.id == effect), None)
+    if term is not None:
+        free = term.free if parameter in term.free else (*term.free, parameter)
+        terms = tuple(replace(t, free=free) if t is term else t for t in h.terms)
         return replace(h, terms=terms)
-    given = next((e for e in h.base.added if e.id == effect), None)
-    if given is not None:
-        return _without(h, effect).with_term(Term(given, (parameter,)))
+    added = next((e for e in h.base.added if e.id == effect), None)
+    if added is not None:
+        return _without(h, effect).with_term(Term(added, (parameter,)))
     starts = [c.start for c in candidates if c.effect.id == effect]
-    tried = [h.with_term(Term(start, (parameter,))) for start in starts]
-    if len(tried) == 1:
-        return tried[0]
-    fits = [_fit(one, runs)[0] for one in tried]
-    return max(fits, key=lambda one: one.two_log_likelihood).hypothesis
+    trials = [h.with_term(Term(start, (parameter,))) for start in starts]
+    if len(trials) == 1:
+        return trials[0]
+    fits = [_fit(trial, runs)[0] for trial in trials]
+    return max(fits, key=lambda trial: trial.two_log_likelihood).hypothesis
 
 
 def _without(h: Hypothesis, *names: str) -> Hypothesis:
@@ -131,23 +133,23 @@ def _without(h: Hypothesis, *names: str) -> Hypothesis:
     Effects that the vehicle has by itself stay.
     """
     nominal = h.base.vehicle.effects()
-    kept = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
-    base = h.base.with_effects((*h.base.effects[: len(nominal)], *kept))
+    added = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
+    base = h.base.with_effects((*h.base.effects[: len(nominal)], *added))
     return Hypothesis(base, tuple(t for t in h.terms if t.id not in names))
 
 
 def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     bank = FilterBank.design(runs, h.model, FIRST_NOISE)
     noise, _ = bank.fit_noise(bank.innovations(h.model), FIRST_NOISE)
-    found = fit(h, bank.redesign(h.model, noise), noise, REACH)
-    if not np.isfinite(found.two_log_likelihood):
+    best = fit(h, bank.redesign(h.model, noise), noise, REACH)
+    if not np.isfinite(best.two_log_likelihood):
         raise BadInput(
             "the train runs drive the model away from all numbers",
             where=f"model {h.base.name}",
             expected="a model that can follow the recordings",
             remedy="Diagnose the campaign first, and design with the model of `rovsim add`.",
         )
-    return polish(found, runs, REACH)
+    return polish(best, runs, REACH)
 
 
 def _summarise(
@@ -159,16 +161,14 @@ def _summarise(
 ) -> FittedHypothesis:
     names = found.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
-    paid = penalty * sum(term.choices for term in found.hypothesis.terms)
-    two_log_likelihood, taking_up = found.two_log_likelihood - paid, found.hypothesis
-    information = held = gram(bank.flatten(found.linearised.J, found.noise))
+    penalties = penalty * sum(term.choices for term in found.hypothesis.terms)
+    two_log_likelihood, h = found.two_log_likelihood - penalties, found.hypothesis
+    information = of_widest = gram(bank.flatten(found.linearised.J, found.noise))
     if widest is not None:
-        seen = bank.linearise(widest)
-        if seen.finite:  # else such a model diverges, and no more than what was fitted is free
-            taking_up, held = widest, gram(bank.flatten(seen.J, found.noise))
-    return FittedHypothesis(
-        found.hypothesis, information, chosen, two_log_likelihood, taking_up, held
-    )
+        linear = bank.linearise(widest)
+        if linear.finite:  # else such a model diverges, and no more than what was fitted is free
+            h, of_widest = widest, gram(bank.flatten(linear.J, found.noise))
+    return FittedHypothesis(found.hypothesis, information, chosen, two_log_likelihood, h, of_widest)
 
 
 def _fit_rivals(
@@ -180,27 +180,29 @@ def _fit_rivals(
     """Each rival fitted in the other's absence, beside all else."""
     rest, fits, penalty = _without(start, *question.between), [], 0.0
     for name in question.between:
-        given = next((t for t in start.terms if t.id == name), None)
-        own = [c for c in candidates if c.effect.id == name]
-        term, penalty = (given, penalty) if given else _propose(rest, runs, own)
+        start_term = next((t for t in start.terms if t.id == name), None)
+        starts = [c for c in candidates if c.effect.id == name]
+        term, penalty = (start_term, penalty) if start_term else _propose(rest, runs, starts)
         fits.append(_fit(rest.with_term(term), runs))
     penalty = max(penalty, 2.0 * float(np.log(len(candidates))))
     rivals = []
-    for name, (found, bank) in zip(question.between, fits, strict=True):
-        names = found.hypothesis.parameter_names
-        wanted = [n for n in names if n in question.know or n.startswith(f"{name}.")]
-        rivals.append(_summarise(found, bank, wanted, penalty, widen(found.hypothesis, name)))
-    best, bank = max(fits, key=lambda one: one[0].two_log_likelihood)
-    asked = tuple(question.between)
-    return PriorInformation(tuple(runs), asked, tuple(rivals), best.noise, bank.error_dynamics)
+    for name, (answer, bank) in zip(question.between, fits, strict=True):
+        names = answer.hypothesis.parameter_names
+        chosen = [n for n in names if n in question.know or n.startswith(f"{name}.")]
+        rivals.append(_summarise(answer, bank, chosen, penalty, widen(answer.hypothesis, name)))
+    best, bank = max(fits, key=lambda pair: pair[0].two_log_likelihood)
+    rival_names = tuple(question.between)
+    return PriorInformation(
+        tuple(runs), rival_names, tuple(rivals), best.noise, bank.error_dynamics
+    )
 
 
 def widen(h: Hypothesis, effect: str) -> Hypothesis:
     """Free all parameters of one effect that have an influence at its present values."""
 
     def widened(term: Term) -> Term:
-        able = term.effect.free_at(term.effect.given())
-        return replace(term, free=tuple(dict.fromkeys((*term.free, *able))))
+        names = term.effect.free_at(term.effect.given())
+        return replace(term, free=tuple(dict.fromkeys((*term.free, *names))))
 
     return replace(h, terms=tuple(widened(t) if t.id == effect else t for t in h.terms))
 
@@ -209,7 +211,7 @@ def _propose(
     h: Hypothesis, runs: Sequence[ObservedRun], own: Sequence[Candidate]
 ) -> tuple[Term, float]:
     """The start and free parameters of an effect that promise most, and the penalty of each."""
-    found, bank = _fit(h, runs)
-    seen = linearise_candidates(bank, found.hypothesis, own)
-    workspace = SearchWorkspace(WhiteColumns(bank, seen, found.noise), SearchSettings())
-    return workspace.propose(found)[0].term, workspace.penalty
+    rest_fit, bank = _fit(h, runs)
+    linearised = linearise_candidates(bank, rest_fit.hypothesis, own)
+    workspace = SearchWorkspace(WhiteColumns(bank, linearised, rest_fit.noise), SearchSettings())
+    return workspace.propose(rest_fit)[0].term, workspace.penalty

@@ -40,11 +40,11 @@ class Oscillation(NamedTuple):
     def move(self, t: Array) -> Array:
         """The input (n,) at times (n,) s."""
         wave = np.sin(2.0 * np.pi * (self.frequency * t + self.phase))
-        sharp = SQUARE * self.square
-        if sharp > 0.0:
-            wave = np.tanh(sharp * wave) / np.tanh(sharp)
-        weak = 0.5 * self.swell * (1.0 - np.cos(2.0 * np.pi * t / SWELL))
-        return self.amplitude * (1.0 - weak) * wave
+        steepness = SQUARE * self.square
+        if steepness > 0.0:
+            wave = np.tanh(steepness * wave) / np.tanh(steepness)
+        decrease = 0.5 * self.swell * (1.0 - np.cos(2.0 * np.pi * t / SWELL))
+        return self.amplitude * (1.0 - decrease) * wave
 
 
 NUMBERS = len(Oscillation._fields)  # an axis
@@ -58,10 +58,10 @@ def ticks(seconds: float) -> Array:
 def make_inputs(x: Array, axes: Array, seconds: float) -> Array:
     """Inputs (n, 6) of five numbers (5 j,) in [0, 1] for each of the axes (j,)."""
     t = ticks(seconds)
-    found = np.zeros((len(t), len(AXES)))
-    for axis, own in zip(axes, x.reshape(len(axes), NUMBERS), strict=True):
-        found[:, axis] = Oscillation.of(own).move(t)
-    return found
+    inputs = np.zeros((len(t), len(AXES)))
+    for axis, numbers in zip(axes, x.reshape(len(axes), NUMBERS), strict=True):
+        inputs[:, axis] = Oscillation.of(numbers).move(t)
+    return inputs
 
 
 class Baseline(NamedTuple):
@@ -73,19 +73,19 @@ class Baseline(NamedTuple):
 
 def _zigzag(t: Array, axes: Array, random: np.random.Generator) -> Array:
     """Ahead, turning to and fro: the helm over every 5 s (ships turn it at 10 or 20 degrees)."""
-    found = np.zeros((len(t), len(AXES)))
-    found[:, 0] = 1.0
-    found[:, 5] = np.where(np.floor(t / 5.0 + 0.5) % 2 < 1, 1.0, -1.0)
-    return found * np.isin(np.arange(len(AXES)), axes)
+    inputs = np.zeros((len(t), len(AXES)))
+    inputs[:, 0] = 1.0
+    inputs[:, 5] = np.where(np.floor(t / 5.0 + 0.5) % 2 < 1, 1.0, -1.0)
+    return inputs * np.isin(np.arange(len(AXES)), axes)
 
 
 def _steps(t: Array, axes: Array, random: np.random.Generator) -> Array:
     """One axis after the other: ahead, rest, back, rest."""
-    found = np.zeros((len(t), len(AXES)))
+    inputs = np.zeros((len(t), len(AXES)))
     share = len(axes) * t / (t[-1] + TICK)
-    turn, quarter = share.astype(int), (4.0 * (share % 1.0)).astype(int)
-    found[np.arange(len(t)), axes[turn]] = np.array([1.0, 0.0, -1.0, 0.0])[quarter]
-    return found
+    k, quarter = share.astype(int), (4.0 * (share % 1.0)).astype(int)
+    inputs[np.arange(len(t)), axes[k]] = np.array([1.0, 0.0, -1.0, 0.0])[quarter]
+    return inputs
 
 
 TONES = 5  # of each axis
@@ -96,23 +96,23 @@ def _multisine(t: Array, axes: Array, random: np.random.Generator) -> Array:
 
     From one swing in 20 s up to one in 2 s, which is where vehicles of this size answer.
     """
-    found = np.zeros((len(t), len(AXES)))
+    inputs = np.zeros((len(t), len(AXES)))
     tones = np.geomspace(0.05, 0.5, TONES * len(axes))
     for j, axis in enumerate(axes):
-        own = tones[j :: len(axes)]
+        frequencies = tones[j :: len(axes)]
         phase = -np.pi * np.arange(TONES) * (np.arange(TONES) + 1) / TONES
-        wave = np.sin(2.0 * np.pi * own * t[:, None] + phase).sum(axis=1)
-        found[:, axis] = wave / np.max(np.abs(wave))
-    return found
+        wave = np.sin(2.0 * np.pi * frequencies * t[:, None] + phase).sum(axis=1)
+        inputs[:, axis] = wave / np.max(np.abs(wave))
+    return inputs
 
 
 def _prbs(t: Array, axes: Array, random: np.random.Generator) -> Array:
     """All axes full over, to a side drawn every second (a pseudo-random binary sequence)."""
-    found = np.zeros((len(t), len(AXES)))
+    inputs = np.zeros((len(t), len(AXES)))
     for axis in axes:
         sides = random.choice([-1.0, 1.0], size=int(t[-1]) + 1)
-        found[:, axis] = sides[t.astype(int)]
-    return found
+        inputs[:, axis] = sides[t.astype(int)]
+    return inputs
 
 
 BASELINES: Mapping[str, Baseline] = {

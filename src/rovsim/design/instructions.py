@@ -26,7 +26,7 @@ def instruct(flight: CandidateFlight, axes: Array, start: Start, limits: FlightL
         limits: what full sticks are.
     """
     yaw = minus(f"{np.degrees(start.yaw_rad):.0f}")
-    found = [
+    sentences = [
         f"Put the vehicle to {_place(start)} in the recordings' axes, yaw {yaw} degrees: level, at "
         "rest, within 0.1 m and 5 degrees.",
         "Start the recording, then send experiment.csv as it is, from a computer. No pilot and no "
@@ -37,7 +37,7 @@ def instruct(flight: CandidateFlight, axes: Array, start: Start, limits: FlightL
         f"A full stick is what holds {limits.speed:g} m/s, {limits.turn_rate:g} rad/s or "
         f"{np.degrees(limits.tilt):.0f} degrees of tilt, or full thrust where that is less.",
     ]
-    return found
+    return sentences
 
 
 def _place(start: Start) -> str:
@@ -47,14 +47,14 @@ def _place(start: Start) -> str:
 
 def _numbers(flight: CandidateFlight, axes: Array) -> list[str]:
     rows = flight.numbers[1:].reshape(len(axes), NUMBERS)
-    swings = [(AXES[axis], Oscillation.of(own)) for axis, own in zip(axes, rows, strict=True)]
-    moved = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > IDLE]
-    still = [axis for axis, swing in swings if swing.amplitude <= IDLE]
-    return [*moved, f"Leave alone: {', '.join(still)}."] if still else moved
+    swings = [(AXES[axis], Oscillation.of(row)) for axis, row in zip(axes, rows, strict=True)]
+    sentences = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > IDLE]
+    unused = [axis for axis, swing in swings if swing.amplitude <= IDLE]
+    return [*sentences, f"Leave alone: {', '.join(unused)}."] if unused else sentences
 
 
 def _swing(axis: str, swing: Oscillation) -> str:
-    how = "hold it over to one side, then to the other" if swing.square > SHARP else "swing it"
+    motion = "hold it over to one side, then to the other" if swing.square > SHARP else "swing it"
     weaker = (
         f", growing weaker down to {100 * swing.amplitude * (1.0 - swing.swell):.0f} % and strong "
         f"again every {SWELL:g} s"
@@ -62,14 +62,14 @@ def _swing(axis: str, swing: Oscillation) -> str:
         else ""
     )
     return (
-        f"{axis.capitalize()}: {how}, {100 * swing.amplitude:.0f} % of a full stick, there and "
+        f"{axis.capitalize()}: {motion}, {100 * swing.amplitude:.0f} % of a full stick, there and "
         f"back in {1.0 / swing.frequency:.1f} s{weaker}."
     )
 
 
 def _usual(flight: CandidateFlight) -> Sequence[str]:
-    plane, other = flight.amplitude or (0.0, 0.0)
+    level, vertical = flight.amplitude or (0.0, 0.0)
     return [
-        f"{BASELINES[flight.name].words}; {100 * plane:.0f} % of a full stick in surge, sway and "
-        f"yaw, {100 * other:.0f} % in heave, roll and pitch."
+        f"{BASELINES[flight.name].words}; {100 * level:.0f} % of a full stick in surge, sway and "
+        f"yaw, {100 * vertical:.0f} % in heave, roll and pitch."
     ]

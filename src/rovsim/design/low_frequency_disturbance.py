@@ -54,18 +54,18 @@ class LowFrequencyDisturbance:
         """
         if not len(blocks):
             return LowFrequencyDisturbance.none()
-        chance = noise.disturbance_std * np.sqrt(
+        noise_std = noise.disturbance_std * np.sqrt(
             gauss_markov.variance_of_mean(noise.correlation_time / seconds)
         )
         count, mean = len(blocks), blocks.mean(axis=0)
-        error = chance / np.sqrt(count)
-        varied = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
+        error = noise_std / np.sqrt(count)
+        variance = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
         # a variance of n + 1 normal numbers has a standard error of sqrt(2 / n) times itself
-        usual = chance**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
+        limit = noise_std**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
         return LowFrequencyDisturbance(
             np.where(np.abs(mean) > CHANCE * error, mean, 0.0),
-            np.sqrt(np.where(varied > usual, varied - chance**2, 0.0)),
-            np.abs(mean) > np.maximum(LARGE * chance, SURE * error),
+            np.sqrt(np.where(variance > limit, variance - noise_std**2, 0.0)),
+            np.abs(mean) > np.maximum(LARGE * noise_std, SURE * error),
         )
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
@@ -97,15 +97,15 @@ def estimate_disturbance(
 def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     """The disturbance (n, 6) that the filters estimate at the readings, m/s2 and rad/s2."""
     e = np.nan_to_num(observe([model], run, filters)[0])
-    found, decay = np.zeros(e.T.shape), filters.decay(np.array([run.period]))[0]
+    force, decay = np.zeros(e.T.shape), filters.decay(np.array([run.period]))[0]
     for first, last in run.innovation_segments:
         for i, gain in enumerate(filters.gains[2]):
-            found[first:last, i] = scipy.signal.lfilter([gain], [1.0, -decay[i]], e[i, first:last])
-    return found
+            force[first:last, i] = scipy.signal.lfilter([gain], [1.0, -decay[i]], e[i, first:last])
+    return force
 
 
 def _average(run: ObservedRun, push: Array) -> list[Array]:
     """Means (6,) of a push (n, 6) over blocks; those shorter than half a block are left out."""
     settled, number = push[run.settled], number_blocks([run])
-    parts = (settled[number == k] for k in np.unique(number))
-    return [own.mean(axis=0) for own in parts if len(own) * run.period > 0.5 * BLOCK]
+    blocks = (settled[number == k] for k in np.unique(number))
+    return [block.mean(axis=0) for block in blocks if len(block) * run.period > 0.5 * BLOCK]

@@ -42,15 +42,15 @@ class ModelPilot:
 
     def fly(self, inputs: Array, heading: Array) -> Array:
         """What a log holds (m, n, c) of inputs (m, n, 6) from headings (m,) rad NED."""
-        state, thrust, found = self.starts(heading), None, []
-        wish = np.tile(self.rest, (len(state), 1))
+        state, thrust, values = self.starts(heading), None, []
+        wrench = np.tile(self.rest, (len(state), 1))
         step = self.limits.slew * TICK * np.maximum(self.full, 1e-9)
         for k in range(inputs.shape[1]):
-            wish = np.clip(self._wish(inputs[:, k], state), wish - step, wish + step)
-            found.append(self.authority.values(wish))
-            drive, thrust = self.authority.respond(found[-1], TICK, thrust)
+            wrench = np.clip(self._wish(inputs[:, k], state), wrench - step, wrench + step)
+            values.append(self.authority.values(wrench))
+            drive, thrust = self.authority.respond(values[-1], TICK, thrust)
             state = self._advance(drive, state)
-        return np.stack(found, axis=1)
+        return np.stack(values, axis=1)
 
     def starts(self, heading: Array) -> Array:
         """States (m, 13) at rest and level."""
@@ -59,15 +59,15 @@ class ModelPilot:
     @cached_property
     def full(self) -> Array:
         """Wrench (6,) of full inputs: what holds the greatest speed, turn rate and tilt."""
-        held = np.append(self._drag[[0, 1, 2, 5]], self._stiffness * self.limits.tilt)
-        return np.minimum(self.authority.full, held[[0, 1, 2, 4, 5, 3]])
+        wrench = np.append(self._drag[[0, 1, 2, 5]], self._stiffness * self.limits.tilt)
+        return np.minimum(self.authority.full, wrench[[0, 1, 2, 4, 5, 3]])
 
     @cached_property
     def _drag(self) -> Array:
         """Wrench (6,) that holds the greatest speed along, and turn rate about, each axis."""
-        most = np.repeat([self.limits.speed, self.limits.turn_rate], 3)
+        limits = np.repeat([self.limits.speed, self.limits.turn_rate], 3)
         moving = self.starts(np.zeros(len(AXES)))
-        moving[:, 7:] = np.diag(most)
+        moving[:, 7:] = np.diag(limits)
         rest = self._drive_at_rest(len(AXES))
         return -self._inertia * np.diag(self._accelerate(rest, moving))
 
@@ -89,29 +89,29 @@ class ModelPilot:
     @cached_property
     def rest(self) -> Array:
         """Wrench (6,) that keeps the vehicle where it is, level and still."""
-        idle = self.authority.drive(self.authority.values(np.zeros((1, len(AXES)))))
-        fall = self._accelerate(idle, self.starts(np.zeros(1)))
-        return -self._inertia * fall[0] * (self.authority.full > 0.0)
+        drive = self.authority.drive(self.authority.values(np.zeros((1, len(AXES)))))
+        nu_dot = self._accelerate(drive, self.starts(np.zeros(1)))
+        return -self._inertia * nu_dot[0] * (self.authority.full > 0.0)
 
     def _drive_at_rest(self, count: int) -> Drive:
         return self.authority.drive(self.authority.values(np.tile(self.rest, (count, 1))))
 
     def _wish(self, inputs: Array, state: Array) -> Array:
         """Wrench (m, 6): the inputs, and what keeps it upright and near its place."""
-        away = unrotate(state[:, 3:7], state[:, :3] - self.start)
+        offset = unrotate(state[:, 3:7], state[:, :3] - self.start)
         tilt = to_euler(state[:, 3:7])
         tilt[:, 2] = 0.0
-        hold = HOLD_PLACE**2 * away + 2.0 * DAMPED * HOLD_PLACE * state[:, 7:10]
-        right = HOLD_ANGLE**2 * tilt + 2.0 * DAMPED * HOLD_ANGLE * state[:, 10:13]
-        right[:, 2] = 0.0  # any heading will do
-        back = np.concatenate([hold, right], axis=1) * self._held
-        return self.rest + self.full * inputs - self._inertia * back
+        place_term = HOLD_PLACE**2 * offset + 2.0 * DAMPED * HOLD_PLACE * state[:, 7:10]
+        attitude_term = HOLD_ANGLE**2 * tilt + 2.0 * DAMPED * HOLD_ANGLE * state[:, 10:13]
+        attitude_term[:, 2] = 0.0  # any heading will do
+        restoring = np.concatenate([place_term, attitude_term], axis=1) * self._held
+        return self.rest + self.full * inputs - self._inertia * restoring
 
     @cached_property
     def _held(self) -> Array:
         """Which axes (6,) it holds: what floats keeps itself level and at the surface."""
-        afloat = np.isin(np.arange(6), (2, 3, 4)) & self.authority.model.vehicle.floats
-        return np.asarray(~afloat)
+        floating = np.isin(np.arange(6), (2, 3, 4)) & self.authority.model.vehicle.floats
+        return np.asarray(~floating)
 
     def _advance(self, drive: Drive, state: Array) -> Array:
         """States (m, 13) a tick later, each under its own thrust.
@@ -128,11 +128,11 @@ class ModelPilot:
 
     def _rates(self, drive: Drive, state: Array) -> Array:
         """d state / dt (m, 13)."""
-        turn = np.concatenate([np.zeros((len(state), 1)), state[:, 10:13]], axis=1)
+        omega = np.concatenate([np.zeros((len(state), 1)), state[:, 10:13]], axis=1)
         return np.concatenate(
             [
                 rotate(state[:, 3:7], state[:, 7:10]),
-                0.5 * multiply(state[:, 3:7], turn),
+                0.5 * multiply(state[:, 3:7], omega),
                 self._accelerate(drive, state),
             ],
             axis=1,
@@ -144,6 +144,6 @@ class ModelPilot:
 
 
 def _moved(state: Array, rates: Array, h: float) -> Array:
-    found = state + h * rates
-    found[:, 3:7] = normalized(found[:, 3:7])
-    return found
+    moved = state + h * rates
+    moved[:, 3:7] = normalized(moved[:, 3:7])
+    return moved

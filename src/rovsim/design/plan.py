@@ -122,9 +122,9 @@ def plan(
     stage("usual manoeuvres")
     baselines = evaluate_baselines(problem, question.seed)
     stage("searching")
-    found = search(problem, question.design, question.seed)
+    flights = search(problem, question.design, question.seed)
     stage("checking")
-    return _choose(problem, baselines, found, question, random)
+    return _choose(problem, baselines, flights, question, random)
 
 
 def _pose_problem(
@@ -159,8 +159,8 @@ def _draw(
     prior: PriorInformation, count: int, setup: RecordingSetup, random: np.random.Generator
 ) -> Scenarios:
     """Draw about `count` scenarios: the likeliest one of each rival first."""
-    each = [rival.draw(max(2, count // len(prior.rivals)), random) for rival in prior.rivals]
-    return draw_scenarios(each, prior, setup, random)
+    models = [rival.draw(max(2, count // len(prior.rivals)), random) for rival in prior.rivals]
+    return draw_scenarios(models, prior, setup, random)
 
 
 def _choose(
@@ -187,16 +187,16 @@ def _choose(
     prior, setup = problem.prior, problem.setup
     scenarios = _draw(prior, CHECKED, setup, random)
     some = [rival.draw(AVERAGED, random) for rival in prior.rivals]
-    best = {name: _first_safe(problem, own, scenarios) for name, own in baselines.items()}
-    rated = {name: (one, _average(problem, one, some)) for name, one in best.items() if one}
-    again = (one for some in in_parts(found) for one in problem.evaluate_numbers(some))
-    able = (one for one in again if one.expected)
-    safe = (one for one in able if _paths(problem, one, scenarios) is not None)
-    tried = [(one, _average(problem, one, some)) for one in list(islice(safe, FINALISTS))]
-    everything = [*tried, *rated.values()]
-    if not everything:
+    best = {name: _first_safe(problem, flights, scenarios) for name, flights in baselines.items()}
+    rated = {name: (c, _average(problem, c, some)) for name, c in best.items() if c}
+    candidates = (c for some in in_parts(found) for c in problem.evaluate_numbers(some))
+    feasible = (c for c in candidates if c.expected)
+    safe = (c for c in feasible if _paths(problem, c, scenarios) is not None)
+    finalists = [(c, _average(problem, c, some)) for c in list(islice(safe, FINALISTS))]
+    rated_flights = [*finalists, *rated.values()]
+    if not rated_flights:
         raise explain_infeasible(problem, question)
-    flight, expected = max(everything, key=lambda one: one[1].utility)
+    flight, expected = max(rated_flights, key=lambda c: c[1].utility)
     require_information(expected, prior)
     paths = _paths(problem, flight, scenarios)
     assert paths is not None
@@ -221,8 +221,10 @@ def _first_safe(
     problem: DesignProblem, tried: Sequence[CandidateFlight], scenarios: Scenarios
 ) -> CandidateFlight | None:
     """The first flight that stays within the limits in all scenarios; None where none does."""
-    able = (one for one in tried if one.expected)
-    return next((one for one in able if _paths(problem, one, scenarios) is not None), None)
+    feasible = (flight for flight in tried if flight.expected)
+    return next(
+        (flight for flight in feasible if _paths(problem, flight, scenarios) is not None), None
+    )
 
 
 def _paths(problem: DesignProblem, one: CandidateFlight, scenarios: Scenarios) -> Array | None:
@@ -237,7 +239,7 @@ def _average(
 ) -> ExpectedInformation:
     """The information expected of a flight: medians over `some` possible models of each rival."""
     prior, setup = problem.prior, problem.setup
-    start, found = problem.pilot.starts(np.array([one.heading]))[0], []
+    start, information = problem.pilot.starts(np.array([one.heading]))[0], []
     drives = setup.drives(one.commands)
     for models in zip(*some, strict=True):
         undisturbed = Scenarios(
@@ -248,10 +250,12 @@ def _average(
             setup,
         )
         paths = undisturbed.predict(drives, start)
-        found.append(expect_information(paths, one.commands, prior, setup, exact=True))
+        information.append(expect_information(paths, one.commands, prior, setup, exact=True))
     return ExpectedInformation(
-        tuple(np.median([w.std_ratio[k] for w in found], axis=0) for k in range(len(some))),
-        tuple(np.median([w.std[k] for w in found], axis=0) for k in range(len(some))),
-        np.median([w.log_odds_gain for w in found], axis=0),
+        tuple(
+            np.median([info.std_ratio[k] for info in information], axis=0) for k in range(len(some))
+        ),
+        tuple(np.median([info.std[k] for info in information], axis=0) for k in range(len(some))),
+        np.median([info.log_odds_gain for info in information], axis=0),
         prior.likely,
     )

@@ -55,8 +55,8 @@ class FittedHypothesis:
             more: information (k, k) besides that of the train runs.
             reach: standard deviation, in scales, of a parameter about which nothing is known.
         """
-        own = np.eye(len(self.information))
-        return solve(self.information + more + own / reach**2, own)
+        eye = np.eye(len(self.information))
+        return solve(self.information + more + eye / reach**2, eye)
 
     def std(self, more: Array | float = 0.0) -> Array:
         """Standard deviations (j,) of the parameters that are asked about, scaled.
@@ -72,11 +72,11 @@ class FittedHypothesis:
         worth looking for. A model that is impossible is replaced by the likeliest one.
         """
         h, root = self.hypothesis, _root(self.covariance(reach=1.0))
-        found = [h.model]
-        while len(found) < count:
-            drawn = h.at(h.x + root @ random.normal(size=len(h.x))).model
-            found.append(drawn if drawn.possible else h.model)
-        return found
+        models = [h.model]
+        while len(models) < count:
+            model = h.at(h.x + root @ random.normal(size=len(h.x))).model
+            models.append(model if model.possible else h.model)
+        return models
 
 
 def _root(covariance: Array) -> Array:

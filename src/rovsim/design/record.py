@@ -19,12 +19,12 @@ INFO = RunInfo("designed", "6dof", "train")
 
 def record(path: Array, commands: Commands, model: Model, setup: RecordingSetup) -> ObservedRun:
     """The run that a true path (k+1, 13) of a model would be."""
-    every, edges = setup.parts, setup.edges
-    seen = model.mocap_view.report(path, setup.step)
-    eta = np.hstack([seen[:, :3], continuous(seen[:, 3:7])])[::every]
-    nu, time = seen[::every, 7:], edges[::every]
+    stride, edges = setup.parts, setup.edges
+    states = model.mocap_view.report(path, setup.step)
+    eta = np.hstack([states[:, :3], continuous(states[:, 3:7])])[::stride]
+    nu, time = states[::stride, 7:], edges[::stride]
     make = _bins if setup.like.motion.binned else _samples
-    motion = make(time, eta, nu, seen[:, 7:], commands, setup)
+    motion = make(time, eta, nu, states[:, 7:], commands, setup)
     stage = Poses(
         INFO, setup.site, motion.time, motion.eta, motion.usable, commands, motion.measured
     )
@@ -55,8 +55,8 @@ def _bins(
     time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, setup: RecordingSetup
 ) -> Motion:
     """Velocities are means over the bins."""
-    way = scipy.integrate.cumulative_simpson(fine, x=setup.edges, axis=0, initial=0.0)
-    mean = np.diff(way[:: setup.parts], axis=0) / np.diff(time)[:, None]
+    integral = scipy.integrate.cumulative_simpson(fine, x=setup.edges, axis=0, initial=0.0)
+    mean = np.diff(integral[:: setup.parts], axis=0) / np.diff(time)[:, None]
     change = np.vstack([np.full(6, np.nan), np.diff(mean, axis=0) / np.diff(time)[1:, None]])
     return Motion(
         INFO,

@@ -85,13 +85,15 @@ class RecordingSetup:
     @cached_property
     def measured(self) -> Measured | None:
         """What readings show, each as often as that run's; None: everything."""
-        own = self.like.motion.measured
-        if own is None:
+        shown = self.like.motion.measured
+        if shown is None:
             return None
-        seen = self.like.reading_mask
+        mask = self.like.reading_mask
         count = len(self.edges[:: self.parts])
-        when = seen[np.arange(count) % len(seen)]
-        return Measured(own.coordinates, own.heading, own.axes, own.summed, when, own.cutoff)
+        readings = mask[np.arange(count) % len(mask)]
+        return Measured(
+            shown.coordinates, shown.heading, shown.axes, shown.summed, readings, shown.cutoff
+        )
 
 
 def describe_setup(
@@ -113,7 +115,7 @@ def describe_setup(
     Raises:
         BadInput: nothing was ever commanded.
     """
-    commanded = [one for one in runs if len(one.motion.commands.time) > 1]
+    commanded = [run for run in runs if len(run.motion.commands.time) > 1]
     if not commanded:
         raise BadInput(
             "no train run has commands",
@@ -121,21 +123,21 @@ def describe_setup(
             expected="a campaign that logs commands: they are what a flight is made of",
             remedy="Record a run with commands first, however short.",
         )
-    like = max(commanded, key=lambda one: len(one.reading_steps))
-    held = np.ones(6, bool) if axes is None else np.isin(np.arange(6), axes)
+    longest = max(commanded, key=lambda run: len(run.reading_steps))
+    logged = np.ones(6, bool) if axes is None else np.isin(np.arange(6), axes)
     largest = np.zeros(6)
-    for one in commanded:
-        if one.motion.commands.kind == "wrench":
-            largest = np.maximum(largest, np.max(np.abs(one.motion.commands.value), axis=0))
+    for run in commanded:
+        if run.motion.commands.kind == "wrench":
+            largest = np.maximum(largest, np.max(np.abs(run.motion.commands.value), axis=0))
     return RecordingSetup(
-        like, seconds, held & like.free_axes, largest, _span(runs), replay, catalogue
+        longest, seconds, logged & longest.free_axes, largest, _span(runs), replay, catalogue
     )
 
 
 def _span(runs: Sequence[ObservedRun]) -> Array:
     """The least and largest place (3, 2) m NED of all runs; NaN where none was measured."""
-    places = np.concatenate([run.motion.eta[run.motion.usable, :3] for run in runs])
-    known = np.isfinite(places)
-    low = np.where(known, places, np.inf).min(axis=0, initial=np.inf)
-    high = np.where(known, places, -np.inf).max(axis=0, initial=-np.inf)
-    return np.where(known.any(axis=0)[:, None], np.stack([low, high], axis=1), np.nan)
+    positions = np.concatenate([run.motion.eta[run.motion.usable, :3] for run in runs])
+    finite = np.isfinite(positions)
+    low = np.where(finite, positions, np.inf).min(axis=0, initial=np.inf)
+    high = np.where(finite, positions, -np.inf).max(axis=0, initial=-np.inf)
+    return np.where(finite.any(axis=0)[:, None], np.stack([low, high], axis=1), np.nan)

@@ -44,7 +44,7 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
         manoeuvre=plan.flight.name,
         expects=_expect(plan.prior, plan.expected),
         baselines={
-            name: _compare(plan.prior, plan.expected, one) for name, one in plan.baselines.items()
+            name: _compare(plan.prior, plan.expected, b) for name, b in plan.baselines.items()
         },
         keeps=_keep(plan, site),
         instructions=tuple(instruct(plan.flight, plan.axes, start, question.design.limits)),
@@ -61,8 +61,8 @@ def describe_start(place: Array, heading: float, site: Site) -> Start:
 
 def _expect(prior: PriorInformation, expected: ExpectedInformation) -> Expected:
     std: dict[str, Surer] = {}
-    for rival, then, std_ratio in zip(prior.rivals, expected.std, expected.std_ratio, strict=True):
-        std |= _list_std(rival, then, std_ratio)
+    for rival, after, std_ratio in zip(prior.rivals, expected.std, expected.std_ratio, strict=True):
+        std |= _list_std(rival, after, std_ratio)
     return Expected(odds=_list_odds(prior, expected), std=std)
 
 
@@ -82,17 +82,17 @@ def _list_std(rival: FittedHypothesis, then: Array, std_ratio: Array) -> dict[st
 def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[str, RivalOdds]:
     if not len(expected.log_odds_gain):
         return {}
-    found, sides = {}, (0.5 * prior.deviance_difference, -0.5 * prior.deviance_difference)
+    odds, log_odds = {}, (0.5 * prior.deviance_difference, -0.5 * prior.deviance_difference)
     names = prior.rival_names
-    for name, now, gain in zip(names, sides, expected.log_odds_gain, strict=True):
-        then = now + gain
-        found[name] = RivalOdds(
-            now=_round(odds_of(2.0 * now)),
-            then=_round(odds_of(2.0 * then)),
-            log_odds_now=_round(now),
-            log_odds_then=_round(then),
+    for name, before, gain in zip(names, log_odds, expected.log_odds_gain, strict=True):
+        after = before + gain
+        odds[name] = RivalOdds(
+            now=_round(odds_of(2.0 * before)),
+            then=_round(odds_of(2.0 * after)),
+            log_odds_now=_round(before),
+            log_odds_then=_round(after),
         )
-    return found
+    return odds
 
 
 def _round(value: float) -> float:
@@ -107,10 +107,10 @@ def _compare(
     if baseline is None:
         return UsualManoeuvre(amplitude=None, designed_is_better=None)
     flight, expected = baseline
-    written = _expect(prior, expected)
+    expectation = _expect(prior, expected)
     return UsualManoeuvre(
-        odds=written.odds,
-        std=written.std,
+        odds=expectation.odds,
+        std=expectation.std,
         amplitude=flight.amplitude,
         designed_is_better=or_none(_round(designed.utility / max(expected.utility, NEGLIGIBLE))),
     )
@@ -118,11 +118,11 @@ def _compare(
 
 def _keep(plan: Plan, site: Site) -> Keeps:
     speed, rate, tilt = find_extremes(plan.paths)
-    tank, place = site.tank, plan.paths[:, :, :3]
-    away = np.minimum(place - tank[:, 0], tank[:, 1] - place)
-    known = np.isfinite(away).any() and not np.isnan(away).all()
+    tank, position = site.tank, plan.paths[:, :, :3]
+    margin = np.minimum(position - tank[:, 0], tank[:, 1] - position)
+    walled = np.isfinite(margin).any() and not np.isnan(margin).all()
     return Keeps(
-        nearest_wall_m=_round(float(np.nanmin(away))) if known else None,
+        nearest_wall_m=_round(float(np.nanmin(margin))) if walled else None,
         speed_m_s=_round(speed),
         turn_rate_rad_s=_round(rate),
         tilt_rad=_round(tilt),

@@ -50,15 +50,15 @@ class Scenarios:
     def predict(self, drives: Drives, start: Array) -> Array:
         """Predict states (s, k+1, 13) under one command log, from near a state (13,)."""
         models, edges = self.models, self.setup.edges
-        each = zip(drives.of(models), self._wrenches, strict=True)
-        pushed = [drive.pushed(push) for drive, push in each]
+        pairs = zip(drives.of(models), self._wrenches, strict=True)
+        disturbed = [drive.pushed(push) for drive, push in pairs]
         states = np.tile(start, (len(models), 1, 1))
-        afloat = models[0].vehicle.floats
-        states[:, 0, :3] += self.shift * np.where(np.arange(3) == 2, not afloat, 1)
+        floats = models[0].vehicle.floats
+        states[:, 0, :3] += self.shift * np.where(np.arange(3) == 2, not floats, 1)
         states[:, 0, 3:7] = multiply(self._turns, states[:, 0, 3:7])
         steps = np.array([len(edges) - 1])
         starts = Starts(states, np.zeros(1, np.int64), steps, np.zeros((len(models), 1, 6)))
-        return np.array([own[0] for own in self._batch.trajectories(pushed, starts, edges)])
+        return np.array([path[0] for path in self._batch.trajectories(disturbed, starts, edges)])
 
     @cached_property
     def _batch(self) -> Batch:
@@ -68,8 +68,8 @@ class Scenarios:
     @cached_property
     def _wrenches(self) -> list[Array]:
         """The disturbance of each scenario as a wrench (k, 6), N and N m."""
-        each = zip(self.disturbances, self.models, strict=True)
-        return [push @ model.M.T for push, model in each]
+        pairs = zip(self.disturbances, self.models, strict=True)
+        return [push @ model.M.T for push, model in pairs]
 
     @cached_property
     def _turns(self) -> Array:
@@ -93,14 +93,14 @@ def draw_scenarios(
     Returns:
         The likeliest scenario of each rival first, then all others.
     """
-    drawn = [_draw_of(own, prior, k, setup, random) for k, own in enumerate(each)]
-    parts = [one.split(1) for one in drawn]
+    scenarios = [_draw_of(group, prior, k, setup, random) for k, group in enumerate(each)]
+    parts = [s.split(1) for s in scenarios]
     ordered = [first for first, _ in parts] + [rest for _, rest in parts]
     disturbances, shift, turn = (
-        np.concatenate([getattr(one, name) for one in ordered])
+        np.concatenate([getattr(s, name) for s in ordered])
         for name in ("disturbances", "shift", "turn")
     )
-    models = [model for one in ordered for model in one.models]
+    models = [model for s in ordered for model in s.models]
     return Scenarios(models, disturbances, shift, turn, setup)
 
 

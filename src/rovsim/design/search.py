@@ -96,8 +96,8 @@ class DesignProblem:
         """
         demands = self.pilot.fly(np.array(inputs), np.array(headings))
         starts = self.pilot.starts(np.array(headings))
-        each = zip(inputs, headings, demands, starts, strict=True)
-        return (self._evaluate(*one) for one in each)
+        flights = zip(inputs, headings, demands, starts, strict=True)
+        return (self._evaluate(*flight) for flight in flights)
 
     def _evaluate(
         self, inputs: Array, heading: float, demand: Array, start: Array
@@ -111,8 +111,8 @@ class DesignProblem:
             paths = np.concatenate([paths, rest.predict(drives, start)])
             excess = self.envelope.excess(paths)
         if excess == 0.0:
-            each = paths[: len(self.prior.rivals)]
-            expected = expect_information(each, commands, self.prior, self.setup)
+            undisturbed = paths[: len(self.prior.rivals)]
+            expected = expect_information(undisturbed, commands, self.prior, self.setup)
         return CandidateFlight(inputs, heading, commands, excess, expected)
 
     @cached_property
@@ -126,26 +126,26 @@ class DesignProblem:
         The first is the heading; then come five for each axis, see `make_inputs`.
         """
         seconds = self.setup.seconds
-        inputs = [make_inputs(own[1:], self.axes, seconds) for own in x]
-        tried = self.evaluate_all(inputs, [self.envelope.longest + np.pi * own[0] for own in x])
-        return (replace(one, numbers=own) for one, own in zip(tried, x, strict=True))
+        inputs = [make_inputs(row[1:], self.axes, seconds) for row in x]
+        flights = self.evaluate_all(inputs, [self.envelope.longest + np.pi * row[0] for row in x])
+        return (replace(f, numbers=row) for f, row in zip(flights, x, strict=True))
 
 
 def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
     """Evaluate each usual manoeuvre at all amplitudes: by name, the largest utility first."""
-    found, t = {}, ticks(problem.setup.seconds)
+    by_name, t = {}, ticks(problem.setup.seconds)
     levels = list(product(IN_PLANE, OUT_OF_PLANE))
     for name, baseline in BASELINES.items():
         full = baseline.move(t, problem.axes, np.random.default_rng(seed))
         scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
         headings = [problem.envelope.longest] * len(levels)
-        tried = problem.evaluate_all([full * s for s in scales], headings)
-        named = [
-            replace(one, name=name, amplitude=level)
-            for one, level in zip(tried, levels, strict=True)
+        flights = problem.evaluate_all([full * s for s in scales], headings)
+        candidates = [
+            replace(flight, name=name, amplitude=level)
+            for flight, level in zip(flights, levels, strict=True)
         ]
-        found[name] = sorted(named, key=lambda one: -one.utility)
-    return found
+        by_name[name] = sorted(candidates, key=lambda flight: -flight.utility)
+    return by_name
 
 
 class Rated(NamedTuple):
@@ -171,11 +171,11 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
     archive: list[Rated] = []
 
     def rate(x: Array) -> Array:
-        found = []
-        for some in in_parts(np.clip(x.T, 0.0, 1.0)):
-            found += [Rated(one.numbers, _ranked(one)) for one in problem.evaluate_numbers(some)]
-        archive.extend(found)
-        return np.array([-one.rank for one in found])
+        rated = []
+        for batch in in_parts(np.clip(x.T, 0.0, 1.0)):
+            rated += [Rated(f.numbers, _ranked(f)) for f in problem.evaluate_numbers(batch)]
+        archive.extend(rated)
+        return np.array([-f.rank for f in rated])
 
     rate(_one_axis_each(problem).T)
     first = _begin(archive, problem, settings.population, np.random.default_rng(seed))
@@ -193,8 +193,8 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
         vectorized=True,
         rng=np.random.default_rng(seed),
     )
-    able = [one for one in archive if one.rank > BEYOND]
-    return [one.numbers for one in sorted(able, key=lambda one: -one.rank)]
+    feasible = [r for r in archive if r.rank > BEYOND]
+    return [r.numbers for r in sorted(feasible, key=lambda r: -r.rank)]
 
 
 def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
@@ -215,12 +215,12 @@ def _one_axis_each(problem: DesignProblem) -> Array:
     for k, (f, square, a) in product(
         range(len(problem.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
     ):
-        own = np.zeros((len(problem.axes), NUMBERS))
-        own[:, 1] = 0.5
-        own[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
+        numbers = np.zeros((len(problem.axes), NUMBERS))
+        numbers[:, 1] = 0.5
+        numbers[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
         # sway: the vehicle is turned so that it moves along the longer side of the tank
         heading = 0.5 if problem.axes[k] == 1 else 0.0
-        rows.append(np.concatenate([[heading], own.ravel()]))
+        rows.append(np.concatenate([[heading], numbers.ravel()]))
     return np.array(rows)
 
 
@@ -232,21 +232,21 @@ def _begin(
     The best oscillations of each axis alone, then random combinations of two of these.
     """
     best = []
-    rows = np.array([one.numbers for one in archive])
-    ranks = np.array([one.rank for one in archive])
+    rows = np.array([r.numbers for r in archive])
+    ranks = np.array([r.rank for r in archive])
     for k in range(len(problem.axes)):
-        own = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
-        best += [rows[i] for i in own[np.argsort(-ranks[own])][:2]]
-    found = list(best)
-    while len(found) < population:
+        active = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
+        best += [rows[i] for i in active[np.argsort(-ranks[active])][:2]]
+    generation = list(best)
+    while len(generation) < population:
         pair = random.choice(len(best), 2, replace=False)
         mixed = np.maximum(best[pair[0]], 0.0).copy()
-        axes, other = problem.axes, best[pair[1]]
+        axes, partner = problem.axes, best[pair[1]]
         for k in range(len(axes)):
             block = slice(1 + NUMBERS * k, 1 + NUMBERS * (k + 1))
-            if other[block][0] > mixed[block][0]:
-                mixed[block] = other[block]
+            if partner[block][0] > mixed[block][0]:
+                mixed[block] = partner[block]
         mixed[1:] += MUTATION * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
         mixed[1 + NUMBERS - 2 :: NUMBERS] = random.random(len(axes))  # phases
-        found.append(np.clip(mixed, 0.0, 1.0))
-    return np.array(found[:population])
+        generation.append(np.clip(mixed, 0.0, 1.0))
+    return np.array(generation[:population])

@@ -67,6 +67,6 @@ class Question(SimulationSettings):
         Raises:
             BadInput: it is no question; `where` says whose.
         """
-        own = dict.fromkeys(("design", "signals", "replay", "seed"), True)
-        known = settings.model_dump(include={**own, "search": {"most_seconds"}})
-        return checked(Question, known.pop("search") | known | asked, where)
+        fields = dict.fromkeys(("design", "signals", "replay", "seed"), True)
+        values = settings.model_dump(include={**fields, "search": {"most_seconds"}})
+        return checked(Question, values.pop("search") | values | asked, where)
