@@ -71,16 +71,16 @@ def predict_band(
         return None
     noise = NoiseDraws.of(model.uncertainty.noise, random)
     assert noise is not None
-    found, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
-    for some in _divide(spans, round(LONGEST / period)):
-        first = max(some[0][0] - round(LEAD_IN / period), 0)
-        part = slice(first, some[-1][1] + round(how.signals.reach / period) + 1)
-        own = [(a - first, b - first) for a, b in some]
-        drawn = _draw_band(model, motion.part(part), own, noise, how)
-        known = np.isfinite(drawn.nu).all(axis=(0, 2))
-        found.nu[:, part][:, known] = drawn.nu[:, known]
-        found.place[:, part][:, known] = drawn.place[:, known]
-    return found
+    band, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
+    for group in _divide(spans, round(LONGEST / period)):
+        first = max(group[0][0] - round(LEAD_IN / period), 0)
+        part = slice(first, group[-1][1] + round(how.signals.reach / period) + 1)
+        windows = [(a - first, b - first) for a, b in group]
+        group_band = _draw_band(model, motion.part(part), windows, noise, how)
+        finite = np.isfinite(group_band.nu).all(axis=(0, 2))
+        band.nu[:, part][:, finite] = group_band.nu[:, finite]
+        band.place[:, part][:, finite] = group_band.place[:, finite]
+    return band
 
 
 def _divide(spans: Spans, most: int) -> Iterator[list[tuple[int, int]]]:
@@ -104,14 +104,14 @@ def _draw_band(
     how: SimulationSettings,
 ) -> Band:
     """Replay `DRAWS` draws of a model and its noise in some windows of a run."""
-    disturbed = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
-    again = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
-    drawn = [model.draw(noise.random) for _ in range(DRAWS)]
-    cases = [ReplayCase(*one) for one in zip(drawn, again, disturbed, strict=True)]
-    found = predict_all(cases, spans, how)
-    reported = [_misread(own, motion, other) for own, other in zip(found, again, strict=True)]
-    places = np.array([_place(own, motion, spans) for own in reported])
-    return Band(band_ends(np.array([own.nu for own in reported])), band_ends(places))
+    wrenches = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
+    motions = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
+    models = [model.draw(noise.random) for _ in range(DRAWS)]
+    cases = [ReplayCase(*draw) for draw in zip(models, motions, wrenches, strict=True)]
+    predictions = predict_all(cases, spans, how)
+    as_measured = [_misread(p, motion, m) for p, m in zip(predictions, motions, strict=True)]
+    places = np.array([_place(p, motion, spans) for p in as_measured])
+    return Band(band_ends(np.array([p.nu for p in as_measured])), band_ends(places))
 
 
 def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
@@ -120,10 +120,10 @@ def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
     The replay started from `again`, which has other errors than the measured `motion`. The
     difference of the two is added to the prediction, so that it begins at the measured state.
     """
-    back = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
+    rotation = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
     shift = rotate(conjugate(again.eta[:, 3:]), motion.eta[:, :3] - again.eta[:, :3])
-    place = found.eta[:, :3] + rotate(found.eta[:, 3:], shift)
-    eta = np.hstack([place, multiply(found.eta[:, 3:], back)])
+    position = found.eta[:, :3] + rotate(found.eta[:, 3:], shift)
+    eta = np.hstack([position, multiply(found.eta[:, 3:], rotation)])
     return replace(found, eta=eta, nu=found.nu + motion.nu - again.nu)
 
 
@@ -133,11 +133,11 @@ def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
     The angles are continued from the measured ones where each window begins.
     """
     measured = to_euler(motion.eta[:, 3:])
-    turned = short_way(to_euler(found.eta[:, 3:]) - measured)
+    angles = short_way(to_euler(found.eta[:, 3:]) - measured)
     for window in spans:
         at = predicted(motion, window)
-        turned[at] = np.unwrap(turned[at], axis=0)
-    return np.hstack([found.eta[:, :3], measured + turned])
+        angles[at] = np.unwrap(angles[at], axis=0)
+    return np.hstack([found.eta[:, :3], measured + angles])
 
 
 def band_ends(drawn: Array) -> Array:

@@ -91,12 +91,12 @@ class Batch:
         if learned:
             _refuse_unlike(models)
             self._residual = models[0].residual.data if models[0].residual else None
-        own, further = _slots(models, candidates)
-        slots = [*own, *further]
-        self.engine = engine(own, bool(further))
+        compiled, extra = _slots(models, candidates)
+        slots = [*compiled, *extra]
+        self.engine = engine(compiled, bool(extra))
         self._parameters = WrenchParameters(
             np.stack([_slotted(m, slots) for m in models]),
-            attached(further, sum(len(cls.channels) for cls in own)) if further else None,
+            attached(extra, sum(len(cls.channels) for cls in compiled)) if extra else None,
         )
         self._constants = Constants.stacked([m.constants for m in models])
         self._place = SiteArrays(
@@ -151,7 +151,7 @@ class Batch:
         models, count = len(starts.state), int(starts.steps.sum())
         stops = np.cumsum(np.tile(starts.steps, models))
         out = np.empty((models * count, 6))
-        own, row = _distinct(correction.readings)
+        readings, row = _distinct(correction.readings)
         starts = replace(starts, state=starts.state * self.free)
         jobs = starts.jobs(stops - np.tile(starts.steps, models))
         run_jobs(
@@ -163,7 +163,7 @@ class Batch:
             self._inputs(drives),
             self._parameters,
             self._place,
-            np.stack(own),
+            np.stack(readings),
             row,
             correction.seen,
             correction.known,
@@ -231,14 +231,14 @@ class Batch:
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
         """Stack the drives for the kernels; a drive that several models share is passed once."""
-        own, row = _distinct(drives)
-        first = own[0]
-        acting = [drive.acting(self._reads) for drive in own]
-        if len(own) == 1:
-            wrench, force, ramp = first.wrench[None], acting[0][None], first.ramp[None]
+        distinct, row = _distinct(drives)
+        first = distinct[0]
+        columns = [drive.acting(self._reads) for drive in distinct]
+        if len(distinct) == 1:
+            wrench, force, ramp = first.wrench[None], columns[0][None], first.ramp[None]
         else:
-            wrench, force = np.stack([d.wrench for d in own]), np.stack(acting)
-            ramp = np.stack([d.ramp for d in own])
+            wrench, force = np.stack([d.wrench for d in distinct]), np.stack(columns)
+            ramp = np.stack([d.ramp for d in distinct])
         length = np.full(len(first.wrench), first.duration)
         return Inputs(wrench, force, first.demand, row, length, ramp)
 
@@ -263,26 +263,26 @@ def _slots(
     has all built-in wrench effects, or none where no model has any. A user's own effects, and an
     effect that a model has a second time, are attached.
     """
-    most = Counter(candidates)
+    counts = Counter(candidates)
     for model in models:
-        most |= Counter(type(wrench) for wrench in model.wrenches)
-    if not most:
+        counts |= Counter(type(wrench) for wrench in model.wrenches)
+    if not counts:
         return (), []
-    further = most - Counter(built_in().wrenches)
-    return built_in().wrenches, sorted(further.elements(), key=lambda cls: cls.id)
+    extra = counts - Counter(built_in().wrenches)
+    return built_in().wrenches, sorted(extra.elements(), key=lambda cls: cls.id)
 
 
 def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
     """For each slot 1 where the model has such an effect, else 0, followed by its parameters."""
-    own = list(model.wrenches)
-    parts = [np.zeros(0)]
+    wrenches = list(model.wrenches)
+    blocks = [np.zeros(0)]
     for cls in slots:
-        used = next((w for w in own if type(w) is cls), None)
-        if used is not None:
-            own.remove(used)
-        values = np.zeros(len(cls.parameters)) if used is None else used.values
-        parts += [np.array([float(used is not None)]), values]
-    return np.concatenate(parts)
+        wrench = next((w for w in wrenches if type(w) is cls), None)
+        if wrench is not None:
+            wrenches.remove(wrench)
+        values = np.zeros(len(cls.parameters)) if wrench is None else wrench.values
+        blocks += [np.array([float(wrench is not None)]), values]
+    return np.concatenate(blocks)
 
 
 def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
@@ -295,6 +295,6 @@ def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
 
 def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:
     """The distinct objects (by identity) among m values, and the index (m,) of each value's own."""
-    own = {id(value): value for value in values}
-    place = {key: k for k, key in enumerate(own)}
-    return list(own.values()), np.array([place[id(value)] for value in values], np.int64)
+    by_id = {id(value): value for value in values}
+    positions = {key: k for k, key in enumerate(by_id)}
+    return list(by_id.values()), np.array([positions[id(value)] for value in values], np.int64)

@@ -23,10 +23,10 @@ def mark_angles(campaign: Campaign, vehicle: Vehicle) -> Campaign:
     log, expected = campaign.commands, vehicle.command_columns
     if log is None or log.per_axis or not any(vehicle.angles) or len(log.names) != len(expected):
         return campaign
-    for name, place in zip(log.names, expected, strict=True):
-        if name != place and name in expected:
+    for name, column in zip(log.names, expected, strict=True):
+        if name != column and name in expected:
             raise BadInput(
-                f"the column '{name}' stands where '{place}' belongs",
+                f"the column '{name}' stands where '{column}' belongs",
                 where=f"{campaign.file}, commands.columns",
                 expected=f"the vehicle's order: {', '.join(expected)}",
                 remedy="Put the columns into that order.",

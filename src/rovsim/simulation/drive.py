@@ -56,10 +56,10 @@ class Actuation(NamedTuple):
         angle = thrust.angle
         if angle is None:
             angle = np.zeros((len(force), model.thrust_path.surfaces))
-        read = np.empty((len(force), 0))
+        readings = np.empty((len(force), 0))
         if thrust.read is not None:
-            read = np.hstack([thrust.force, thrust.read])
-        return Actuation(thrust.wrench, force, thrust.demand, angle, read)
+            readings = np.hstack([thrust.force, thrust.read])
+        return Actuation(thrust.wrench, force, thrust.demand, angle, readings)
 
     def push(self, model: Model) -> Array:
         """Wrench (k, 6) on a model, autopilots included, N and N m; linear in the actuation."""
@@ -133,16 +133,16 @@ class Drive:
         Returns:
             Array (k, n + s), or (k, n + s + actuators + channels) where effects read something.
         """
-        own = np.hstack([self.force, self.angle]) if self.angle.size else self.force
+        columns = np.hstack([self.force, self.angle]) if self.angle.size else self.force
         if reads is None:
-            return own
-        table = np.zeros((len(own), reads.actuators + len(reads.channels)))
+            return columns
+        table = np.zeros((len(columns), reads.actuators + len(reads.channels)))
         if self.read.size:
             table[:, : reads.actuators] = self.read[:, : reads.actuators]
-            known = dict(zip(self.channels, self.read[:, reads.actuators :].T, strict=True))
+            by_channel = dict(zip(self.channels, self.read[:, reads.actuators :].T, strict=True))
             for k, name in enumerate(reads.channels):
-                table[:, reads.actuators + k] = known.get(name, 0.0)
-        return np.hstack([own, table])
+                table[:, reads.actuators + k] = by_channel.get(name, 0.0)
+        return np.hstack([columns, table])
 
     @staticmethod
     def by(model: Model, thrust: Thrust, duration: float) -> "Drive":
@@ -206,8 +206,8 @@ class Drives:
         key = (self._own, id(model.vehicle), *path.key)
         loops = [loop.values.tobytes() for loop in path.autopilots]
         inertia = model.M.tobytes() if loops else b""
-        whole = (*key, *loops, inertia, model.body.B.tobytes())
-        return self._kept.get(whole, lambda: self._drive(model, key))
+        full_key = (*key, *loops, inertia, model.body.B.tobytes())
+        return self._kept.get(full_key, lambda: self._drive(model, key))
 
     def _drive(self, model: Model, key: tuple) -> Drive:
         """Make the drive of a model from the actuation with this key, which models may share."""
@@ -218,8 +218,8 @@ class Drives:
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
         """Actuation over the steps; where these are joined, also its rise over each of them."""
-        found = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
-        return (found,) if self._parts is None else found.joined(self._parts)
+        actuation = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
+        return (actuation,) if self._parts is None else actuation.joined(self._parts)
 
 
 def drive_by_log(model: Model, motion: Motion, grid: StepGrid, between: Between) -> Drive:

@@ -49,17 +49,17 @@ class Ensemble:
         seed: int = 0,
     ) -> None:
         random = np.random.default_rng(seed)
-        known = model.uncertainty and NoiseDraws.of(model.uncertainty.noise, random)
-        if not known:
+        noise = model.uncertainty and NoiseDraws.of(model.uncertainty.noise, random)
+        if not noise:
             raise BadInput(
                 "it does not say how sure it is",
                 where=f"model {model.name}",
                 expected="a model with `uncertainty`, as `rovsim add` makes it of a diagnosis",
                 remedy="Diagnose a campaign with this model, and add what was found.",
             )
-        self.noise = known
-        each = [model.draw(random) for _ in range(draws)]
-        self.members = [Stepper(one, kind, site, duration) for one in each]
+        self.noise = noise
+        models = [model.draw(random) for _ in range(draws)]
+        self.members = [Stepper(drawn, kind, site, duration) for drawn in models]
         self._drawn = random.normal(size=(draws, 6))
 
     def start(self, state: Array) -> Array:
@@ -84,14 +84,14 @@ class Ensemble:
             BadInput: a command or states of another shape, or dt that is not positive.
         """
         pushes = self.noise.disturbance_std * self._drawn
-        after = [
+        next_states = [
             member.step(state, command, dt, member.model.M @ push)
             for member, state, push in zip(self.members, states, pushes, strict=True)
         ]
         fade = gauss_markov.decay(dt / self.noise.correlation_time)
         normal = self.noise.random.normal(size=(1, *pushes.shape))
         self._drawn = gauss_markov.propagate(fade[None, None], normal, self._drawn)[0]
-        return np.array(after)
+        return np.array(next_states)
 
     @staticmethod
     def band(states: Array) -> Array:

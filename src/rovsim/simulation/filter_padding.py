@@ -46,12 +46,12 @@ def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[
         reach: number of samples by which a window is extended on either side at most.
     """
     stretches = find_stretches(np.isfinite(motion.nu).all(axis=1))
-    found = []
+    windows = []
     for a, b in spans:
-        begin, end = next(((s, e) for s, e in stretches if s <= a < e), (a, b + 1))
-        before, after = min(reach, a - begin), max(min(reach, end - 1 - b), 0)
-        found.append(Embedded(before, after, a, b))
-    return found
+        start, end = next(((s, e) for s, e in stretches if s <= a < e), (a, b + 1))
+        before, after = min(reach, a - start), max(min(reach, end - 1 - b), 0)
+        windows.append(Embedded(before, after, a, b))
+    return windows
 
 
 def derive(
@@ -74,24 +74,24 @@ def derive(
         For each path velocity and acceleration (2, n, 6) in body axes, m/s, rad/s and m/s2, rad/s2.
         Infinite from where the path diverged; throughout, if that was within its window.
     """
-    found = [np.full((2, len(path), 6), np.inf) for path in paths]
+    derivatives = [np.full((2, len(path), 6), np.inf) for path in paths]
     period = time_step(motions[0].time) if motions else 0.0
-    alike = defaultdict(list)  # a filter takes stacks of one length
+    by_length = defaultdict(list)  # a filter takes stacks of one length
     for k, (path, window) in enumerate(zip(paths, windows, strict=True)):
-        alike[window.before, _count_finite(path, window)].append(k)
-    for (before, count), members in alike.items():
+        by_length[window.before, _count_finite(path, window)].append(k)
+    for (before, count), members in by_length.items():
         if not count:
             continue
-        most = max(1, AT_ONCE // (before + count))
-        for some in (members[k : k + most] for k in range(0, len(members), most)):
-            past = [motions[k].eta[windows[k].first - before : windows[k].first] for k in some]
-            whole = np.stack(
-                [np.vstack([p, paths[k][:count]]) for p, k in zip(past, some, strict=True)]
+        batch_size = max(1, AT_ONCE // (before + count))
+        for batch in (members[k : k + batch_size] for k in range(0, len(members), batch_size)):
+            measured = [motions[k].eta[windows[k].first - before : windows[k].first] for k in batch]
+            padded = np.stack(
+                [np.vstack([p, paths[k][:count]]) for p, k in zip(measured, batch, strict=True)]
             )
-            both = np.stack(velocities(whole, period, signals))
-            for i, k in enumerate(some):
-                found[k][:, :count] = both[:, i, before:]
-    return found
+            filtered = np.stack(velocities(padded, period, signals))
+            for i, k in enumerate(batch):
+                derivatives[k][:, :count] = filtered[:, i, before:]
+    return derivatives
 
 
 def _count_finite(path: Array, window: Embedded) -> int:

@@ -32,19 +32,19 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
         Velocity (k, 6) in body axes, m/s and rad/s; empty where the model has no fluid memory.
     """
     body = model.body
-    known = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
+    rows = np.flatnonzero(motion.usable | np.isfinite(motion.state_nu).all(axis=1))
     if body.memory_decay == 0.0:
         return NO_MEMORY
-    if len(known) == 0:
+    if len(rows) == 0:
         return np.zeros((len(times), 6))
-    nu_r = motion.state_nu[known].copy()
-    nu_r[:, :3] -= unrotate(motion.eta[known, 3:], body.current)
+    nu_r = motion.state_nu[rows].copy()
+    nu_r[:, :3] -= unrotate(motion.eta[rows, 3:], body.current)
     count = max(1, int(np.ceil((times[-1] - motion.time[0]) / STEP - 1e-9)))
     grid = np.linspace(motion.time[0], times[-1], count + 1)
     h = float(grid[1] - grid[0])
-    moved = np.stack([np.interp(grid, motion.time[known], column) for column in nu_r.T], axis=1)
+    on_grid = np.stack([np.interp(grid, motion.time[rows], column) for column in nu_r.T], axis=1)
     wake = LowPass((1.0 / body.memory_decay,))
-    remembered = wake.smooth(moved, h, first=np.zeros((1, 6)), straight=True)
+    remembered = wake.smooth(on_grid, h, first=np.zeros((1, 6)), straight=True)
     return np.stack([np.interp(times, grid, column) for column in remembered.T], axis=1)
 
 
@@ -68,11 +68,13 @@ def remembered_at(
     if not any(m.body.memory_decay for m in models):
         return NO_MEMORY
     keys = [_name_memory(m) for m in models]
-    whole = {
+    states = {
         k: measured_memory(m, see(m), edges)
         for k, m in dict(zip(keys, models, strict=True)).items()
     }
-    return np.stack([whole[k][steps] if whole[k].size else np.zeros((len(steps), 6)) for k in keys])
+    return np.stack(
+        [states[k][steps] if states[k].size else np.zeros((len(steps), 6)) for k in keys]
+    )
 
 
 def _name_memory(model: Model) -> tuple:

@@ -21,16 +21,16 @@ def undo_mocap_view(model: Model, motion: Motion) -> Motion:
 
     This undoes smoothing, and the offset and rotation of the reported body and world axes.
     """
-    motion, back = sharpen(model, motion), model.mocap_view.inverse
+    motion, inverse = sharpen(model, motion), model.mocap_view.inverse
     return (
         motion
-        if back.identity
+        if inverse.identity
         else replace(
             motion,
-            eta=back.poses(motion.eta),
-            nu=back.twists(motion.nu),
-            nu_dot=back.twists(motion.nu_dot),
-            state_nu=back.twists(motion.state_nu),
+            eta=inverse.poses(motion.eta),
+            nu=inverse.twists(motion.nu),
+            nu_dot=inverse.twists(motion.nu_dot),
+            state_nu=inverse.twists(motion.state_nu),
         )
     )
 
@@ -40,12 +40,12 @@ def true_states(model: Model, motion: Motion, index: Array) -> Array:
     view = model.mocap_view
     if motion.binned or (view.identity and not view.low_pass.time_constants):
         return undo_mocap_view(model, motion).state_at(index)
-    found = np.empty((len(index), 13))
+    states = np.empty((len(index), 13))
     for k, i in enumerate(index):  # each stage needs the sample before, or the one after the first
         first = max(int(i) - len(view.low_pass.time_constants), 0)
-        near = undo_mocap_view(model, motion.part(slice(first, int(i) + 2)))
-        found[k] = near.state[int(i) - first]
-    return found
+        window = undo_mocap_view(model, motion.part(slice(first, int(i) + 2)))
+        states[k] = window.state[int(i) - first]
+    return states
 
 
 def interpolate_state(motion: Motion, time: float) -> Array:

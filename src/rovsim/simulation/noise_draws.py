@@ -44,14 +44,14 @@ class NoiseDraws:
     @staticmethod
     def of(noise: FittedNoise, random: np.random.Generator) -> "NoiseDraws | None":
         """The draws for the noise of a model file; None where the file lacks some of it."""
-        known = (noise.disturbance, noise.memory_s, noise.reading)
-        if any(len(own) != 6 or None in own for own in known) or noise.period_s is None:
+        levels = (noise.disturbance, noise.memory_s, noise.reading)
+        if any(len(values) != 6 or None in values for values in levels) or noise.period_s is None:
             return None
-        level, memory, reading = (np.array(own, dtype=float) for own in known)
-        slow = None not in noise.colour and len(noise.colour) == len(noise.colour_memory_s) == 6
-        colour = np.array(noise.colour if slow else np.zeros(6), dtype=float)
-        lasts = np.array(noise.colour_memory_s if slow else np.ones(6), dtype=float)
-        return NoiseDraws(level, memory, reading, noise.period_s, colour, lasts, random)
+        level, memory, reading = (np.array(values, dtype=float) for values in levels)
+        coloured = None not in noise.colour and len(noise.colour) == len(noise.colour_memory_s) == 6
+        colour = np.array(noise.colour if coloured else np.zeros(6), dtype=float)
+        colour_memory = np.array(noise.colour_memory_s if coloured else np.ones(6), dtype=float)
+        return NoiseDraws(level, memory, reading, noise.period_s, colour, colour_memory, random)
 
     def draw_disturbance(self, steps: Array, draws: int) -> Array:
         """Draw disturbances, each axis a stationary first-order Gauss-Markov process.
@@ -65,8 +65,8 @@ class NoiseDraws:
         """
         fade = gauss_markov.decay(steps[:, None, None] / self.correlation_time)
         normal = self.random.normal(size=(len(fade), draws, 6))
-        found = gauss_markov.propagate(fade, normal, self.random.normal(size=(draws, 6)))
-        return np.asarray((found * self.disturbance_std).swapaxes(0, 1))
+        disturbance = gauss_markov.propagate(fade, normal, self.random.normal(size=(draws, 6)))
+        return np.asarray((disturbance * self.disturbance_std).swapaxes(0, 1))
 
     def resample_measurement_noise(
         self, motion: Motion, view: MocapView, signals: SignalSettings, draws: int
@@ -82,18 +82,20 @@ class NoiseDraws:
         if motion.binned:
             return [self._read_bins_again(motion) for _ in range(draws)]
         period, signals = time_step(motion.time), signals.suited(motion)
-        at_once = max(1, AT_ONCE // len(motion.time))
-        found = []
-        for first in range(0, draws, at_once):
-            count = min(at_once, draws - first)
-            each = zip(*self._misread(len(motion.time), period, count, view, signals), strict=True)
-            found += [_move(motion, *off) for off in each]
-        return found
+        batch_size = max(1, AT_ONCE // len(motion.time))
+        motions = []
+        for first in range(0, draws, batch_size):
+            count = min(batch_size, draws - first)
+            errors = zip(
+                *self._misread(len(motion.time), period, count, view, signals), strict=True
+            )
+            motions += [_move(motion, *error) for error in errors]
+        return motions
 
     def _read_bins_again(self, motion: Motion) -> Motion:
         """Add white noise to the mean velocities of a binned motion."""
-        read = self.reading_std * self.random.normal(size=motion.nu.shape)
-        return replace(motion, nu=motion.nu + read, state_nu=motion.state_nu + read)
+        error = self.reading_std * self.random.normal(size=motion.nu.shape)
+        return replace(motion, nu=motion.nu + error, state_nu=motion.state_nu + error)
 
     def _misread(
         self, count: int, period: float, draws: int, view: MocapView, signals: SignalSettings
@@ -111,13 +113,13 @@ class NoiseDraws:
         poses = np.concatenate([kicks[..., :3], rotations.exp(kicks[..., 3:])], axis=-1)
         smooth = filter_eta(view.smooth(poses, period), period, signals.filter)
         nu, nu_dot = differentiate_eta(smooth, period, signals.differentiate)
-        inside = slice(pad, pad + count)
-        return smooth[:, inside], nu[:, inside], nu_dot[:, inside]
+        unpadded = slice(pad, pad + count)
+        return smooth[:, unpadded], nu[:, unpadded], nu_dot[:, unpadded]
 
     def _err(self, count: int, period: float) -> Array:
         """Draw errors (count, 6) of single frames, `period` s apart, m and rad."""
-        one = self.reading_std * np.sqrt(self.period / period)  # a reading is a mean of frames
-        return one * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
+        std = self.reading_std * np.sqrt(self.period / period)  # a reading is a mean of frames
+        return std * self.random.normal(size=(count, 6)) + self._err_slowly(count, period)
 
     def _err_slowly(self, count: int, period: float) -> Array:
         """Draw slow Gauss-Markov errors (count, 6) of frames, `period` s apart, m and rad."""
@@ -138,7 +140,7 @@ def _move(motion: Motion, off: Array, nu: Array, nu_dot: Array) -> Motion:
         nu: errors of velocities (n, 6), m/s and rad/s.
         nu_dot: errors of accelerations (n, 6), m/s2 and rad/s2.
     """
-    place = motion.eta[:, :3] + rotations.rotate(motion.eta[:, 3:], off[:, :3])
-    eta = np.hstack([place, rotations.multiply(motion.eta[:, 3:], off[:, 3:])])
+    position = motion.eta[:, :3] + rotations.rotate(motion.eta[:, 3:], off[:, :3])
+    eta = np.hstack([position, rotations.multiply(motion.eta[:, 3:], off[:, 3:])])
     nu, nu_dot = motion.nu + nu, motion.nu_dot + nu_dot
     return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=nu)

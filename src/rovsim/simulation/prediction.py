@@ -36,9 +36,9 @@ class Prediction:
 
     def mark_diverged(self, at: slice) -> None:
         """Replace what is not finite by infinity: scores skip NaN, but not infinity."""
-        lost = ~np.isfinite(self.nu[at]).all(axis=1)
+        diverged = ~np.isfinite(self.nu[at]).all(axis=1)
         for values in (self.eta, self.nu, self.nu_dot):
-            values[at][lost] = np.inf
+            values[at][diverged] = np.inf
 
 
 @dataclass(frozen=True, eq=False)

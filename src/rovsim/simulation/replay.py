@@ -171,11 +171,11 @@ def simulate(
     drive = drive_by_log(model, motion, grid, settings.commands)
     if disturbed is not None:
         drive = drive.pushed(disturbed @ model.M.T)
-    batch, known = Batch([model], motion.site), find_measured(motion.measured)
-    begins = propagate_unmeasured_velocities(
-        batch, [drive], Starts(state, first, steps, memory), grid.time, known
+    batch, measured = Batch([model], motion.site), find_measured(motion.measured)
+    full_starts = propagate_unmeasured_velocities(
+        batch, [drive], Starts(state, first, steps, memory), grid.time, measured
     )
-    return batch.trajectories([drive], begins, grid.time, grid.stride)[0]
+    return batch.trajectories([drive], full_starts, grid.time, grid.stride)[0]
 
 
 def _predict_samples(
@@ -184,11 +184,11 @@ def _predict_samples(
     """Predict at the samples of a uniform clock, through the filter of the measurement."""
     first = cases[0].motion
     signals = how.signals.suited(first)
-    within = embed(first, spans, round(signals.reach / time_step(first.time)))
-    paths = [path for case in cases for path in _report_samples(case, within, how.replay)]
-    motions = [case.motion for case in cases for _ in within]
-    derived = iter(zip(paths, derive(paths, within * len(cases), motions, signals), strict=True))
-    return [_gather(len(first.time), within, islice(derived, len(within))) for _ in cases]
+    windows = embed(first, spans, round(signals.reach / time_step(first.time)))
+    paths = [path for case in cases for path in _report_samples(case, windows, how.replay)]
+    motions = [case.motion for case in cases for _ in windows]
+    derived = iter(zip(paths, derive(paths, windows * len(cases), motions, signals), strict=True))
+    return [_gather(len(first.time), windows, islice(derived, len(windows))) for _ in cases]
 
 
 def _report_samples(
@@ -200,10 +200,10 @@ def _report_samples(
     state, period = true.state, time_step(motion.time)
     starts = [Anchor(w.first * stride, w.last + w.after - w.first, state[w.first]) for w in within]
     stages = stage_outputs(model, motion)[1:, :, :14]
-    simulated = simulate(model, true, starts, settings, case.disturbed)
+    paths = simulate(model, true, starts, settings, case.disturbed)
     return [
         model.mocap_view.report(path, period, stages[:, w.first])[:, :7]
-        for w, path in zip(within, simulated, strict=True)
+        for w, path in zip(within, paths, strict=True)
     ]
 
 
@@ -211,23 +211,27 @@ def _gather(
     count: int, within: Sequence[Embedded], derived: Iterable[tuple[Array, Array]]
 ) -> Prediction:
     """Put the poses of all windows and their derivatives into one prediction at `count` samples."""
-    found = Prediction.empty(count)
+    prediction = Prediction.empty(count)
     for w, (path, (nu, nu_dot)) in zip(within, derived, strict=True):
-        at, own = slice(w.first + 1, w.last + 1), slice(1, w.last - w.first + 1)
-        found.eta[at], found.nu[at], found.nu_dot[at] = path[own], nu[own], nu_dot[own]
-        found.mark_diverged(at)
-    return found
+        at, rows = slice(w.first + 1, w.last + 1), slice(1, w.last - w.first + 1)
+        prediction.eta[at], prediction.nu[at], prediction.nu_dot[at] = (
+            path[rows],
+            nu[rows],
+            nu_dot[rows],
+        )
+        prediction.mark_diverged(at)
+    return prediction
 
 
 def _predict_bins(case: ReplayCase, spans: Spans, settings: ReplaySettings) -> Prediction:
     """Predict means over the measured bins, from a trajectory on finer steps, without a filter."""
     model, motion, disturbed = case
-    found = Prediction.empty(len(motion.time))
+    prediction = Prediction.empty(len(motion.time))
     true, grid = undo_mocap_view(model, motion), StepGrid.over(motion, settings.step)
     outputs, view = stage_outputs(model, motion)[1:], model.mocap_view
-    bins, ends = np.append(motion.time, motion.end), len(grid.edges) - 1
-    first = [min(round((bins[a] - bins[0]) / grid.h), ends - 1) for a, _ in spans]
-    last = [min(int(np.ceil((bins[b] - bins[0]) / grid.h)), ends) for _, b in spans]
+    bins, total = np.append(motion.time, motion.end), len(grid.edges) - 1
+    first = [min(round((bins[a] - bins[0]) / grid.h), total - 1) for a, _ in spans]
+    last = [min(int(np.ceil((bins[b] - bins[0]) / grid.h)), total) for _, b in spans]
     starts = [
         Anchor(k, max(e - k, 1), interpolate_state(true, grid.edges[k]))
         for k, e in zip(first, last, strict=True)
@@ -236,11 +240,11 @@ def _predict_bins(case: ReplayCase, spans: Spans, settings: ReplaySettings) -> P
         spans, starts, simulate(model, true, starts, settings, disturbed), strict=True
     ):
         fine = grid.edges[k : k + count + 1]
-        begin = interpolate(motion.time, outputs, grid.edges[k])
-        shown = view.report(path, grid.h, begin, straight=True)
-        means = bin_means(fine, shown, np.clip(bins[a : b + 1], fine[0], fine[-1]))
-        found.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
-        found.nu[a:b] = means[:, 7:]
-        found.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])
-        found.mark_diverged(slice(a, b))
-    return found
+        stage_start = interpolate(motion.time, outputs, grid.edges[k])
+        reported = view.report(path, grid.h, stage_start, straight=True)
+        means = bin_means(fine, reported, np.clip(bins[a : b + 1], fine[0], fine[-1]))
+        prediction.eta[a:b] = np.hstack([means[:, :3], normalized(means[:, 3:7])])
+        prediction.nu[a:b] = means[:, 7:]
+        prediction.nu_dot[a:b] = backward_difference(means[:, 7:], motion.time[a:b])
+        prediction.mark_diverged(slice(a, b))
+    return prediction

@@ -64,8 +64,8 @@ def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples
     """
     motion = undo_mocap_view(model, motion)
     make = _of_bins if motion.binned else _of_samples
-    found = make(model, motion, how)
-    return replace(found, a_res=blank(motion.measured, found.a_res, 0.0))
+    samples = make(model, motion, how)
+    return replace(samples, a_res=blank(motion.measured, samples.a_res, 0.0))
 
 
 def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
@@ -73,25 +73,25 @@ def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Sample
     drive = drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)
     smoothing, period = how.signals.suited(motion).filter, time_step(motion.time)
-    kept = [np.arange(a, b) for a, b in motion.segments()]
-    like = np.concatenate(
-        [smoothing.smoothed(a_sim[k], period) for k in kept] or [np.empty((0, 6))]
+    stretches = [np.arange(a, b) for a, b in motion.segments()]
+    filtered = np.concatenate(
+        [smoothing.smoothed(a_sim[k], period) for k in stretches] or [np.empty((0, 6))]
     )
-    index = np.concatenate([*kept, np.arange(0)])
+    index = np.concatenate([*stretches, np.arange(0)])
     return Samples(
         index,
         motion.nu[index],
         motion.eta[index, 3:],
         drive.wrench[index],
         a_sim[index],
-        motion.nu_dot[index] - like,
+        motion.nu_dot[index] - filtered,
     )
 
 
 def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
     """Compare at bins: both accelerations are backward differences of the means of two bins."""
-    fits = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
-    index, drive = 1 + np.flatnonzero(fits), drive_as_measured(model, motion, how.replay)
+    usable = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
+    index, drive = 1 + np.flatnonzero(usable), drive_as_measured(model, motion, how.replay)
     a_sim = accelerate_as_measured(model, motion, drive)[index]
     a_real_like = _differences_of_bins(model, motion, how.replay, index)
     return Samples(
@@ -120,15 +120,15 @@ def _differences_of_bins(
     """
     grid, edges = StepGrid.over(motion, settings.step), np.append(motion.time, motion.end)
     nearest = nearest_steps(motion, grid)
-    begins, ends = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
+    firsts, lasts = nearest[index - 1], np.maximum(nearest[index + 1], nearest[index - 1] + 1)
     starts = [
         Anchor(int(b), int(e - b), interpolate_state(motion, grid.edges[b]))
-        for b, e in zip(begins, ends, strict=True)
+        for b, e in zip(firsts, lasts, strict=True)
     ]
-    found = np.empty((len(index), 6))
+    differences = np.empty((len(index), 6))
     paths = simulate(model, motion, starts, settings)
-    for row, (k, b, path) in enumerate(zip(index, begins, paths, strict=True)):
+    for row, (k, b, path) in enumerate(zip(index, firsts, paths, strict=True)):
         fine = grid.edges[b : b + len(path)]
-        two = bin_means(fine, path[:, 7:], np.clip(edges[k - 1 : k + 2], fine[0], fine[-1]))
-        found[row] = backward_difference(two, motion.time[k - 1 : k + 1])[1]
-    return found
+        means = bin_means(fine, path[:, 7:], np.clip(edges[k - 1 : k + 2], fine[0], fine[-1]))
+        differences[row] = backward_difference(means, motion.time[k - 1 : k + 1])[1]
+    return differences

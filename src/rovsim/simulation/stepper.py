@@ -102,13 +102,13 @@ class Stepper:
     def _give(self, command: Array) -> None:
         """Queue a command behind those that have not yet taken effect, and drop replaced ones."""
         arrival = self.model.thrust_path.effective_time(np.array([self.time]))
-        over = int(latest(self._arrival, self.time))
-        self._arrival = np.append(self._arrival[over:], arrival)
-        self._value = np.vstack([self._value[over:], command])
+        current = int(latest(self._arrival, self.time))
+        self._arrival = np.append(self._arrival[current:], arrival)
+        self._value = np.vstack([self._value[current:], command])
 
     def _refuse(self, state: Array, command: Array, dt: float) -> None:
-        fits = state.shape == (13,) and command.shape == (self.columns,)
-        if fits and 0.0 < dt < inf and np.isfinite(command).all():
+        shapes_fit = state.shape == (13,) and command.shape == (self.columns,)
+        if shapes_fit and 0.0 < dt < inf and np.isfinite(command).all():
             return
         raise BadInput(
             f"state {state.shape}, command {command.shape}, dt {dt}",

@@ -20,8 +20,8 @@ def sharpen(model: Model, motion: Motion) -> Motion:
     """
     if not model.mocap_view.low_pass.time_constants:
         return motion
-    seen = stage_outputs(model, motion)[0]
-    return _of_bins(motion, seen) if motion.binned else _of_samples(motion, seen)
+    channels = stage_outputs(model, motion)[0]
+    return _of_bins(motion, channels) if motion.binned else _of_samples(motion, channels)
 
 
 def stage_outputs(model: Model, motion: Motion) -> Array:
@@ -35,13 +35,13 @@ def stage_outputs(model: Model, motion: Motion) -> Array:
     low_pass = model.mocap_view.low_pass
     rates = (motion.state_nu,) if motion.binned else (motion.nu, motion.nu_dot)
     channels = in_world(motion.eta, *rates)
-    found = np.full((len(low_pass.time_constants) + 1, *channels.shape), np.nan)
+    outputs = np.full((len(low_pass.time_constants) + 1, *channels.shape), np.nan)
     for a, b in find_stretches(np.isfinite(channels).all(axis=1)):
         if motion.binned:
-            found[:, a:b] = _stages_of_bins(low_pass, channels[a:b], motion.time[a:b])
+            outputs[:, a:b] = _stages_of_bins(low_pass, channels[a:b], motion.time[a:b])
         else:
-            found[:, a:b] = low_pass.stages(channels[a:b], time_step(motion.time))
-    return found
+            outputs[:, a:b] = low_pass.stages(channels[a:b], time_step(motion.time))
+    return outputs
 
 
 def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
@@ -52,8 +52,8 @@ def _stages_of_bins(low_pass: LowPass, channels: Array, time: Array) -> Array:
     eta, first = channels[:, :7], channels[:, 7:]
     second = _differentiate(first, time)
     orders = np.stack([eta, first, second, _differentiate(second, time)])
-    found = low_pass.stages_of_derivatives(orders)
-    return np.concatenate([found[:, 0], found[:, 1]], axis=-1)
+    stages = low_pass.stages_of_derivatives(orders)
+    return np.concatenate([stages[:, 0], stages[:, 1]], axis=-1)
 
 
 def _differentiate(values: Array, time: Array) -> Array:
@@ -63,9 +63,9 @@ def _differentiate(values: Array, time: Array) -> Array:
 
 def _of_samples(motion: Motion, seen: Array) -> Motion:
     """Replace a sampled motion by the channels `seen` (n, 21), where these are known."""
-    known = np.isfinite(seen).all(axis=1)[:, None]
-    old = (motion.eta, motion.nu, motion.nu_dot)
-    eta, nu, nu_dot = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
+    finite = np.isfinite(seen).all(axis=1)[:, None]
+    measured = (motion.eta, motion.nu, motion.nu_dot)
+    eta, nu, nu_dot = (np.where(finite, x, y) for x, y in zip(in_body(seen), measured, strict=True))
     return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=nu)
 
 
@@ -74,10 +74,10 @@ def _of_bins(motion: Motion, seen: Array) -> Motion:
 
     The mean velocity of a bin changes by the average of the changes at its two ends.
     """
-    known = np.isfinite(seen).all(axis=1)[:, None]
-    old = (motion.eta, motion.state_nu)
-    eta, state_nu = (np.where(known, x, y) for x, y in zip(in_body(seen), old, strict=True))
-    change = np.where(known, state_nu - motion.state_nu, 0.0)
+    finite = np.isfinite(seen).all(axis=1)[:, None]
+    measured = (motion.eta, motion.state_nu)
+    eta, state_nu = (np.where(finite, x, y) for x, y in zip(in_body(seen), measured, strict=True))
+    change = np.where(finite, state_nu - motion.state_nu, 0.0)
     nu = motion.nu + 0.5 * (change + np.concatenate([change[1:], change[-1:]]))
     nu_dot = backward_difference(nu, motion.time)
     return replace(motion, eta=eta, nu=nu, nu_dot=nu_dot, state_nu=state_nu)

@@ -27,15 +27,15 @@ def propagate_unmeasured_velocities(
         time: (k+1,) s at which the integration steps begin and end.
         measured: boolean (6,): axes whose velocity was measured.
     """
-    unread = ~measured & (batch.free[7:] > 0.0)
-    if not unread.any():
+    unmeasured = ~measured & (batch.free[7:] > 0.0)
+    if not unmeasured.any():
         return starts
     state = starts.state.copy()
     for k, steps in enumerate(np.diff(starts.first)):
-        one = slice(k, k + 1)
-        memory = starts.memory[:, one] if starts.memory.size else starts.memory
-        until = Starts(state[:, one], starts.first[one], np.array([steps]), memory)
-        ends = [of_model[0][-1, 7:] for of_model in batch.trajectories(drives, until, time, steps)]
-        gone = unread & np.isfinite(ends)  # what diverged starts anew
-        state[:, k + 1, 7:] = np.where(gone, ends, state[:, k + 1, 7:])
+        row = slice(k, k + 1)
+        memory = starts.memory[:, row] if starts.memory.size else starts.memory
+        segment = Starts(state[:, row], starts.first[row], np.array([steps]), memory)
+        ends = [path[0][-1, 7:] for path in batch.trajectories(drives, segment, time, steps)]
+        replaced = unmeasured & np.isfinite(ends)  # what diverged starts anew
+        state[:, k + 1, 7:] = np.where(replaced, ends, state[:, k + 1, 7:])
     return replace(starts, state=state)

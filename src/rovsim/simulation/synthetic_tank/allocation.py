@@ -25,18 +25,18 @@ class Allocation:
     def __init__(self, vehicle: Vehicle) -> None:
         self.thrusters, self.limit = vehicle.thrusters, vehicle.thrusters.command_limit
         self.units = vehicle.thrusters.units
-        place = np.array([u.position for u in self.units]).reshape(-1, 3)
-        pull = np.array([u.direction for u in self.units]).reshape(-1, 3)
-        self.arms = place / max(np.abs(place).max(initial=0.0), 1e-9)
-        self.pushes = np.hstack([pull, _largest_one(np.cross(place, pull))])
-        levers = [np.cross(one.position, one.normal) for one in vehicle.surfaces]
+        position = np.array([u.position for u in self.units]).reshape(-1, 3)
+        direction = np.array([u.direction for u in self.units]).reshape(-1, 3)
+        self.arms = position / max(np.abs(position).max(initial=0.0), 1e-9)
+        self.pushes = np.hstack([direction, _largest_one(np.cross(position, direction))])
+        levers = [np.cross(surface.position, surface.normal) for surface in vehicle.surfaces]
         self.levers = _largest_one(np.array(levers).reshape(-1, 3))
 
     @property
     def sideways(self) -> bool:
         """Whether a thruster can push sideways."""
-        turning = any(unit.azimuth for unit in self.units)
-        return turning or bool(np.abs(self.pushes[:, 1]).max(initial=0.0) > 0.1)
+        has_azimuth = any(unit.azimuth for unit in self.units)
+        return has_azimuth or bool(np.abs(self.pushes[:, 1]).max(initial=0.0) > 0.1)
 
     def command(self, demand: Array) -> Array:
         """Allocate a demand (6,) from surge to yaw, each axis in [-1, 1].
@@ -47,8 +47,8 @@ class Allocation:
         """
         columns: list[float] = []
         for k, throttle in enumerate((self._shares @ demand).tolist()):
-            own = self._turned(k, demand) if self.units[k].azimuth else [throttle]
-            columns += [min(max(own[0], -self.limit), self.limit), *own[1:]]
+            values = self._turned(k, demand) if self.units[k].azimuth else [throttle]
+            columns += [min(max(values[0], -self.limit), self.limit), *values[1:]]
         angles = FULL_ANGLE * np.clip(self.levers @ demand[3:], -1.0, 1.0)
         return np.array([*columns, *angles])
 
@@ -60,10 +60,10 @@ class Allocation:
     def _turned(self, k: int, demand: Array) -> list[float]:
         """Command and angle, rad, of azimuth thruster k, along the force demanded at its place."""
         x, y, _ = self.arms[k]
-        ahead, aside = demand[0] - demand[5] * y, demand[1] + demand[5] * x
+        ahead, across = demand[0] - demand[5] * y, demand[1] + demand[5] * x
         zero = np.arctan2(self.units[k].direction[1], self.units[k].direction[0])
-        angle = np.arctan2(aside, ahead) - zero
-        return [float(np.hypot(ahead, aside)), float(short_way(angle))]
+        angle = np.arctan2(across, ahead) - zero
+        return [float(np.hypot(ahead, across)), float(short_way(angle))]
 
 
 def _largest_one(levers: Array) -> Array:

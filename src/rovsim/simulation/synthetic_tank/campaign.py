@@ -52,8 +52,8 @@ def true_model(
         BadInput: a hidden effect that the catalogue does not know, or values it cannot have.
     """
     vehicle = load_vehicle(settings.vehicle)
-    known = catalogue.on(vehicle)
-    hidden = build_effects(settings.effects, known)
+    effects = catalogue.on(vehicle)
+    hidden = build_effects(settings.effects, effects)
     return Model("truth", vehicle, (*vehicle.effects(), *hidden, *unlisted))
 
 
@@ -106,8 +106,8 @@ def _move(new: Path, out: Path) -> None:
     stale = _list_written(out) - {path.name for path in new.iterdir()}
     for name in (CAMPAIGN, *sorted(stale)):
         (out / name).unlink(missing_ok=True)
-    turn = {SEALED: 0, CAMPAIGN: 2}
-    for path in sorted(new.iterdir(), key=lambda path: (turn.get(path.name, 1), path.name)):
+    order = {SEALED: 0, CAMPAIGN: 2}
+    for path in sorted(new.iterdir(), key=lambda path: (order.get(path.name, 1), path.name)):
         os.replace(path, out / path.name)
 
 
@@ -118,10 +118,10 @@ def _list_written(out: Path) -> set[str]:
         describe(settings)  # no run leaves the folder
     except (RovsimError, OSError):
         return set()
-    each = (
+    recordings = (
         name for run in settings.runs for name in (motion_file(settings, run), commands_file(run))
     )
-    return {CAMPAIGN, SEALED, VEHICLE, *each}
+    return {CAMPAIGN, SEALED, VEHICLE, *recordings}
 
 
 def _refuse_other_files(out: Path) -> None:
@@ -143,18 +143,18 @@ def _record_all(
     progress: Callable[[int, int], None],
 ) -> None:
     """Fly all runs, and write recordings, `campaign.yaml` and `truth.yaml` to `folder`."""
-    runs, hidden = settings.runs, len(settings.effects)
+    runs, count = settings.runs, len(settings.effects)
     seeds = np.random.SeedSequence(settings.seed).spawn(len(runs))
     for k, (run, seed) in enumerate(zip(runs, seeds, strict=True)):
         progress(k, len(runs))
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
-    campaign, truth = describe(settings), seal(settings, model.added[:hidden], unlisted)
+    campaign, truth = describe(settings), seal(settings, model.added[:count], unlisted)
     write_yaml(folder / CAMPAIGN, campaign.model_dump(mode="json", exclude_unset=True))
     if vehicle := own_vehicle(settings):
         copy_file(Path(vehicle), folder / VEHICLE)
-    beyond = None if truth.outside else {"outside"}
-    write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=beyond))
+    exclude = None if truth.outside else {"outside"}
+    write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=exclude))
 
 
 def _record(
@@ -169,8 +169,8 @@ def _record(
         readings.extend(draw_readings(settings.sensors, total, step, random))
         return needed_steps(readings, total)
 
-    sent = _read_sent(settings, run) if run.fly else None
-    truth = fly_run(model, settings, run.control, tank, random, run.release, sent, choose)
+    sent_log = _read_sent(settings, run) if run.fly else None
+    truth = fly_run(model, settings, run.control, tank, random, run.release, sent_log, choose)
     with text_appearing(folder / motion_file(settings, run)) as file:
         if settings.sensors:
             gravity = model.vehicle.fluid.gravity

@@ -114,11 +114,11 @@ def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:
 
 def _describe_sensors(sensors: Mapping[SensorKind, Sensor]) -> dict[str, Any]:
     """Section `mocap` of `campaign.yaml` for recordings of other sensors than cameras."""
-    late = {kind: sensor.delay for kind, sensor in sensors.items() if sensor.delay}
-    places = {PLACES[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
-    where = places | ({"delay_s": late} if late else {})
+    delays = {kind: sensor.delay for kind, sensor in sensors.items() if sensor.delay}
+    positions = {PLACES[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
+    extra = positions | ({"delay_s": delays} if delays else {})
     axes = {"world_axes": "ned", "body_axes": "frd"}
-    return {"format": "csv", **axes, "velocity": "instant"} | ({"sensors": where} if where else {})
+    return {"format": "csv", **axes, "velocity": "instant"} | ({"sensors": extra} if extra else {})
 
 
 def seal(

@@ -64,10 +64,10 @@ def _measure(
         Positions (n, 3), m, and quaternions (n, 4), in the motion capture's axes: z-up and FLU.
     """
     n, flip, eta = len(eta), np.concatenate([[1.0], HALF_TURN_X]), view.poses(eta)
-    turn, shift = _draw_colour(n, camera, random)
-    turn += camera.attitude_noise * random.normal(size=(n, 3))
+    rotation, shift = _draw_colour(n, camera, random)
+    rotation += camera.attitude_noise * random.normal(size=(n, 3))
     shift += camera.position_noise * random.normal(size=(n, 3))
-    attitude, position = multiply(eta[:, 3:7], exp(turn)), eta[:, :3] + shift
+    attitude, position = multiply(eta[:, 3:7], exp(rotation)), eta[:, :3] + shift
     reported = view.smooth(np.hstack([position, attitude]), 1.0 / camera.rate)
     position, attitude = reported[:, :3], reported[:, 3:]
     for k in np.flatnonzero(random.random(n) < camera.outliers_per_minute / (60 * camera.rate)):
@@ -80,9 +80,9 @@ def _measure(
 
 def _draw_colour(n: int, camera: Camera, random: np.random.Generator) -> tuple[Array, Array]:
     """Draw Gauss-Markov errors of n frames: rotations (n, 3) rad and shifts (n, 3) m."""
-    (own,) = random.spawn(1)  # a generator of its own: all other draws stay as they are without it
-    lasting = gauss_markov.draw(n, 1.0 / (camera.rate * camera.colour_time), own)
-    return camera.colour_attitude * lasting[:, 3:], camera.colour_noise * lasting[:, :3]
+    (rng,) = random.spawn(1)  # a generator of its own: all other draws stay as they are without it
+    coloured = gauss_markov.draw(n, 1.0 / (camera.rate * camera.colour_time), rng)
+    return camera.colour_attitude * coloured[:, 3:], camera.colour_noise * coloured[:, :3]
 
 
 def _format_rows(position: Array, attitude: Array, random: np.random.Generator) -> Array:
@@ -133,11 +133,11 @@ def export_commands(
     kept = random.random(len(time)) >= log.missing
     kept[0] = True
     value, names = commands.value, list(AXES)
-    shapes = ["%.4f"] * value.shape[1]
+    formats = ["%.4f"] * value.shape[1]
     if commands.kind == "thruster":
         value = np.where(vehicle.angles, value, to_pulses(value))
         names = list(vehicle.command_columns)
-        shapes = ["%.4f" if angle else "%d" for angle in vehicle.angles]
+        formats = ["%.4f" if angle else "%d" for angle in vehicle.angles]
     file.write(",".join(["time_s", *names]) + "\n")
     table = np.column_stack([time, value])[kept]
-    np.savetxt(file, table, fmt=",".join(["%.4f", *shapes]))
+    np.savetxt(file, table, fmt=",".join(["%.4f", *formats]))

@@ -78,13 +78,13 @@ class Pilot:
     def steer(self, tick: int, state: Array) -> Array:
         """Decide on the demand (6,) of each axis at a tick, when the state is `state` (13,)."""
         self.seen.append(state.copy())
-        seen = self.seen[0]
+        delayed = self.seen[0]
         goal = self.set_points[int(tick * self.dt / SET_POINT_TIME)]
-        drift = self.drift + INTEGRAL_GAIN * self.dt * (goal - seen[:3])
+        drift = self.drift + INTEGRAL_GAIN * self.dt * (goal - delayed[:3])
         self.drift = np.minimum(np.maximum(drift, -0.3), 0.3)  # np.clip takes longer
-        towards = POSITION_GAIN * (goal - seen[:3]) + self.drift
+        push = POSITION_GAIN * (goal - delayed[:3]) + self.drift
         demand = self.wander[tick].copy()
-        demand[:3] += unrotate(seen[3:7], towards) - SPEED_GAIN * seen[7:10]
+        demand[:3] += unrotate(delayed[3:7], push) - SPEED_GAIN * delayed[7:10]
         demand[3:5] = HOLD_ANGLE * (demand[3:5] - to_euler(state[3:7])[:2])
         demand[3:5] -= HOLD_RATE * state[10:12]
         return np.minimum(np.maximum(demand, -LARGEST), LARGEST)
@@ -122,13 +122,13 @@ class Helmsman(Pilot):
     def steer(self, tick: int, state: Array) -> Array:
         """Decide on the demand (6,) of each axis at a tick, when the state is `state` (13,)."""
         self.seen.append(state.copy())
-        seen = self.seen[0]
-        way = self.set_points[int(tick * self.dt / COURSE_TIME)] - seen[:3]
-        _, pitch, yaw = to_euler(seen[3:7])
-        off = short_way(np.arctan2(way[1], way[0]) - yaw)
+        delayed = self.seen[0]
+        offset = self.set_points[int(tick * self.dt / COURSE_TIME)] - delayed[:3]
+        _, pitch, yaw = to_euler(delayed[3:7])
+        heading_error = short_way(np.arctan2(offset[1], offset[0]) - yaw)
         demand = STRAY * self.wander[tick]
         demand[0] += AHEAD
-        demand[5] += TURN * off - TURN_RATE * seen[12]
-        dive = np.clip(-DIVE * way[2], -DIVE_ANGLE, DIVE_ANGLE)
-        demand[4] += PITCH * (dive - pitch) - PITCH_RATE * seen[11]
+        demand[5] += TURN * heading_error - TURN_RATE * delayed[12]
+        dive = np.clip(-DIVE * offset[2], -DIVE_ANGLE, DIVE_ANGLE)
+        demand[4] += PITCH * (dive - pitch) - PITCH_RATE * delayed[11]
         return np.clip(demand, -1.0, 1.0)

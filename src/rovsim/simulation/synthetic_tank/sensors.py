@@ -41,12 +41,12 @@ def draw_readings(
     sensors: Mapping[SensorKind, Sensor], total: int, step: float, random: np.random.Generator
 ) -> list[Reading]:
     """Draw the times and the noise of all readings in a run of `total` steps of `step` s."""
-    found = []
+    readings = []
     for kind, sensor in sensors.items():
         steps = _draw_steps(sensor, total, step, random)
         shape = (len(steps), len(COLUMNS[kind]))
-        found.append(Reading(kind, sensor, steps, sensor.noise * random.normal(size=shape)))
-    return found
+        readings.append(Reading(kind, sensor, steps, sensor.noise * random.normal(size=shape)))
+    return readings
 
 
 def _draw_steps(sensor: Sensor, total: int, step: float, random: np.random.Generator) -> Array:
@@ -61,8 +61,8 @@ def needed_steps(readings: Sequence[Reading], total: int) -> Array:
 
     Neighbouring steps are included, because an acceleration is computed from three states.
     """
-    each = [reading.steps + k for reading in readings for k in (-1, 0, 1)]
-    return np.unique(np.clip(np.concatenate(each), 0, total))
+    indices = [reading.steps + k for reading in readings for k in (-1, 0, 1)]
+    return np.unique(np.clip(np.concatenate(indices), 0, total))
 
 
 def export_channels(
@@ -78,32 +78,32 @@ def export_channels(
         file: what is written to.
     """
     names = [name for reading in readings for name in COLUMNS[reading.kind]]
-    places = [names.index(COLUMNS[reading.kind][0]) for reading in readings]
+    columns = [names.index(COLUMNS[reading.kind][0]) for reading in readings]
     values = [_measure(reading, truth, surface, gravity) for reading in readings]
     time = [reading.steps * truth.step + reading.sensor.delay for reading in readings]
-    which = np.repeat(np.arange(len(readings)), [len(one) for one in time])
-    row = np.concatenate([np.arange(len(one)) for one in time])
+    sensors = np.repeat(np.arange(len(readings)), [len(times) for times in time])
+    row = np.concatenate([np.arange(len(times)) for times in time])
     file.write(",".join(["time_s", *names]) + "\n")
-    for k in np.lexsort([which, np.concatenate(time)]):
-        sensor, line = which[k], row[k]
+    for k in np.lexsort([sensors, np.concatenate(time)]):
+        sensor, line = sensors[k], row[k]
         cells = [f"{x:.6f}" for x in values[sensor][line]]
-        after = len(names) - places[sensor] - len(cells)
-        filled = [*[""] * places[sensor], *cells, *[""] * after]
+        blanks = len(names) - columns[sensor] - len(cells)
+        filled = [*[""] * columns[sensor], *cells, *[""] * blanks]
         file.write(",".join([f"{time[sensor][line]:.4f}", *filled]) + "\n")
 
 
 def _measure(reading: Reading, truth: TrueRun, surface: float, gravity: float) -> Array:
     """Values (m, c) that a sensor reports, with its noise, in NED or FRD and SI units."""
-    state, place = truth.at(reading.steps), np.array(reading.sensor.at)
+    state, position = truth.at(reading.steps), np.array(reading.sensor.at)
     q, nu = state[:, 3:7], state[:, 7:]
     if reading.kind == "attitude":
         return to_euler(multiply(q, exp(reading.noise)))
     value = {
         "position": lambda: state[:, :3],
-        "depth": lambda: state[:, 2:3] + rotate(q, place)[:, 2:] - surface,
-        "velocity": lambda: nu[:, :3] + np.cross(nu[:, 3:], place),
+        "depth": lambda: state[:, 2:3] + rotate(q, position)[:, 2:] - surface,
+        "velocity": lambda: nu[:, :3] + np.cross(nu[:, 3:], position),
         "rates": lambda: nu[:, 3:],
-        "specific_force": lambda: _specific_force(truth, reading.steps, place, gravity),
+        "specific_force": lambda: _specific_force(truth, reading.steps, position, gravity),
     }[reading.kind]()
     return np.asarray(value + reading.noise)
 
@@ -118,10 +118,10 @@ def _specific_force(truth: TrueRun, steps: Array, place: Array, gravity: float) 
         gravity: m/s2.
     """
     state = truth.at(steps)
-    before, after = np.maximum(steps - 1, 0), np.minimum(steps + 1, truth.total)
-    seconds = (after - before)[:, None] * truth.step
-    nu, nu_dot = state[:, 7:], (truth.at(after) - truth.at(before))[:, 7:] / seconds
+    earlier, later = np.maximum(steps - 1, 0), np.minimum(steps + 1, truth.total)
+    seconds = (later - earlier)[:, None] * truth.step
+    nu, nu_dot = state[:, 7:], (truth.at(later) - truth.at(earlier))[:, 7:] / seconds
     spin, down = nu[:, 3:], np.array([0.0, 0.0, gravity])
-    moved = nu_dot[:, :3] + np.cross(spin, nu[:, :3])
-    turned = np.cross(nu_dot[:, 3:], place) + np.cross(spin, np.cross(spin, place))
-    return np.asarray(moved + turned - unrotate(state[:, 3:7], down))
+    linear = nu_dot[:, :3] + np.cross(spin, nu[:, :3])
+    rotational = np.cross(nu_dot[:, 3:], place) + np.cross(spin, np.cross(spin, place))
+    return np.asarray(linear + rotational - unrotate(state[:, 3:7], down))

@@ -47,15 +47,15 @@ class SentLog:
             tank: walls (3, 2) in NED, m.
             random: generator.
         """
-        place = tank.mean(axis=1) if self.place is None else self.place
+        position = tank.mean(axis=1) if self.place is None else self.place
         heading = self.heading + TURNED * random.normal()
-        return rest_state(place + PLACED * random.normal(size=3), heading)
+        return rest_state(position + PLACED * random.normal(size=3), heading)
 
 
 def described_by(path: Path) -> Path | None:
     """Path of the `.json` with the plan of a flight beside its log; None where there is none."""
-    beside = path.with_suffix(".json")
-    return beside if beside.is_file() else None
+    plan = path.with_suffix(".json")
+    return plan if plan.is_file() else None
 
 
 def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
@@ -70,26 +70,26 @@ def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
         BadInput: the log has another format, is too short or too long, or is not the one that the
             plan beside it describes.
     """
-    found, _ = tidy_commands(read_commands(path, log), path)
-    commands = replace(found, time=found.time - found.time[0])
+    log_lines, _ = tidy_commands(read_commands(path, log), path)
+    commands = replace(log_lines, time=log_lines.time - log_lines.time[0])
     step = float(np.median(np.diff(commands.time))) if len(commands.time) > 1 else 0.0
-    lasts = float(commands.time[-1]) + step
-    if not SHORTEST <= lasts <= LONGEST:
+    duration = float(commands.time[-1]) + step
+    if not SHORTEST <= duration <= LONGEST:
         raise BadInput(
-            f"{len(found.time)} lines of commands, which last {lasts:.4g} s",
+            f"{len(log_lines.time)} lines of commands, which last {duration:.4g} s",
             where=path,
             expected=f"a log of {SHORTEST:g} to {LONGEST:g} s",
             remedy="Give the experiment.csv that `rovsim design` wrote.",
         )
-    beside = described_by(path)
-    if beside is None:
-        return SentLog(commands, lasts)
-    flight = Experiment.read(beside)
-    _require_the_same(path, beside, flight)
+    plan = described_by(path)
+    if plan is None:
+        return SentLog(commands, duration)
+    flight = Experiment.read(plan)
+    _require_the_same(path, plan, flight)
     signs = HALF_TURN_X if up else np.ones(3)
     start = flight.start
-    place = np.array([start.x_m, start.y_m, start.z_m]) * signs
-    return SentLog(commands, lasts, place, float(signs[2] * start.yaw_rad))
+    position = np.array([start.x_m, start.y_m, start.z_m]) * signs
+    return SentLog(commands, duration, position, float(signs[2] * start.yaw_rad))
 
 
 def _require_the_same(path: Path, beside: Path, flight: Experiment) -> None:

@@ -173,8 +173,8 @@ class TankSettings(Section):
     @property
     def steps_per_second(self) -> float:
         """Integration steps per second, so that each frame and each command falls on a step."""
-        given = [Fraction(rate).limit_denominator(1000) for rate in self._rates]
-        rates = [max(rate, Fraction(1, 1000)) for rate in given]
+        fractions = [Fraction(rate).limit_denominator(1000) for rate in self._rates]
+        rates = [max(rate, Fraction(1, 1000)) for rate in fractions]
         shared = Fraction(
             math.lcm(*(rate.numerator for rate in rates)),
             math.gcd(*(rate.denominator for rate in rates)),

@@ -106,7 +106,7 @@ def fly_run(
     if release is not None:
         state = _let_go(state, release) * vehicle.free
     steps = choose(total, h)
-    kept = _Kept(steps, state)
+    record = _Kept(steps, state)
     for k in range(ticks):
         if k % PUSHED == 0:
             pushes = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
@@ -116,12 +116,12 @@ def fly_run(
             command = vehicle.log(np.zeros(6) if release else pilot.steer(k, state))
         rows = slice(k % PUSHED * per_tick, (k % PUSHED + 1) * per_tick)
         vehicle.set_current(currents[k])
-        passed = vehicle.advance(k, command, state, pushes[rows])
-        kept.take(passed)
-        state = passed[-1]
+        path = vehicle.advance(k, command, state, pushes[rows])
+        record.take(path)
+        state = path[-1]
         _stay_inside(state, tank, (k + 1) * tick)
     commands = Commands(vehicle.times, vehicle.commands, vehicle.kind)
-    return TrueRun(steps, kept.state, commands, h, total)
+    return TrueRun(steps, record.state, commands, h, total)
 
 
 class _Kept:
@@ -149,9 +149,9 @@ class _Kept:
 def _let_go(rest: Array, release: Release) -> Array:
     """Displace a state (13,) at rest as a release says."""
     pose = np.array(release.pose)
-    place = rest[:3] + rotate(rest[3:7], pose[:3])
+    position = rest[:3] + rotate(rest[3:7], pose[:3])
     attitude = multiply(rest[3:7], from_euler(*pose[3:]))
-    return np.concatenate([place, attitude, release.velocity])
+    return np.concatenate([position, attitude, release.velocity])
 
 
 class _TrueVehicle:
@@ -200,8 +200,8 @@ class _TrueVehicle:
 
     def log(self, demand: Array) -> Array:
         """Command that is logged for a demand (6,): itself, or the allocated actuator commands."""
-        told = demand if self.kind == "demand" else self.allocation.command(demand)
-        return round_as_logged(told, self.kind, self.model.vehicle)
+        command = demand if self.kind == "demand" else self.allocation.command(demand)
+        return round_as_logged(command, self.kind, self.model.vehicle)
 
     def _stamp(self, t: float) -> float:
         """Time stamp that the log gives to a command given at true time t, s.
@@ -232,10 +232,10 @@ class _TrueVehicle:
         path, t = self.model.thrust_path, k * self.tick
         middle = t + self.h * (0.5 + np.arange(len(pushes)))
         arrival = path.effective_time(self.times[self.begin : k + 1])
-        acting = latest(arrival, middle)
-        held = self.commands[self.begin + acting]
-        self.begin += int(acting[0])
-        static = path.at(Commands(middle, held, self.kind), 0.0, self.duration)
+        line = latest(arrival, middle)
+        lines = self.commands[self.begin + line]
+        self.begin += int(line[0])
+        static = path.at(Commands(middle, lines, self.kind), 0.0, self.duration)
         force, self.lag = path.respond(static.force, self.h, self.lag)
         drive = Drive.by(self.model, replace(static, force=force), self.duration)
         return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)

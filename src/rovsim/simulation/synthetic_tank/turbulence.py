@@ -31,11 +31,11 @@ def draw_turbulence(
     """
     level = np.repeat([settings.force, settings.moment], 3)
     lengths = [min(rows, steps - first) for first in range(0, steps, rows)]
-    again = deepcopy(random)
+    replayed = deepcopy(random)
     for length in lengths:  # how each run begins is drawn last
         random.normal(size=(length, 6))
     a = gauss_markov.decay(h / settings.time_constant)
-    return _pushes(lengths, a, level, again, random.normal(size=6))
+    return _pushes(lengths, a, level, replayed, random.normal(size=6))
 
 
 def _pushes(
@@ -43,9 +43,9 @@ def _pushes(
 ) -> Iterator[Array]:
     """Yield wrenches (length, 6), each continuing the process where the last one ended."""
     for length in lengths:
-        found = gauss_markov.propagate(a, random.normal(size=(length, 6)), begin)
-        begin = found[-1]
-        yield found * level
+        pushes = gauss_markov.propagate(a, random.normal(size=(length, 6)), begin)
+        begin = pushes[-1]
+        yield pushes * level
 
 
 def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generator) -> Array:
@@ -53,8 +53,8 @@ def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generat
 
     Each current has a generator of its own, so that other draws do not depend on it.
     """
-    wandering = [effect for effect in model.effects if isinstance(effect, StochasticCurrent)]
-    found = np.zeros((ticks, 3))
-    for effect, own in zip(wandering, random.spawn(len(wandering)), strict=True):
-        found += effect.draw(ticks, dt, own)
-    return found
+    effects = [effect for effect in model.effects if isinstance(effect, StochasticCurrent)]
+    current = np.zeros((ticks, 3))
+    for effect, generator in zip(effects, random.spawn(len(effects)), strict=True):
+        current += effect.draw(ticks, dt, generator)
+    return current
