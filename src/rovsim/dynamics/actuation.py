@@ -62,8 +62,8 @@ class Thrust:
 
     @property
     def _parts(self) -> dict[str, Array]:
-        named = {one.name: getattr(self, one.name) for one in fields(self)}
-        return {name: part for name, part in named.items() if part is not None}
+        arrays = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: part for name, part in arrays.items() if part is not None}
 
 
 class ThrustPath:
@@ -87,8 +87,8 @@ class ThrustPath:
     @property
     def key(self) -> tuple:
         """Equal for paths with the same thrust at the same commands, but for loops on board."""
-        left = [autopilot.mixer_demand(np.eye(6)).tobytes() for autopilot in self.autopilots]
-        acting = (
+        mixing = [autopilot.mixer_demand(np.eye(6)).tobytes() for autopilot in self.autopilots]
+        effects = (
             *self.timings,
             *self.demand_transforms,
             *self.command_transforms,
@@ -96,8 +96,8 @@ class ThrustPath:
             *self.scalings,
             *self.dynamics,
         )
-        read = (bool(self.readers), *self.channels)
-        return (*read, *left, *((e.id, e.values.tobytes()) for e in acting))
+        reads = (bool(self.readers), *self.channels)
+        return (*reads, *mixing, *((e.id, e.values.tobytes()) for e in effects))
 
     def effective_time(self, time: Array) -> Array:
         """Instants (m,), s, at which commands logged at `time` (m,) take effect."""
@@ -107,8 +107,8 @@ class ThrustPath:
 
     def columns(self, kind: CommandKind) -> int:
         """Number of columns of a logged command of this kind."""
-        own = self.thrusters.count + int(self.thrusters.turning.sum()) + self.surfaces
-        return own if kind == "thruster" else 6
+        count = self.thrusters.count + int(self.thrusters.turning.sum()) + self.surfaces
+        return count if kind == "thruster" else 6
 
     def thruster_commands(self, value: Array, kind: CommandKind) -> Array:
         """Thruster commands (m, n) of logged values (m, c); demands are mixed and clipped.
@@ -127,17 +127,17 @@ class ThrustPath:
 
     def steering(self, value: Array, kind: CommandKind) -> tuple[Array, Array]:
         """Azimuth angles (m, a) and surface angles (m, s), rad; zero if not logged."""
-        turning, count = int(self.thrusters.turning.sum()), len(value)
+        azimuths, count = int(self.thrusters.turning.sum()), len(value)
         if kind != "thruster":
-            return np.zeros((count, turning)), np.zeros((count, self.surfaces))
-        follows = self._throttles[self.thrusters.turning] + 1
-        return value[:, follows], value[:, self.thrusters.count + turning :]
+            return np.zeros((count, azimuths)), np.zeros((count, self.surfaces))
+        angle_columns = self._throttles[self.thrusters.turning] + 1
+        return value[:, angle_columns], value[:, self.thrusters.count + azimuths :]
 
     @cached_property
     def _throttles(self) -> Array:
         """Columns (n,) that hold the commands of the thrusters; an angle follows its thruster."""
-        before = np.cumsum(self.thrusters.turning) - self.thrusters.turning
-        return np.arange(self.thrusters.count) + before
+        angles_before = np.cumsum(self.thrusters.turning) - self.thrusters.turning
+        return np.arange(self.thrusters.count) + angles_before
 
     def _refuse(self, value: Array, kind: CommandKind) -> None:
         expected = self.columns(kind)
@@ -175,11 +175,11 @@ class ThrustPath:
 
     def respond(self, force: Array, h: float, states: list | None) -> tuple[Array, list]:
         """Dynamic mean forces (k, n) of static ones over steps of h s, and the last states."""
-        after: list = []
-        for i, one in enumerate(self.dynamics if self.thrusters.count else ()):
-            force, state = one.respond(force, h, states[i] if states else None)
-            after.append(state)
-        return force, after
+        last_states: list = []
+        for i, effect in enumerate(self.dynamics if self.thrusters.count else ()):
+            force, state = effect.respond(force, h, states[i] if states else None)
+            last_states.append(state)
+        return force, last_states
 
     def over_steps(
         self,
@@ -197,11 +197,11 @@ class ThrustPath:
         start, duration = commands.recording(edges)
         arrival = start + self.effective_time(commands.time - start)  # clocks agree at the start
         lines = replace(commands, time=arrival)
-        some = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
+        chunks = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
         static = Thrust.joined(
             [
                 self.arrived(lines.within(e[0], e[-1]), e, start, duration, between, cuts)
-                for e in some
+                for e in chunks
             ]
         )
         force, _ = self.respond(static.force, float(edges[1] - edges[0]), None)
@@ -236,16 +236,16 @@ class ThrustPath:
             BadInput: the log lacks a channel that an effect reads, or its columns do not fit.
         """
         count = len(lines.time)
-        none, still = np.full((count, 6), np.nan), np.zeros((count, 6))
+        no_demand, no_wrench = np.full((count, 6), np.nan), np.zeros((count, 6))
         if lines.kind == "wrench":
             force = np.zeros((count, self.thrusters.count))
-            return Thrust(force, lines.value, none, read=self._read_out(lines))
+            return Thrust(force, lines.value, no_demand, read=self._read_out(lines))
         command = self.thruster_commands(lines.value, lines.kind)
         force = self.static(command, lines.time - start, duration, _voltage(lines))
-        demand = lines.value if lines.kind == "demand" else none
+        demand = lines.value if lines.kind == "demand" else no_demand
         azimuth, angle = self.steering(lines.value, lines.kind)
-        read = self._read_out(lines, command)
-        return Thrust(force, still, demand, np.cos(azimuth), np.sin(azimuth), angle, read)
+        readings = self._read_out(lines, command)
+        return Thrust(force, no_wrench, demand, np.cos(azimuth), np.sin(azimuth), angle, readings)
 
     def _read_out(self, lines: Commands, command: Array | None = None) -> Array | None:
         """Commands and angles in the order of a thruster log, then channels; None if not read.
@@ -259,8 +259,8 @@ class ThrustPath:
             columns = lines.value
         elif command is not None:
             columns[:, self._throttles] = command
-        beside = [_logged(lines, name)[:, None] for name in self.channels]
-        return np.hstack([columns, *beside])
+        channels = [_logged(lines, name)[:, None] for name in self.channels]
+        return np.hstack([columns, *channels])
 
     def _is_steady(self, lines: Commands) -> bool:
         """Whether the thrust depends on the command alone: not on time, voltage or channels."""

@@ -154,9 +154,9 @@ class Body:
         """
         if self.free.all():
             return np.linalg.inv(self.M)
-        moving, found = np.ix_(self.free, self.free), np.zeros((6, 6))
-        found[moving] = np.linalg.inv(self.M[moving])
-        return found
+        moving, inverse = np.ix_(self.free, self.free), np.zeros((6, 6))
+        inverse[moving] = np.linalg.inv(self.M[moving])
+        return inverse
 
     @property
     def stated(self) -> dict[str, Array]:

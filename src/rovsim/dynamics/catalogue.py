@@ -43,10 +43,10 @@ class Catalogue(Mapping[str, type[Effect]]):
         Raises:
             BadInput: a user's effect fails on this vehicle.
         """
-        there = {name: cls.on(vehicle) for name, cls in self.items()}
-        for name in there.keys() - built_in().keys():
-            try_on(there[name], vehicle)
-        return Catalogue(there, self.files)
+        classes = {name: cls.on(vehicle) for name, cls in self.items()}
+        for name in classes.keys() - built_in().keys():
+            try_on(classes[name], vehicle)
+        return Catalogue(classes, self.files)
 
     def find(self, name: str) -> type[Effect]:
         """The effect with this id.
@@ -70,12 +70,12 @@ def load_catalogue(files: Sequence[Path] = ()) -> Catalogue:
     Raises:
         BadInput: a file or an entry point cannot be used, or has no complete effect.
     """
-    found = dict(built_in())
-    for where, content in _installed():
-        found |= check_effects(content, where, found)
+    classes = dict(built_in())
+    for origin, content in _installed():
+        classes |= check_effects(content, origin, classes)
     for path in files:
-        found |= read_effects(path, found)
-    return Catalogue(found, files)
+        classes |= read_effects(path, classes)
+    return Catalogue(classes, files)
 
 
 @cache
@@ -83,19 +83,19 @@ def built_in() -> Catalogue:
     """The effects of this package: every module of `rovsim.dynamics.effects`."""
     for module in pkgutil.iter_modules(effects.__path__):
         importlib.import_module(f"{effects.__name__}.{module.name}")
-    found: dict[str, type[Effect]] = {}
+    by_id: dict[str, type[Effect]] = {}
     for cls in _concrete(Effect):
         if not cls.__module__.startswith(f"{effects.__name__}."):
             continue
-        if found.get(cls.id, cls) is not cls:
+        if by_id.get(cls.id, cls) is not cls:
             raise BadInput(
-                f"the id '{cls.id}' is that of {found[cls.id].__module__} as well",
+                f"the id '{cls.id}' is that of {by_id[cls.id].__module__} as well",
                 where=cls.__module__,
                 expected="an id that no other effect has",
                 remedy="Give the new effect an id of its own.",
             )
-        found[cls.id] = cls
-    return Catalogue(found)
+        by_id[cls.id] = cls
+    return Catalogue(by_id)
 
 
 def _concrete(cls: type[Effect]) -> Iterable[type[Effect]]:
@@ -114,18 +114,18 @@ def _installed() -> list[tuple[str, Mapping[str, object]]]:
     Raises:
         BadInput: one of them cannot be imported.
     """
-    found: list[tuple[str, Mapping[str, object]]] = []
+    modules: list[tuple[str, Mapping[str, object]]] = []
     for entry in entry_points(group="rovsim.effects"):
-        where = f"entry point {entry.name} = {entry.value}"
+        origin = f"entry point {entry.name} = {entry.value}"
         try:
             loaded = entry.load()
         except Exception as error:
             raise BadInput(
                 f"cannot be imported ({type(error).__name__}: {error})",
-                where=where,
+                where=origin,
                 expected="a class or a module of effects",
                 remedy="Correct that package, or remove it.",
             ) from None
         content = vars(loaded) if isinstance(loaded, ModuleType) else {entry.name: loaded}
-        found.append((where, content))
-    return found
+        modules.append((origin, content))
+    return modules

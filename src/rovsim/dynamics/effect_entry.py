@@ -38,15 +38,15 @@ class EffectEntry(Section):
     @property
     def values(self) -> dict[str, float]:
         """The values by name of the parameter."""
-        return {name: known.value for name, known in self.parameters.items()}
+        return {name: parameter.value for name, parameter in self.parameters.items()}
 
     def plain(self) -> dict[str, Any]:
         """The content for a file: bare numbers where neither std nor unit is known."""
-        known = {
+        parameters = {
             name: v.value if v.std is None and v.unit is None else v.model_dump(exclude_none=True)
             for name, v in self.parameters.items()
         }
-        return {"effect": self.effect, "parameters": known}
+        return {"effect": self.effect, "parameters": parameters}
 
 
 def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
@@ -56,19 +56,19 @@ def build_effect(entry: EffectEntry, catalogue: Catalogue) -> Effect:
         BadInput: an unknown effect or parameter, a value out of range, a value of a discrete
             parameter that is not whole, or another unit.
     """
-    found = catalogue.find(entry.effect)(**entry.values)
-    _refuse_between(found, entry)
-    units = {p.name: p.unit for p in found.parameters}
-    for name, known in entry.parameters.items():
-        if known.unit not in (None, units[name]):
+    effect = catalogue.find(entry.effect)(**entry.values)
+    _refuse_between(effect, entry)
+    units = {p.name: p.unit for p in effect.parameters}
+    for name, value in entry.parameters.items():
+        if value.unit not in (None, units[name]):
             raise BadInput(
-                f"{name} has the unit '{known.unit}'",
+                f"{name} has the unit '{value.unit}'",
                 where=f"effect {entry.effect}",
                 expected=f"'{units[name]}'",
                 remedy="Convert the value, or leave the unit out.",
             )
     std = {name: v.std for name, v in entry.parameters.items() if v.std is not None}
-    return found.with_std(std)
+    return effect.with_std(std)
 
 
 def _refuse_between(effect: Effect, entry: EffectEntry) -> None:
@@ -93,12 +93,12 @@ def build_effects(entries: Iterable[EffectEntry], catalogue: Catalogue) -> tuple
 
 def describe_effect(effect: Effect) -> EffectEntry:
     """The entry of an effect: parameters that were fitted or differ from their default."""
-    given = effect.given()
+    changed = effect.given()
     values = {
         p.name: Value(value=effect[p.name], std=effect.std[p.name], unit=p.unit)
         if p.name in effect.std
-        else Value(value=given[p.name])
+        else Value(value=changed[p.name])
         for p in effect.parameters
-        if p.name in given or p.name in effect.std
+        if p.name in changed or p.name in effect.std
     }
     return EffectEntry(effect=effect.id, parameters=values)

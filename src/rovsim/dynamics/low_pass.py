@@ -43,15 +43,15 @@ class LowPass:
                 as if the software had a much higher rate.
         """
         for k, T in enumerate(self.time_constants):
-            begin = x[..., 0, :] if first is None else first[k]
-            x = _lag(x, begin, *(_weigh_lines if straight else _weigh_samples)(dt / T))
+            start = x[..., 0, :] if first is None else first[k]
+            x = _lag(x, start, *(_weigh_lines if straight else _weigh_samples)(dt / T))
         return x
 
     def pass_power(self, frequency: Array, dt: float) -> Array:
         """Power gain (f,) of all stages at each frequency (f,), Hz, for samples dt s apart."""
         a = np.exp(-dt / np.array(self.time_constants))[:, None]
-        turn = np.cos(2.0 * np.pi * frequency * dt)
-        return np.asarray(np.prod((1.0 - a) ** 2 / (1.0 - 2.0 * a * turn + a * a), axis=0))
+        cosine = np.cos(2.0 * np.pi * frequency * dt)
+        return np.asarray(np.prod((1.0 - a) ** 2 / (1.0 - 2.0 * a * cosine + a * a), axis=0))
 
     def stages(self, y: Array, dt: float) -> Array:
         """Recover the input of the first stage and the outputs of all stages from the last output.
@@ -66,11 +66,11 @@ class LowPass:
         Returns:
             (stages + 1, n, c): the input, then the output of each stage.
         """
-        found = [y]
+        outputs = [y]
         for T in reversed(self.time_constants):
             a = np.exp(-dt / T)
-            found.append((found[-1] - a * _delayed(found[-1])) / (1.0 - a))
-        return np.stack(found[::-1])
+            outputs.append((outputs[-1] - a * _delayed(outputs[-1])) / (1.0 - a))
+        return np.stack(outputs[::-1])
 
     def stages_of_derivatives(self, derivatives: Array) -> Array:
         """Recover the same (stages + 1, d, n, c) from an output and its derivatives (d, n, c).
@@ -78,24 +78,24 @@ class LowPass:
         x = y + T y', for samples too far apart for `stages`. The derivative after the last one
         given is assumed to be zero.
         """
-        found = [derivatives]
+        outputs = [derivatives]
         for T in reversed(self.time_constants):
-            following = np.concatenate([found[-1][1:], np.zeros_like(derivatives[:1])])
-            found.append(found[-1] + T * following)
-        return np.stack(found[::-1])
+            rates = np.concatenate([outputs[-1][1:], np.zeros_like(derivatives[:1])])
+            outputs.append(outputs[-1] + T * rates)
+        return np.stack(outputs[::-1])
 
 
 def _weigh_samples(step: float | Array) -> tuple[Array, Array, Array]:
     """Weights of the last output, the last and the present input; `step` in time constants."""
-    kept = np.exp(-np.asarray(step))
-    return kept, np.zeros_like(kept), 1.0 - kept
+    decay = np.exp(-np.asarray(step))
+    return decay, np.zeros_like(decay), 1.0 - decay
 
 
 def _weigh_lines(step: float | Array) -> tuple[Array, Array, Array]:
     """The same weights for a continuous input on straight lines between the samples."""
-    kept = np.exp(-np.asarray(step))
-    mean = (1.0 - kept) / step
-    return kept, mean - kept, 1.0 - mean
+    decay = np.exp(-np.asarray(step))
+    mean = (1.0 - decay) / step
+    return decay, mean - decay, 1.0 - mean
 
 
 def _lag(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Array:
@@ -105,9 +105,9 @@ def _lag(x: Array, first: Array, kept: Array, before: Array, now: Array) -> Arra
     """
     if kept.ndim:
         return _lag_unevenly(x, first, kept, before, now)
-    begin = (kept * first + before * x[..., 0, :])[..., None, :]
+    initial = (kept * first + before * x[..., 0, :])[..., None, :]
     b, a = np.stack([now, before]), np.stack([np.ones_like(kept), -kept])
-    y, _ = scipy.signal.lfilter(b, a, x[..., 1:, :], axis=-2, zi=begin)
+    y, _ = scipy.signal.lfilter(b, a, x[..., 1:, :], axis=-2, zi=initial)
     return np.concatenate([first[..., None, :], y], axis=-2)
 
 
@@ -134,12 +134,12 @@ def in_world(eta: Array, nu: Array, nu_dot: Array | None = None) -> Array:
     """
     q, v, omega = eta[..., 3:7], nu[..., :3], nu[..., 3:]
     q_dot = 0.5 * multiply(q, _pure(omega))
-    found = [eta[..., :7], rotate(q, v), q_dot]
+    channels = [eta[..., :7], rotate(q, v), q_dot]
     if nu_dot is not None:
         v_dot = nu_dot[..., :3] + np.cross(omega, v)
         q_ddot = 0.5 * (multiply(q_dot, _pure(omega)) + multiply(q, _pure(nu_dot[..., 3:])))
-        found += [rotate(q, v_dot), q_ddot]
-    return np.concatenate(found, axis=-1)
+        channels += [rotate(q, v_dot), q_ddot]
+    return np.concatenate(channels, axis=-1)
 
 
 def in_body(channels: Array) -> tuple[Array, ...]:

@@ -42,8 +42,8 @@ class MocapView:
     @cached_property
     def identity(self) -> bool:
         """Whether the transforms change nothing."""
-        none = np.concatenate(Rigid.by())
-        return all(np.array_equal(np.concatenate(one), none) for one in (self.world, self.body))
+        neutral = np.concatenate(Rigid.by())
+        return all(np.array_equal(np.concatenate(t), neutral) for t in (self.world, self.body))
 
     @cached_property
     def key(self) -> bytes:
@@ -59,10 +59,10 @@ class MocapView:
         """Transform true poses (..., 7), position m and quaternion, to seen ones."""
         if self.identity:
             return eta
-        place = eta[..., :3] + rotate(eta[..., 3:7], self.body.translation)
-        place = rotate(self.world.rotation, place) + self.world.translation
+        position = eta[..., :3] + rotate(eta[..., 3:7], self.body.translation)
+        position = rotate(self.world.rotation, position) + self.world.translation
         attitude = multiply(multiply(self.world.rotation, eta[..., 3:7]), self.body.rotation)
-        return np.concatenate([place, attitude], axis=-1)
+        return np.concatenate([position, attitude], axis=-1)
 
     @cached_property
     def twist(self) -> Array:
@@ -95,11 +95,11 @@ class MocapView:
             first: (stages, ..., 14) initial output of each low-pass, see `LowPass.smooth`.
             straight: see `LowPass.smooth`.
         """
-        seen = self.states(state)
+        reported = self.states(state)
         if not self.low_pass.time_constants:
-            return seen
+            return reported
         with np.errstate(invalid="ignore", over="ignore"):  # of a model that diverged
-            channels = in_world(seen[..., :7], seen[..., 7:])
+            channels = in_world(reported[..., :7], reported[..., 7:])
             smoothed = self.low_pass.smooth(channels, dt, first, straight)
             return np.concatenate(in_body(smoothed), axis=-1)
 

@@ -64,10 +64,10 @@ class Model:
         if self.uncertainty is None:
             return self
         for _ in range(TRIES):
-            nominal, drawn = self.vehicle.effects(), self.uncertainty.draw(random)
-            found = self.with_effects((*nominal, *drawn))
-            if found.possible:
-                return found
+            nominal, added = self.vehicle.effects(), self.uncertainty.draw(random)
+            model = self.with_effects((*nominal, *added))
+            if model.possible:
+                return model
         return self
 
     def called(self, name: str) -> "Model":
@@ -83,9 +83,9 @@ class Model:
     def body(self) -> Body:
         """Constants of the equation of motion."""
         body = Body(gravity=self.vehicle.fluid.gravity)
-        for one in self.effects:
-            if isinstance(one, Coefficients):
-                one.enter(body)
+        for effect in self.effects:
+            if isinstance(effect, Coefficients):
+                effect.enter(body)
         return body
 
     @cached_property
@@ -143,8 +143,8 @@ class Model:
         Raises:
             BadInput: says what is missing.
         """
-        for one in self.effects:
-            one.check(site, kind)
+        for effect in self.effects:
+            effect.check(site, kind)
 
 
 def nominal(vehicle: Vehicle) -> Model:

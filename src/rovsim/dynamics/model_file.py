@@ -42,7 +42,7 @@ class UncertaintyEntry(Section):
 
     @model_validator(mode="after")
     def _leaves_something(self) -> Self:
-        if sum(other.probability for other in self.instead) > 1.0:
+        if sum(alternative.probability for alternative in self.instead) > 1.0:
             raise ValueError("probabilities that add up to 1 at most")
         return self
 
@@ -67,9 +67,9 @@ class ModelFile(Section):
     @field_validator("effects")
     @classmethod
     def _each_once(cls, effects: tuple[EffectEntry, ...]) -> tuple[EffectEntry, ...]:
-        for place, one in enumerate(effects):
-            if one in effects[:place]:
-                raise ValueError(f"each effect once ('{one.effect}' has the same values twice)")
+        for k, effect in enumerate(effects):
+            if effect in effects[:k]:
+                raise ValueError(f"each effect once ('{effect.effect}' has the same values twice)")
         return effects
 
 
@@ -88,14 +88,14 @@ def with_uncertainty(
         BadInput: an effect that may act instead is unknown, a value is out of range, or a
             correlation names a value that does not exist.
     """
-    instead = tuple(
-        (one.probability, Draws(build_effects(one.effects, catalogue), one.correlation))
-        for one in entry.instead
+    alternatives = tuple(
+        (a.probability, Draws(build_effects(a.effects, catalogue), a.correlation))
+        for a in entry.instead
     )
-    own = Draws(model.added, entry.correlation)
-    for draws in (own, *(draws for _, draws in instead)):
+    main = Draws(model.added, entry.correlation)
+    for draws in (main, *(draws for _, draws in alternatives)):
         draws.refuse_strangers(f"{where}, uncertainty")
-    return replace(model, uncertainty=Uncertainty(entry.noise, own, instead))
+    return replace(model, uncertainty=Uncertainty(entry.noise, main, alternatives))
 
 
 def _describe_uncertainty(found: Uncertainty) -> UncertaintyEntry:
@@ -142,27 +142,27 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     residual = None
     if file.residual:
         residual = read_residual(file.residual, path.parent, f"{path}, residual")
-    known = catalogue.on(vehicle)
+    effects = catalogue.on(vehicle)
     with located(path):
-        added = build_effects(file.effects, known)
+        added = build_effects(file.effects, effects)
         model = Model(name_of(path), vehicle, (*vehicle.effects(), *added), residual)
         _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model
-    return with_uncertainty(model, file.uncertainty, known, path)
+    return with_uncertainty(model, file.uncertainty, effects, path)
 
 
 def _require_model(content: Any, path: Path) -> None:
     """Refuse a file whose `schema` says that it is something else, with a message of its own."""
-    told = content.get("schema") if isinstance(content, dict) else None
-    if not isinstance(told, str) or told == SCHEMA:
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if not isinstance(schema, str) or schema == SCHEMA:
         return
     raise BadInput(
-        f"is no model, but says 'schema: {told}'",
+        f"is no model, but says 'schema: {schema}'",
         where=path,
         expected=f"a model file ('schema: {SCHEMA}')",
         remedy=f"`rovsim add diagnosis={path} model=NEW.yaml` writes one with what was found."
-        if told.startswith("rovsim.diagnosis/")
+        if schema.startswith("rovsim.diagnosis/")
         else "`rovsim add` and `rovsim train` write one.",
     )
 
@@ -188,11 +188,11 @@ def load_model(spec: str, vehicle: Vehicle, catalogue: Catalogue) -> Model:
 def describe_model(model: Model) -> dict[str, Any]:
     """The content of a model file: vehicle and effects, without residual and uncertainty."""
     name = model.vehicle.name
-    known = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
+    is_shipped = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
     return {
         "schema": SCHEMA,
-        "vehicle": name if known else _described(model.vehicle),
-        "effects": [describe_effect(one).plain() for one in model.added],
+        "vehicle": name if is_shipped else _described(model.vehicle),
+        "effects": [describe_effect(effect).plain() for effect in model.added],
     }
 
 
@@ -221,7 +221,7 @@ def write_model(
     if residual:
         content |= {"residual": residual.model_dump(mode="json")}
     elif model.uncertainty:
-        known = _describe_uncertainty(model.uncertainty)
-        content |= {"uncertainty": known.model_dump(mode="json", exclude_defaults=True)}
+        uncertainty = _describe_uncertainty(model.uncertainty)
+        content |= {"uncertainty": uncertainty.model_dump(mode="json", exclude_defaults=True)}
     content |= {"provenance": plain(provenance)} if provenance else {}
     write_yaml(path, content, rows=True)

@@ -57,9 +57,9 @@ class StepCuts:
 
     def at(self, arrival: Array, edges: Array, by_line: bool) -> StepCut:
         """Return `StepCut.at` of the same arguments, from the cache if possible."""
-        for known in self._kept:
-            if known[2] is by_line and _alike(known[0], arrival) and _alike(known[1], edges):
-                return known[3]
+        for entry in self._kept:
+            if entry[2] is by_line and _alike(entry[0], arrival) and _alike(entry[1], edges):
+                return entry[3]
         cut = StepCut.at(arrival, edges, by_line)
         self._kept = ((arrival, edges, by_line, cut), *self._kept[: KEPT - 1])
         return cut

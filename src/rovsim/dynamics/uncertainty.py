@@ -30,21 +30,21 @@ class Draws:
         Raises:
             BadInput: with this name, and the nearest possible one.
         """
-        known = [f"{effect.id}.{name}" for effect in self.effects for name in effect.std]
+        names = [f"{effect.id}.{name}" for effect in self.effects for name in effect.std]
         for name in self.correlation.between:
-            if name not in known:
+            if name not in names:
                 raise BadInput(
                     f"correlation of '{name}'",
                     where=where,
                     expected="values of its effects that have a std",
-                    remedy=nearest(name, known),
+                    remedy=nearest(name, names),
                 )
 
     def draw(self, random: np.random.Generator) -> tuple[Effect, ...]:
         """Draw the effects' values from the Gaussian, each clipped to its range."""
-        between = self.correlation.between
-        drawn = _root(self.correlation) @ random.normal(size=len(between))
-        errors = dict(zip(between, drawn, strict=True))
+        names = self.correlation.between
+        sample = _root(self.correlation) @ random.normal(size=len(names))
+        errors = dict(zip(names, sample, strict=True))
         return tuple(_move(effect, errors, random) for effect in self.effects)
 
 
@@ -72,12 +72,12 @@ class Uncertainty:
 
 def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator) -> Effect:
     """Add errors, in standard deviations, to an effect's values; draw errors not given."""
-    off = {name: errors.get(f"{effect.id}.{name}", random.normal()) for name in effect.std}
+    z = {name: errors.get(f"{effect.id}.{name}", random.normal()) for name in effect.std}
     return effect.with_values(
         {
-            p.name: float(np.clip(effect[p.name] + off[p.name] * effect.std[p.name], p.low, p.high))
+            p.name: float(np.clip(effect[p.name] + z[p.name] * effect.std[p.name], p.low, p.high))
             for p in effect.parameters
-            if p.name in off
+            if p.name in z
         }
     )
 

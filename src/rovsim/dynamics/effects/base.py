@@ -81,11 +81,11 @@ class Effect(ABC):
     requires: ClassVar[Requirement] = "nothing"  # a run without it cannot show the effect
 
     def __init__(self, **values: float) -> None:
-        known = [p.name for p in self.parameters]
+        names = [p.name for p in self.parameters]
         for name in values:
-            if name not in known:
+            if name not in names:
                 raise unlisted(
-                    name, known, found=f"unknown parameter '{name}'", where=f"effect {self.id}"
+                    name, names, found=f"unknown parameter '{name}'", where=f"effect {self.id}"
                 )
         numbers = [
             self._checked(p, values[p.name]) if p.name in values else p.default
@@ -110,8 +110,8 @@ class Effect(ABC):
         return float(self.values[[p.name for p in self.parameters].index(name)])
 
     def __repr__(self) -> str:
-        given = ", ".join(f"{k}={v:g}" for k, v in self.given().items())
-        return f"{type(self).__name__}({given})"
+        arguments = ", ".join(f"{k}={v:g}" for k, v in self.given().items())
+        return f"{type(self).__name__}({arguments})"
 
     def given(self) -> dict[str, float]:
         """The values that differ from their default, by name."""
@@ -131,9 +131,9 @@ class Effect(ABC):
 
     def with_std(self, std: Mapping[str, float]) -> "Effect":
         """The same effect with the standard deviations of its fitted values."""
-        known = copy(self)
-        known.std = dict(std)
-        return known
+        effect = copy(self)
+        effect.std = dict(std)
+        return effect
 
     @classmethod
     def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:
@@ -148,8 +148,8 @@ class Effect(ABC):
     @classmethod
     def adapted(cls, **own: Any) -> type[Self]:
         """A subclass with other class attributes, such as parameters, for `on` to return."""
-        known = {"__doc__": cls.__doc__, "__module__": cls.__module__}
-        return type(cls.__name__, (cls,), known | own)
+        attributes = {"__doc__": cls.__doc__, "__module__": cls.__module__}
+        return type(cls.__name__, (cls,), attributes | own)
 
     @classmethod
     def free_at(cls, start: Mapping[str, float]) -> tuple[str, ...]:

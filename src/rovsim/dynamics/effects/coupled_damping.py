@@ -15,10 +15,10 @@ SCALES = {(0, 0): 2.0, (0, 1): 0.5, (1, 0): 0.5, (1, 1): 0.1}
 def _pair(i: int, j: int, suffix: str, symbol: str) -> Parameter:
     """The parameter of the force along axis i by motion along axis j."""
     power = "2" if suffix else ""
-    force, per = ("N", "N m")[i // 3], (f"s{power}/m{power}", f"s{power}/rad{power}")[j // 3]
+    force, unit = ("N", "N m")[i // 3], (f"s{power}/m{power}", f"s{power}/rad{power}")[j // 3]
     name = f"{AXES[i]}_from_{AXES[j]}{suffix}"
     scale = SCALES[i // 3, j // 3] * (4.0 if suffix else 1.0)  # equal drag at 0.25 m/s
-    return Parameter(name, f"{force} {per}", rf"{symbol}_{{{AXES[i]},{AXES[j]}}}", scale=scale)
+    return Parameter(name, f"{force} {unit}", rf"{symbol}_{{{AXES[i]},{AXES[j]}}}", scale=scale)
 
 
 class CoupledDamping(Coefficients):

@@ -31,8 +31,8 @@ def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     names = {p.name for p in cls.parameters}
     for start in cls.starts:
         if not set(start) <= names:
-            told = ", ".join(sorted(set(start) - names))
-            yield f"'starts' names {told}", f"its parameters: {', '.join(sorted(names))}"
+            unknown = ", ".join(sorted(set(start) - names))
+            yield f"'starts' names {unknown}", f"its parameters: {', '.join(sorted(names))}"
     yield from _find_out_of_range(cls)
     if not set(cls.telling) <= names:
         yield f"'telling' is {cls.telling}", f"some of its parameters: {', '.join(sorted(names))}"
@@ -51,8 +51,8 @@ def _find_shapes(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     if cls.requires not in get_args(Requirement):
         yield f"'requires' is {cls.requires!r}", f"one of {', '.join(get_args(Requirement))}"
     if issubclass(cls, Wrench):
-        named = _holds(cls.channels, str) and all(map(_is_name, cls.channels))
-        if not named:
+        valid = _holds(cls.channels, str) and all(map(_is_name, cls.channels))
+        if not valid:
             yield f"'channels' is {cls.channels!r}", "a tuple of names: ('voltage',)"
 
 
@@ -78,7 +78,7 @@ def _find_kinds(cls: type[Effect]) -> Iterator[tuple[str, str]]:
 
 def _holds(value: Any, kind: type) -> bool:
     """Whether a value is a tuple of elements of a type."""
-    return isinstance(value, tuple) and all(isinstance(one, kind) for one in value)
+    return isinstance(value, tuple) and all(isinstance(element, kind) for element in value)
 
 
 def _is_name(text: str) -> bool:
@@ -96,8 +96,8 @@ def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, st
         return
     if not (_holds(p.tried, Real) and all(p.low <= value <= p.high for value in p.tried)):
         yield f"parameter '{p.name}' tries {p.tried!r}", "a tuple of values in its range"
-    inside = np.isnan(p.default) or (np.isfinite(p.default) and p.low <= p.default <= p.high)
+    in_range = np.isnan(p.default) or (np.isfinite(p.default) and p.low <= p.default <= p.high)
     scaled = 0.0 < p.scale < np.inf
-    if not (_is_name(p.name) and inside and scaled) or names.count(p.name) > 1:
+    if not (_is_name(p.name) and in_range and scaled) or names.count(p.name) > 1:
         expected = "a name of its own, low <= default <= high, and a finite scale above 0"
         yield f"parameter '{p.name}' is {p}", expected

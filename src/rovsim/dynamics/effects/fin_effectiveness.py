@@ -47,8 +47,8 @@ class FinEffectiveness(Coefficients):
 
     def enter(self, body: Body) -> None:
         """Scale the lift of each surface, in the vehicle file's order."""
-        each = np.append(self.values[:-1], np.ones(len(body.lifting)))[: len(body.lifting)]
-        body.lifting = body.lifting * each * self["all"]
+        factors = np.append(self.values[:-1], np.ones(len(body.lifting)))[: len(body.lifting)]
+        body.lifting = body.lifting * factors * self["all"]
 
 
 @cache

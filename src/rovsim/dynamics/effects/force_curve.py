@@ -32,6 +32,6 @@ class CurveExponent(ThrustCurveShape):
 
     def reshaped_force(self, force: Array, full: Array) -> Array:
         """Raise the ratio to the full force to a power."""
-        most = np.abs(np.where(force < 0.0, full[0], full[1]))
-        share = np.divide(np.abs(force), most, out=np.zeros_like(force), where=most > 0.0)
-        return np.sign(force) * most * share ** self["exponent"]
+        limit = np.abs(np.where(force < 0.0, full[0], full[1]))
+        share = np.divide(np.abs(force), limit, out=np.zeros_like(force), where=limit > 0.0)
+        return np.sign(force) * limit * share ** self["exponent"]

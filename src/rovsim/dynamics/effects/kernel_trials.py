@@ -59,16 +59,16 @@ def largest_push(e: Wrench, there: Actuating) -> float:
 
 def _push(kernel: Any, readings: "Sequence[_Reading]", p: Any) -> tuple[float, ...]:
     """The wrench at one instant; `readings` differ only in what is beyond the actuators' arrays."""
-    made = []
+    wrenches = []
     for reading in readings:
-        before = [memory.copy() for memory in reading.memories]
-        made.append(kernel(reading.at, p))
-        pairs = zip(before, reading.memories, strict=True)
+        copies = [memory.copy() for memory in reading.memories]
+        wrenches.append(kernel(reading.at, p))
+        pairs = zip(copies, reading.memories, strict=True)
         if not all(np.array_equal(a, b, equal_nan=True) for a, b in pairs):
             raise ValueError("it writes into at.actuators")
-    if not all(np.array_equal(made[0], one, equal_nan=True) for one in made):
+    if not all(np.array_equal(wrenches[0], wrench, equal_nan=True) for wrench in wrenches):
         raise IndexError("no such actuator")
-    return tuple(made[0])
+    return tuple(wrenches[0])
 
 
 class _Reading(NamedTuple):
@@ -85,19 +85,19 @@ def _instants(cls: type[Wrench], there: Actuating) -> Iterator[Sequence[_Reading
         if not cls.reads():
             yield [_Reading(at, ())]
             continue
-        acting = random.uniform(-1.0, 1.0, (5, max(there.places, there.commands)))
+        columns = random.uniform(-1.0, 1.0, (5, max(there.places, there.commands)))
         logged = random.uniform(0.0, 20.0, len(cls.channels))
         channels = cls.named_channels()(*logged.tolist()) if cls.channels else 0.0
-        yield [_read(at, acting, channels, there, beyond) for beyond in (np.nan, -1e9, 1e9)]
+        yield [_read(at, columns, channels, there, filling) for filling in (np.nan, -1e9, 1e9)]
 
 
 @cache
 def _states() -> tuple[At, ...]:
     """Instants at rest, at rest with unknown walls and demands, and at random in a tank."""
     unknown = (float("nan"),) * 2
-    lost = EXAMPLE._replace(tank=(unknown,) * 3, demand=(float("nan"),) * 6)
+    unmeasured = EXAMPLE._replace(tank=(unknown,) * 3, demand=(float("nan"),) * 6)
     random = np.random.default_rng(1)
-    return EXAMPLE, lost, *(_moving(EXAMPLE, random) for _ in range(INSTANTS))
+    return EXAMPLE, unmeasured, *(_moving(EXAMPLE, random) for _ in range(INSTANTS))
 
 
 def _moving(rest: At, random: np.random.Generator) -> At:
@@ -123,8 +123,8 @@ def _read(at: At, acting: Array, channels: Any, there: Actuating, beyond: float)
 
     force = STRONGEST * acting[0, : there.forces]
     inflow = np.ascontiguousarray(acting[2:, : there.places].T)
-    own = [force, acting[1, : there.commands], inflow]
-    memories = [_surrounded(values, beyond) for values in own]
+    arrays = [force, acting[1, : there.commands], inflow]
+    memories = [_surrounded(values, beyond) for values in arrays]
     actuators = Actuators(*[m[BEYOND : len(m) - BEYOND] for m in memories])
     return _Reading(ReadingAt(*at, actuators, channels), memories)
 

@@ -30,18 +30,18 @@ def says(kernel: Callable, name: str) -> bool:
 def line_that_raises(kernel: Callable) -> int | None:
     """First line where a kernel or a helper that it calls raises or asserts; None if none does."""
     for function in _written_for(kernel):
-        for one in dis.get_instructions(function):
-            if one.opname == "RAISE_VARARGS" and one.positions is not None:
-                return one.positions.lineno
+        for instruction in dis.get_instructions(function):
+            if instruction.opname == "RAISE_VARARGS" and instruction.positions is not None:
+                return instruction.positions.lineno
     return None
 
 
 def _written_for(kernel: Callable) -> list[FunctionType]:
     """A kernel and all helpers that it calls, directly or indirectly, as Python functions."""
-    found = [_written(kernel)]
-    for function in found:
-        found += [helper for helper in _helpers(function) if helper not in found]
-    return found
+    functions = [_written(kernel)]
+    for function in functions:
+        functions += [helper for helper in _helpers(function) if helper not in functions]
+    return functions
 
 
 def _written(function: Any) -> Any:
@@ -51,8 +51,8 @@ def _written(function: Any) -> Any:
 
 def _helpers(function: Callable) -> Iterator[Callable]:
     """Functions that a function refers to, compiled or not, by name or as members of a module."""
-    used = inspect.getclosurevars(function)
-    named = [*used.globals.values(), *used.nonlocals.values()]
-    for module in [one for one in named if isinstance(one, ModuleType)]:
-        named += [vars(module).get(name) for name in function.__code__.co_names]
-    yield from {one for one in map(_written, named) if isinstance(one, FunctionType)}
+    closure = inspect.getclosurevars(function)
+    objects = [*closure.globals.values(), *closure.nonlocals.values()]
+    for module in [item for item in objects if isinstance(item, ModuleType)]:
+        objects += [vars(module).get(name) for name in function.__code__.co_names]
+    yield from {item for item in map(_written, objects) if isinstance(item, FunctionType)}

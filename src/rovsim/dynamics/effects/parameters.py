@@ -64,10 +64,10 @@ class Parameter:
     def combine(self, value: float, other: float, share: float = 1.0) -> float:
         """Add a share of the change from neutral to `other` to a value; clip to the range."""
         if self.reciprocal:
-            both = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.neutral_value))
+            combined = 1.0 / (1.0 / value + share * (1.0 / other - 1.0 / self.neutral_value))
         else:
-            both = value + share * (other - self.neutral_value)
-        return float(np.clip(both, self.low, self.high))
+            combined = value + share * (other - self.neutral_value)
+        return float(np.clip(combined, self.low, self.high))
 
     def std_of(self, scaled: float) -> float:
         """Standard deviation in the parameter's unit, of one in multiples of `scale`.

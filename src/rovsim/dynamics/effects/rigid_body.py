@@ -47,8 +47,8 @@ def _places(mass: float, reach: float) -> tuple[dict[str, float], ...]:
 
     The place is not identifiable at zero mass, so that fits do not begin there.
     """
-    ends = ({axis: place} for axis in "xyz" for place in (-reach, reach))
-    return tuple({"mass": mass} | place for place in ({}, *ends))
+    offsets = ({axis: position} for axis in "xyz" for position in (-reach, reach))
+    return tuple({"mass": mass} | position for position in ({}, *offsets))
 
 
 class Payload(Coefficients):

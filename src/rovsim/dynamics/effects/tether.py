@@ -62,7 +62,7 @@ class TetherTension(Wrench):
     @classmethod
     def starts_at(cls, site: Site) -> tuple[dict[str, float], ...]:
         """Anchors at the surface, over the middle and the corners of a known tank."""
-        return tuple({**place, **start} for place in _over(site) for start in cls.starts)
+        return tuple({**anchor, **start} for anchor in _over(site) for start in cls.starts)
 
     @staticmethod
     def wrench(at, p):
@@ -150,11 +150,11 @@ def _over(site: Site) -> list[dict[str, float]]:
     if _unknown(site):
         return [{}]
     (x0, x1), (y0, y1), (surface, _) = site.tank
-    places = [((x0 + x1) / 2, (y0 + y1) / 2), *((x, y) for x in (x0, x1) for y in (y0, y1))]
+    points = [((x0 + x1) / 2, (y0 + y1) / 2), *((x, y) for x in (x0, x1) for y in (y0, y1))]
     return [
         {
             f"anchor_{axis}": float(v * s)
             for axis, v, s in zip("xyz", (*xy, surface), site.axes, strict=True)
         }
-        for xy in places
+        for xy in points
     ]

@@ -29,13 +29,13 @@ class ThrusterPlay(ThrusterDynamics):
         Two clips in a row are again a clip, so all steps are evaluated together, by doubling.
         """
         F = force[0] if state is None else state
-        known = self.given()
-        band = known.get("band", 0.0) + known.get("share", 0.0) * np.abs(force)
-        low, high, done = force - band, force + band, 1
-        while done < len(force):
-            own = low[done:].copy(), high[done:]
-            low[done:] = np.clip(low[:-done], *own)
-            high[done:] = np.clip(high[:-done], *own)
-            done *= 2
-        found = np.clip(F, low, high)
-        return found, found[-1]
+        values = self.given()
+        band = values.get("band", 0.0) + values.get("share", 0.0) * np.abs(force)
+        low, high, width = force - band, force + band, 1
+        while width < len(force):
+            bounds = low[width:].copy(), high[width:]
+            low[width:] = np.clip(low[:-width], *bounds)
+            high[width:] = np.clip(high[:-width], *bounds)
+            width *= 2
+        response = np.clip(F, low, high)
+        return response, response[-1]

@@ -113,9 +113,9 @@ class ThrusterGain(ThrustScaling):
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Multiply forces by each thruster's gain and the common one."""
-        each, own = np.ones(force.shape[1]), self.values[:-1][: force.shape[1]]
-        each[: len(own)] = own
-        return force * (self["all"] * each)
+        gains, values = np.ones(force.shape[1]), self.values[:-1][: force.shape[1]]
+        gains[: len(values)] = values
+        return force * (self["all"] * gains)
 
 
 @cache
@@ -178,8 +178,8 @@ class VoltageSag(ThrustScaling):
 
     def scaled_force(self, force: Array, t: Array, duration: float) -> Array:
         """Reduce the forces linearly with time."""
-        lost = self["fraction"] * t / duration + self["rate"] * t
-        return force * np.maximum(0.0, 1.0 - lost)[:, None]
+        loss = self["fraction"] * t / duration + self["rate"] * t
+        return force * np.maximum(0.0, 1.0 - loss)[:, None]
 
 
 class ThrusterLag(ThrusterDynamics):
@@ -295,5 +295,5 @@ def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str
 
 def with_thruster_names(parameters: Iterable[str], thrusters: Sequence[str]) -> list[str]:
     """Apply `name_parameter` to parameters with names of the form `effect.parameter`."""
-    parts = (one.partition(".") for one in parameters)
+    parts = (parameter.partition(".") for parameter in parameters)
     return [f"{effect}.{name_parameter(effect, name, thrusters)}" for effect, _, name in parts]

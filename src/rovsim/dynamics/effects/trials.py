@@ -76,13 +76,13 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
         effect = cls(**start)
         for trial in _list_trials(effect, vehicle):
             try:
-                made = trial.call()
-                fits = trial.fits(made)
+                result = trial.call()
+                fits = trial.fits(result)
             except Exception as error:  # whatever a user's code raises
-                found = f"'{trial.method}' fails with {type(error).__name__}: {error}"
-                raise refused(found, where + _line_of(error, cls), trial.expected) from None
+                fault = f"'{trial.method}' fails with {type(error).__name__}: {error}"
+                raise refused(fault, where + _line_of(error, cls), trial.expected) from None
             if not fits:
-                raise refused(f"'{trial.method}' returns {_told(made)}", where, trial.expected)
+                raise refused(f"'{trial.method}' returns {_told(result)}", where, trial.expected)
 
 
 def _place_of(cls: type[Effect]) -> str:
@@ -93,9 +93,9 @@ def _place_of(cls: type[Effect]) -> str:
 
 def _line_of(error: Exception, cls: type[Effect]) -> str:
     """The line of the effect's own module in which it failed, for messages."""
-    walked = traceback.walk_tb(error.__traceback__)
-    own = [line for frame, line in walked if frame.f_globals.get("__name__") == cls.__module__]
-    return f", line {own[-1]}" if own else ""
+    frames = traceback.walk_tb(error.__traceback__)
+    lines = [line for frame, line in frames if frame.f_globals.get("__name__") == cls.__module__]
+    return f", line {lines[-1]}" if lines else ""
 
 
 def _list_trials(effect: Effect, vehicle: Tried) -> Iterator[Trial]:
@@ -107,9 +107,9 @@ def _list_trials(effect: Effect, vehicle: Tried) -> Iterator[Trial]:
 
 def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
     body = Body(gravity=9.81)
-    for own in vehicle.effects():
-        if isinstance(own, Coefficients):
-            own.enter(body)
+    for effect in vehicle.effects():
+        if isinstance(effect, Coefficients):
+            effect.enter(body)
     shapes = _shapes(body)
 
     def enter() -> Any:
@@ -117,20 +117,20 @@ def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
         wrong = [name for name, shape in _shapes(body).items() if shape != shapes[name]]
         return ", ".join(f"body.{name}" for name in wrong) or "a body as it was"
 
-    yield Trial("enter", enter, BODY, lambda made: made == "a body as it was")
+    yield Trial("enter", enter, BODY, lambda result: result == "a body as it was")
     yield Trial(
         "enter",
         lambda: body.least_inertia,
         "a body whose inertia is positive (this is its smallest eigenvalue)",
-        lambda least: least > 0.0,
+        lambda eigenvalue: eigenvalue > 0.0,
     )
 
 
 def _shapes(body: Body) -> dict[str, tuple[int, ...] | None]:
     """Shape of each constant but `GROWING`, by name; None if it is not finite numbers."""
-    named = {one.name: getattr(body, one.name) for one in fields(body)}
-    alike = {name: value for name, value in named.items() if name not in GROWING}
-    return {name: np.shape(v) if _is_finite(v) else None for name, v in alike.items()}
+    constants = {f.name: getattr(body, f.name) for f in fields(body)}
+    fixed = {name: value for name, value in constants.items() if name not in GROWING}
+    return {name: np.shape(v) if _is_finite(v) else None for name, v in fixed.items()}
 
 
 def _is_finite(value: Any) -> bool:
@@ -149,7 +149,7 @@ def _try_timing(e: CommandTiming, vehicle: Tried) -> Iterator[Trial]:
         "effective_time",
         partial(e.effective_time, _given(TIME.copy())),
         f"{INSTANTS} increasing instants for as many",
-        lambda made: _is_array(made, TIME.shape) and bool((np.diff(made) > 0.0).all()),
+        lambda result: _is_array(result, TIME.shape) and bool((np.diff(result) > 0.0).all()),
     )
 
 
@@ -195,8 +195,8 @@ def _try_frames(e: FrameMisalignment, vehicle: Tried) -> Iterator[Trial]:
             isinstance(made, tuple)
             and len(made) == 2
             and all(
-                isinstance(one, Rigid) and _is_array(one.rotation, (4,)) and _is_array(one[1], (3,))
-                for one in made
+                isinstance(r, Rigid) and _is_array(r.rotation, (4,)) and _is_array(r[1], (3,))
+                for r in made
             )
         )
 
@@ -212,11 +212,11 @@ def _try_filter(e: MeasurementFilter, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
-    there = Actuating(
+    actuating = Actuating(
         vehicle.thruster_count, len(vehicle.command_columns), len(vehicle.surface_names)
     )
-    call = partial(largest_push, e, there)
-    yield Trial("wrench", call, there.told, lambda _: True)
+    call = partial(largest_push, e, actuating)
+    yield Trial("wrench", call, actuating.told, lambda _: True)
     if not e.given():
         yield Trial("wrench", call, "0 with its default values: then nothing acts", _is_none)
 
@@ -229,7 +229,7 @@ def _is_none(push: float) -> bool:
 def _array(
     method: str, call: Callable[[], Any], shape: tuple[int, ...], expected: str = "a new array"
 ) -> Trial:
-    return Trial(method, call, f"{expected} {shape}", lambda made: _is_array(made, shape))
+    return Trial(method, call, f"{expected} {shape}", lambda result: _is_array(result, shape))
 
 
 def _is_array(made: Any, shape: tuple[int, ...]) -> bool:

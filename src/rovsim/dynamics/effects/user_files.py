@@ -46,8 +46,8 @@ def _run(path: Path, text: str) -> ModuleType:
         lines = [
             f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)
         ]
-        found = f"{type(error).__name__}: {error}"
-        raise refused(found, f"{path}, line {lines[-1]}", "a file that runs by itself") from None
+        fault = f"{type(error).__name__}: {error}"
+        raise refused(fault, f"{path}, line {lines[-1]}", "a file that runs by itself") from None
     return module
 
 
@@ -68,11 +68,11 @@ def check_effects(
     ]
     if not classes:
         raise refused("declares no effect", where, "a class on top of Wrench or another kind")
-    found: dict[str, type[Effect]] = {}
+    by_id: dict[str, type[Effect]] = {}
     for cls in classes:
-        _check(cls, f"{where}, class {cls.__name__}", {**taken, **found})
-        found[cls.id] = cls
-    return found
+        _check(cls, f"{where}, class {cls.__name__}", {**taken, **by_id})
+        by_id[cls.id] = cls
+    return by_id
 
 
 def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
@@ -84,9 +84,9 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
     missing += [] if getattr(cls, "parameters", ()) else ["parameters"]
     missing += sorted(cls.__abstractmethods__)
     if missing:
-        what = ", ".join(f"'{name}'" for name in missing)
+        names = ", ".join(f"'{name}'" for name in missing)
         raise refused(
-            f"has no {what}",
+            f"has no {names}",
             where,
             "a docstring, id, equation, neglects, source, parameters and the method of its kind",
         )
@@ -94,8 +94,8 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
         raise refused(f"the id is '{cls.id}'", where, "lower-case letters, digits and _")
     if cls.id in taken:
         raise refused(f"the id '{cls.id}' is taken", where, "an id that no other effect has")
-    for found, expected in find_faults(cls):
-        raise refused(found, where, expected)
+    for fault, expected in find_faults(cls):
+        raise refused(fault, where, expected)
     if issubclass(cls, Wrench):
         _check_kernel(cls, where)
 
@@ -123,11 +123,11 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
             where,
             "arithmetic on the numbers of `at` and `p`, functions of math, and if",
         ) from None
-    made = kernel.nopython_signatures[0].return_type
+    returned = kernel.nopython_signatures[0].return_type
     real = (types.Float, types.Integer)
-    numbers = [isinstance(part, real) for part in getattr(made, "types", ())]
+    numbers = [isinstance(element, real) for element in getattr(returned, "types", ())]
     if len(numbers) != 6 or not all(numbers):
-        raise refused(f"'wrench' returns {made}", where, "six numbers: X, Y, Z, K, M, N")
+        raise refused(f"'wrench' returns {returned}", where, "six numbers: X, Y, Z, K, M, N")
 
 
 def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
@@ -145,10 +145,10 @@ def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
 
 def _reason(text: str) -> str:
     """The cause and the line in an error message of Numba, without the rest of its report."""
-    plain = [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines()]
-    told = [
-        line for line in plain if line and not line.startswith(("Failed in", "- ", ">>>", "Th"))
+    lines = [line.strip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines()]
+    messages = [
+        line for line in lines if line and not line.startswith(("Failed in", "- ", ">>>", "Th"))
     ]
     line = re.search(r", line (\d+)", text)
-    found = (told[0].rstrip(":.") if told else plain[0]).partition(" of type ")[0]
-    return found + (f" (line {line[1]})" if line else "")
+    cause = (messages[0].rstrip(":.") if messages else lines[0]).partition(" of type ")[0]
+    return cause + (f" (line {line[1]})" if line else "")

@@ -27,7 +27,7 @@ class WakeByAxis(Coefficients):
 
     def enter(self, body: Body) -> None:
         """Add the fluid memory to the body, if a coefficient is not 0."""
-        known = self.given()
-        memory = np.array([known.get(axis, 0.0) for axis in AXES])
+        coefficients = self.given()
+        memory = np.array([coefficients.get(axis, 0.0) for axis in AXES])
         if memory.any():
             body.remember(memory, self["time_constant"])

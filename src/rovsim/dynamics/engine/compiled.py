@@ -50,11 +50,11 @@ def keep_address(signature: Any, **options: Any) -> Callable[[Callable], Any]:
 @contextmanager
 def _kept_there() -> Iterator[None]:
     """Within this context, Numba caches functions that are decorated in our folder."""
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())  # type: ignore[attr-defined]
+    previous, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())  # type: ignore[attr-defined]
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
+        numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
 
 
 def _compiled_once(function: Any) -> Any:
@@ -64,13 +64,13 @@ def _compiled_once(function: Any) -> Any:
     There is no deadlock: while a function is compiled, its process waits only for the locks of
     functions that it calls.
     """
-    compile_it, locked = function.compile, lock_file(function)
+    compile_it, lock_path = function.compile, lock_file(function)
 
     def compile_alone(signature: Any) -> Any:
         if signature in function.overloads:
             return compile_it(signature)
         # always in this order; the file lock is made anew, so that no lock is inherited by a fork
-        with global_compiler_lock, FileLock(locked):
+        with global_compiler_lock, FileLock(lock_path):
             return compile_it(signature)
 
     function.compile = compile_alone

@@ -170,11 +170,11 @@ def _imported(name: str, path: Path) -> ModuleType:
 
 def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
     """Values for the fields of the templates; an effect may be in the list more than once."""
-    known = list(dict.fromkeys(wrenches))
+    distinct = list(dict.fromkeys(wrenches))
     pushes, acts = "", 0
     for wrench in wrenches:
-        after = acts + 1 + len(wrench.parameters)
-        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, after)), COLUMNS)
+        end = acts + 1 + len(wrench.parameters)
+        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, end)), COLUMNS)
         pushes += PUSH.format(
             id=wrench.id,
             acts=acts,
@@ -182,12 +182,12 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
             at="seen" if wrench.reads() else "at",
             reading=_reading(wrench, channel) if wrench.reads() else "",
         )
-        acts, channel = after, channel + len(wrench.channels)
-    imports = {f"from {w.__module__} import {w.__name__}{_alias(w, known)}\n" for w in known}
+        acts, channel = end, channel + len(wrench.channels)
+    imports = {f"from {w.__module__} import {w.__name__}{_alias(w, distinct)}\n" for w in distinct}
     return {
-        "names": ", ".join(wrench.id for wrench in known) or "no further effects",
+        "names": ", ".join(wrench.id for wrench in distinct) or "no further effects",
         "imports": "".join(sorted(imports | set(IMPORTS.splitlines(keepends=True)))),
-        "kernels": "".join(_kernel(w, known) for w in known),
+        "kernels": "".join(_kernel(w, distinct) for w in distinct),
         "pushes": pushes,
     }
 
@@ -201,14 +201,16 @@ def _kernel(wrench: Any, known: Sequence[Any]) -> str:
 
 def _reading(wrench: Any, first: int) -> str:
     """Source lines that read actuators and channels; `first` is the index of its first channel."""
-    own = [f"acting[first_channel(layout) + {first + k}]" for k in range(len(wrench.channels))]
-    return READING.format(channels=f"{wrench.id}_channels({', '.join(own)})" if own else "0.0")
+    values = [f"acting[first_channel(layout) + {first + k}]" for k in range(len(wrench.channels))]
+    return READING.format(
+        channels=f"{wrench.id}_channels({', '.join(values)})" if values else "0.0"
+    )
 
 
 def _name(wrench: Any, known: Sequence[Any]) -> str:
     """Name of a class in the module: where two have the same name, their ids are appended."""
-    alike = [one for one in known if one.__name__ == wrench.__name__]
-    return wrench.__name__ if len(alike) == 1 else f"{wrench.__name__}_{wrench.id}"
+    namesakes = [cls for cls in known if cls.__name__ == wrench.__name__]
+    return wrench.__name__ if len(namesakes) == 1 else f"{wrench.__name__}_{wrench.id}"
 
 
 def _alias(wrench: Any, known: Sequence[Any]) -> str:

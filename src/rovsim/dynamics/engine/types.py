@@ -137,9 +137,9 @@ class Constants(NamedTuple):
     @staticmethod
     def stacked(sets: "Sequence[Constants]") -> "Constants":
         """Stack parameter sets of a vehicle along m; fields `OF_VEHICLE` are those of the first."""
-        first, several = sets[0], [name for name in Constants._fields if name not in OF_VEHICLE]
+        first, names = sets[0], [name for name in Constants._fields if name not in OF_VEHICLE]
         return first._replace(
-            **{name: np.concatenate([getattr(one, name) for one in sets]) for name in several}
+            **{name: np.concatenate([getattr(c, name) for c in sets]) for name in names}
         )
 
 

@@ -46,11 +46,11 @@ def check_exported(data: Any, features: FeatureSettings, where: object) -> Array
     Raises:
         BadInput: wrong type, not finite, sizes that do not fit, or other features than named.
     """
-    found = _fault(data, features)
-    if found is None:
+    fault = _fault(data, features)
+    if fault is None:
         return np.ascontiguousarray(data)
     raise BadInput(
-        found,
+        fault,
         where=where,
         expected="a residual exported by rovsim, with the features its model file names",
         remedy="Train the residual again.",

@@ -107,20 +107,18 @@ def read_residual(description: Any, folder: Path, where: object = "residual") ->
     Raises:
         BadInput: unknown key, missing, damaged or altered file, arrays that do not fit.
     """
-    stored = checked(StoredResidual, description, str(where))
+    entry = checked(StoredResidual, description, str(where))
     features = checked(
         FeatureSettings,
-        {"blocks": stored.features, "scaling": stored.scaling},
+        {"blocks": entry.features, "scaling": entry.scaling},
         f"{where}, features",
     )
-    path = folder / stored.file
-    _refuse_altered(path, stored.sha256)
+    path = folder / entry.file
+    _refuse_altered(path, entry.sha256)
     arrays = read_arrays(path)
     data = check_exported(arrays.pop("data", None), features, path)
     library = {key.removeprefix(LIBRARY): _finite(a, key, path) for key, a in arrays.items()}
-    return Residual(
-        stored.control, stored.kind, features, stored.settings, data, library, stored.info
-    )
+    return Residual(entry.control, entry.kind, features, entry.settings, data, library, entry.info)
 
 
 def _digest(path: Path) -> str:
@@ -131,15 +129,15 @@ def _digest(path: Path) -> str:
 def _refuse_altered(path: Path, digest: str) -> None:
     """Refuse a file that is missing, is not an archive or is not the one the model names."""
     if not path.is_file():
-        found = "no such file"
+        fault = "no such file"
     elif _digest(path) != digest:
-        found = "not the file this model was saved with (its sha256 differs)"
+        fault = "not the file this model was saved with (its sha256 differs)"
     elif not zipfile.is_zipfile(path):
-        found = "not an .npz archive"
+        fault = "not an .npz archive"
     else:
         return
     raise BadInput(
-        found,
+        fault,
         where=path,
         expected="the arrays of the trained residual",
         remedy="Keep the .npz beside its model file, unchanged, or train the residual again.",

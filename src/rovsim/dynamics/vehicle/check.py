@@ -26,17 +26,17 @@ def check_vehicle(vehicle: Vehicle, where: Path | str) -> None:
         BadInput: for the first fault.
     """
     for find in (_names, _mixer, _thrusters, _surfaces, _inertia, _buoyancy, _products):
-        for found, expected, remedy in find(vehicle):
-            raise BadInput(found, where=where, expected=expected, remedy=remedy)
+        for fault, expected, remedy in find(vehicle):
+            raise BadInput(fault, where=where, expected=expected, remedy=remedy)
 
 
 def _names(vehicle: Vehicle) -> Iterator[Finding]:
     """Yield names that two command columns share, and a surface with the reserved name `all`."""
     for name, count in Counter(vehicle.command_columns).items():
         if count > 1:
-            found = f"{count} command columns are called {name}"
-            yield found, "a name of its own for each thruster and surface", "Rename one of them."
-    if "all" in [one.name for one in vehicle.surfaces]:
+            fault = f"{count} command columns are called {name}"
+            yield fault, "a name of its own for each thruster and surface", "Rename one of them."
+    if "all" in [surface.name for surface in vehicle.surfaces]:
         yield "a surface is called all", "another name: all means all of them", "Rename it."
 
 
@@ -46,8 +46,8 @@ def _mixer(vehicle: Vehicle) -> Iterator[Finding]:
     for axis in AXES if mixer else ():
         row = getattr(mixer, axis)
         if len(row) != count:
-            found = f"mixer.{axis} has {len(row)} numbers for {count} thrusters"
-            yield found, "one number per thruster", "Complete that row."
+            fault = f"mixer.{axis} has {len(row)} numbers for {count} thrusters"
+            yield fault, "one number per thruster", "Complete that row."
 
 
 def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
@@ -55,32 +55,32 @@ def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
     for unit in vehicle.thrusters.units:
         length = float(np.linalg.norm(unit.direction))
         if abs(length - 1.0) > UNIT:
-            found = f"thruster {unit.name} has a direction of length {length:.3f}"
-            yield found, "a unit vector", "Divide the direction by its length."
+            fault = f"thruster {unit.name} has a direction of length {length:.3f}"
+            yield fault, "a unit vector", "Divide the direction by its length."
         if unit.azimuth and abs(unit.direction[2]) > UNIT:
-            found = f"thruster {unit.name} turns about the z axis and points along {unit.direction}"
+            fault = f"thruster {unit.name} turns about the z axis and points along {unit.direction}"
             yield (
-                found,
+                fault,
                 "a direction in the plane of x and y",
                 "Set z to 0, or take azimuth out.",
             )
         if not (unit.force_curve or vehicle.thrusters.force_curve):
-            found = f"thruster {unit.name} has no force_curve"
-            yield found, "thrusters.force_curve, or one of its own", "Add one."
+            fault = f"thruster {unit.name} has no force_curve"
+            yield fault, "thrusters.force_curve, or one of its own", "Add one."
 
 
 def _surfaces(vehicle: Vehicle) -> Iterator[Finding]:
     """Yield surfaces with a bad normal, or in the wake of a thruster that cannot have one."""
     jets = [unit.name for unit in vehicle.thrusters.units if not unit.azimuth]
-    for one in vehicle.surfaces:
-        normal = np.array(one.normal)
+    for s in vehicle.surfaces:
+        normal = np.array(s.normal)
         length = float(np.linalg.norm(normal))
         if abs(length - 1.0) > UNIT or abs(normal[0]) > 0.9:
-            found = f"surface {one.name} has the normal {one.normal}"
-            yield found, "a unit vector across the x axis", "Rudder: [0, 1, 0]; fin: [0, 0, -1]."
-        if one.in_wake_of is not None and one.in_wake_of not in jets:
-            found = f"surface {one.name} is in the wake of '{one.in_wake_of}'"
-            yield found, "the name of a thruster that does not turn", nearest(one.in_wake_of, jets)
+            fault = f"surface {s.name} has the normal {s.normal}"
+            yield fault, "a unit vector across the x axis", "Rudder: [0, 1, 0]; fin: [0, 0, -1]."
+        if s.in_wake_of is not None and s.in_wake_of not in jets:
+            fault = f"surface {s.name} is in the wake of '{s.in_wake_of}'"
+            yield fault, "the name of a thruster that does not turn", nearest(s.in_wake_of, jets)
 
 
 def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
@@ -88,9 +88,9 @@ def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
     moments = {"roll": "Ixx", "pitch": "Iyy", "yaw": "Izz"}
     for axis, name in moments.items():
         if axis in vehicle.degrees_of_freedom and getattr(vehicle.rigid_body.inertia, name) is None:
-            found = f"'rigid_body.inertia.{name}' is missing"
+            fault = f"'rigid_body.inertia.{name}' is missing"
             remedy = f"Add it, or leave {axis} out of degrees_of_freedom."
-            yield found, f"a value for it, since the vehicle moves in {axis}", remedy
+            yield fault, f"a value for it, since the vehicle moves in {axis}", remedy
 
 
 def _buoyancy(vehicle: Vehicle) -> Iterator[Finding]:
@@ -107,5 +107,5 @@ def _products(vehicle: Vehicle) -> Iterator[Finding]:
     """Yield products of velocities that the file has in two places."""
     for name in vehicle.cross_flow:
         if name in vehicle.hydrodynamics.cross_flow:
-            found = f"'{name}' stands in cross_flow and in hydrodynamics.cross_flow"
-            yield found, "one value", "Remove one of them."
+            fault = f"'{name}' stands in cross_flow and in hydrodynamics.cross_flow"
+            yield fault, "one value", "Remove one of them."

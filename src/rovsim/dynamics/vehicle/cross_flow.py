@@ -33,18 +33,18 @@ def parse_product(name: str) -> tuple[int, int, int, int]:
     Raises:
         ValueError: not a name of a product.
     """
-    found = NAME.fullmatch(name)
-    if found is None:
+    match = NAME.fullmatch(name)
+    if match is None:
         raise ValueError(
             f"names of an axis {' '.join(FORCE)} and two or three velocities "
             f"{' '.join(VELOCITY)}, such as Yuv or Nr|r|, and not '{name}'"
         )
-    parts = re.findall(r"\|[uvwpqr]\||[uvwpqr]", found[2])
+    parts = re.findall(r"\|[uvwpqr]\||[uvwpqr]", match[2])
     if len(parts) == 2 and parts[0] == parts[1] and "|" not in parts[0]:
         parts[1] = f"|{parts[1]}|"
     codes = [VELOCITY.index(part.strip("|")) + SIZE * ("|" in part) for part in parts]
     codes += [NO_FACTOR] * (3 - len(codes))
-    return FORCE.index(found[1]), codes[0], codes[1], codes[2]
+    return FORCE.index(match[1]), codes[0], codes[1], codes[2]
 
 
 def _checked(value: Any) -> dict[str, float]:

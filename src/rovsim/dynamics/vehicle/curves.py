@@ -77,16 +77,16 @@ class Tables(Section):
 
     def force(self, command: Array, voltage: Array | None) -> Array:
         """Forces (m, ...), N, of commands (m, ...) at battery voltages (m,), V; None: nominal."""
-        known = sorted(self.volts)
-        forces = np.stack([self.volts[v].force(command) for v in known])
+        voltages = sorted(self.volts)
+        forces = np.stack([self.volts[v].force(command) for v in voltages])
         if voltage is None:
             voltage = np.full(len(command), self.usual)
-        place = np.interp(voltage, known, np.arange(len(known)))
-        below = np.minimum(place.astype(int), max(len(known) - 2, 0))
-        above = np.minimum(below + 1, len(known) - 1)
-        share = (place - below).reshape(-1, *(1,) * (command.ndim - 1))
+        position = np.interp(voltage, voltages, np.arange(len(voltages)))
+        lower = np.minimum(position.astype(int), max(len(voltages) - 2, 0))
+        upper = np.minimum(lower + 1, len(voltages) - 1)
+        share = (position - lower).reshape(-1, *(1,) * (command.ndim - 1))
         rows = np.arange(len(command))
-        return (1.0 - share) * forces[below, rows] + share * forces[above, rows]
+        return (1.0 - share) * forces[lower, rows] + share * forces[upper, rows]
 
 
 class ForceCurve(Section):
@@ -106,7 +106,7 @@ class ForceCurve(Section):
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        if sum(given is not None for _, given in self) != 1:
+        if sum(value is not None for _, value in self) != 1:
             raise ValueError(f"one of {', '.join(type(self).model_fields)}")
         return self
 
@@ -119,8 +119,8 @@ class ForceCurve(Section):
         """Forces (m, ...), N, of commands (m, ...) in [-1, 1]; `voltage` (m,) of the battery, V."""
         if self.tables is not None:
             return self.tables.force(command, voltage)
-        other = self.quadratic or self.table
-        return other.force(command) if other else self._polynomial(command)
+        curve = self.quadratic or self.table
+        return curve.force(command) if curve else self._polynomial(command)
 
     def _polynomial(self, command: Array) -> Array:
         force, power = np.zeros_like(command), command

@@ -107,7 +107,7 @@ class Vehicle(Section):
 
     def effects(self) -> tuple[Effect, ...]:
         """The nominal physics as effects: the model before other effects are added."""
-        further = (
+        optional = (
             (self.waterplane is not None, lambda: _floating(self.waterplane)),
             (self.cross_flow, lambda: CrossFlow(self.cross_flow)),
             (self.surfaces, lambda: Surfaces(self.surfaces, self.thrusters.units, self.density)),
@@ -118,7 +118,7 @@ class Vehicle(Section):
             *self.hydrodynamics.effects(),
             *self._buoyancy(),
             Thrusters(self.thrusters),
-            *(make() for given, make in further if given),
+            *(make() for present, make in optional if present),
         )
 
     @property
@@ -149,7 +149,7 @@ class Vehicle(Section):
     @property
     def surface_names(self) -> tuple[str, ...]:
         """Names of the control surfaces, in the file's order."""
-        return tuple(one.name for one in self.surfaces)
+        return tuple(surface.name for surface in self.surfaces)
 
     @property
     def floats(self) -> bool:
@@ -163,14 +163,14 @@ class Vehicle(Section):
         The command of an azimuth thruster is followed by its angle, NAME_angle.
         """
         units = self.thrusters.units
-        own = [[u.name, f"{u.name}_angle"] if u.azimuth else [u.name] for u in units]
-        return (*(name for names in own for name in names), *self.surface_names)
+        groups = [[u.name, f"{u.name}_angle"] if u.azimuth else [u.name] for u in units]
+        return (*(name for names in groups for name in names), *self.surface_names)
 
     @property
     def angles(self) -> tuple[bool, ...]:
         """For each of `command_columns`, whether it is an angle in rad."""
-        known = {unit.name for unit in self.thrusters.units}
-        return tuple(name not in known for name in self.command_columns)
+        thrusters = {unit.name for unit in self.thrusters.units}
+        return tuple(name not in thrusters for name in self.command_columns)
 
     def _rigid_body(self) -> RigidBody:
         dry = self.rigid_body

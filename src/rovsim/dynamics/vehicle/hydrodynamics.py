@@ -78,7 +78,7 @@ class Hydrodynamics(Section):
             AddedMass(**_by_axis(mass)),
             LinearDamping(**_by_axis(linear)),
             QuadraticDamping(**_by_axis(quadratic)),
-            *(one for one in couplings if one.given()),
+            *(coupling for coupling in couplings if coupling.given()),
             *((CrossFlow(self.cross_flow),) if self.cross_flow else ()),
         )
 

@@ -66,16 +66,16 @@ class Surfaces(Coefficients):
         density: float = 1000.0,
     ) -> None:
         super().__init__()
-        self.names = tuple(one.name for one in surfaces)
-        rows = [_row(one, units, density) for one in surfaces]
+        self.names = tuple(surface.name for surface in surfaces)
+        rows = [_row(surface, units, density) for surface in surfaces]
         self.rows = np.array(rows, dtype=float).reshape(-1, JET + 1)
 
     def neutral(self) -> Effect:
         """The same surfaces without lift and drag."""
-        found = copy(self)
-        found.rows = self.rows.copy()
-        found.rows[:, HALF] = 0.0
-        return found
+        surfaces = copy(self)
+        surfaces.rows = self.rows.copy()
+        surfaces.rows[:, HALF] = 0.0
+        return surfaces
 
     def enter(self, body: Body) -> None:
         """Set the surfaces of the body, with a factor of 1 on their lift, and add their places."""
@@ -105,8 +105,8 @@ def _wake(
     """
     if one.in_wake_of is None:
         return NO_WAKE, 0.0
-    place = [unit.name for unit in units].index(one.in_wake_of)
-    unit = units[place]
+    k = [unit.name for unit in units].index(one.in_wake_of)
+    unit = units[k]
     disc = one.area if unit.diameter is None else np.pi / 4.0 * unit.diameter**2
     ahead = np.sign(chord @ np.array(unit.direction))
-    return float(place), float(ahead * 2.0 / (density * disc))
+    return float(k), float(ahead * 2.0 / (density * disc))

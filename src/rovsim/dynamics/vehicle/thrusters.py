@@ -114,9 +114,9 @@ class Thrusters(Coefficients):
         units = layout.units
         self.count = len(units)
         self.turning = np.array([unit.azimuth for unit in units], dtype=bool)
-        own = np.array([unit.direction for unit in units], dtype=float).reshape(-1, 3)
-        across = np.cross(DOWN, own[self.turning])
-        self.directions = np.concatenate([own, across.reshape(-1, 3)])
+        directions = np.array([unit.direction for unit in units], dtype=float).reshape(-1, 3)
+        across = np.cross(DOWN, directions[self.turning])
+        self.directions = np.concatenate([directions, across.reshape(-1, 3)])
         self.positions = self._doubled(
             np.array([unit.position for unit in units], dtype=float).reshape(-1, 3)
         )
@@ -152,14 +152,14 @@ class Thrusters(Coefficients):
     @cached_property
     def curves(self) -> list[ForceCurve]:
         """The force curve of each thruster, n of them."""
-        found = [unit.force_curve or self.layout.force_curve for unit in self.layout.units]
-        return [curve for curve in found if curve is not None]
+        options = [unit.force_curve or self.layout.force_curve for unit in self.layout.units]
+        return [curve for curve in options if curve is not None]
 
     @cached_property
     def common(self) -> ForceCurve | None:
         """The force curve that all thrusters share; None if they differ."""
-        same = self.curves and all(curve == self.curves[0] for curve in self.curves)
-        return self.curves[0] if same else None
+        all_equal = self.curves and all(curve == self.curves[0] for curve in self.curves)
+        return self.curves[0] if all_equal else None
 
     def resolved(
         self, force: Array, cosine: Array | None = None, sine: Array | None = None
@@ -167,7 +167,7 @@ class Thrusters(Coefficients):
         """Resolve forces (m, n) into components (m, k), with cos, sin (m, a) of azimuth angles."""
         if not self.turning.any():
             return force
-        aside = force[:, self.turning]
+        azimuthing = force[:, self.turning]
         along = force.copy()
-        along[:, self.turning] = aside if cosine is None else aside * cosine
-        return np.hstack([along, 0.0 * aside if sine is None else aside * sine])
+        along[:, self.turning] = azimuthing if cosine is None else azimuthing * cosine
+        return np.hstack([along, 0.0 * azimuthing if sine is None else azimuthing * sine])

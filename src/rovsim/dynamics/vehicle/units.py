@@ -21,8 +21,8 @@ FAR = 30.0  # times the vehicle's length
 
 def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
     """Sentences about numbers that seem to be in another unit; empty where all are plausible."""
-    found = [*_water(vehicle), *_weight(vehicle), *_inertia(vehicle), *_places(vehicle)]
-    return tuple(f"Vehicle file, {one}" for one in found)
+    doubts = [*_water(vehicle), *_weight(vehicle), *_inertia(vehicle), *_places(vehicle)]
+    return tuple(f"Vehicle file, {sentence}" for sentence in doubts)
 
 
 def _water(vehicle: Vehicle) -> Iterator[str]:
@@ -67,14 +67,14 @@ def _inertia(vehicle: Vehicle) -> Iterator[str]:
 def _places(vehicle: Vehicle) -> Iterator[str]:
     """Yield places that are implausibly far from CO."""
     dry = vehicle.rigid_body
-    named = {
+    positions = {
         "rigid_body.center_of_gravity": dry.center_of_gravity,
         "rigid_body.center_of_buoyancy": dry.center_of_buoyancy,
         **{f"thruster {unit.name}, position": unit.position for unit in vehicle.thrusters.units},
     }
-    for name, place in named.items():
-        if place is not None and np.linalg.norm(place) > FAR * _length(vehicle):
-            yield f"{name}: {', '.join(f'{x:g}' for x in place)}. In m from CO?"
+    for name, position in positions.items():
+        if position is not None and np.linalg.norm(position) > FAR * _length(vehicle):
+            yield f"{name}: {', '.join(f'{x:g}' for x in position)}. In m from CO?"
 
 
 def _length(vehicle: Vehicle) -> float:
