@@ -37,9 +37,9 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
             unpacked = sum(member.file_size for member in members)
             if unpacked <= 10 * path.stat().st_size + SPARE:
                 return {m.filename.removesuffix(".npy"): _array(archive.read(m)) for m in members}
-        found = f"would unpack to {unpacked:.1e} bytes"
+        fault = f"would unpack to {unpacked:.1e} bytes"
     except FileNotFoundError:
-        found = "no such file"
+        fault = "no such file"
     except (
         ValueError,
         OSError,
@@ -50,9 +50,9 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
         zlib.error,
         zipfile.BadZipFile,
     ) as error:
-        found = f"cannot be read ({error})"
+        fault = f"cannot be read ({error})"
     raise BadInput(
-        found,
+        fault,
         where=path,
         expected="plain arrays in an .npz file",
         remedy="Write it again with the command that made it.",

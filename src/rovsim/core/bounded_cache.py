@@ -48,9 +48,9 @@ class Recent(Generic[T]):
         if not self._most:
             return
         with self._lock:
-            _, before = self._kept.pop(key, (None, 0))
+            _, old_size = self._kept.pop(key, (None, 0))
             self._kept[key] = value, size(value)
-            self._size += self._kept[key][1] - before
+            self._size += self._kept[key][1] - old_size
             while len(self._kept) > 1 and self._size > self._most:
                 self._size -= self._kept.popitem(last=False)[1][1]
 

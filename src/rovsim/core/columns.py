@@ -17,7 +17,7 @@ def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
         then: put in front of the other lines; by default `first`.
     """
     lines = textwrap.wrap(
-        TYPED.sub(lambda found: found[0].replace(" ", WHOLE), text),
+        TYPED.sub(lambda match: match[0].replace(" ", WHOLE), text),
         WIDTH,
         initial_indent=first,
         subsequent_indent=first if then is None else then,
@@ -29,7 +29,7 @@ def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
 
 def fold_page(text: str) -> str:
     """Fold a text of several paragraphs; lines of a usage (`rovsim …`) stay separate lines."""
-    paragraphs = (_fold_paragraph(one) for one in text.strip().split("\n\n"))
+    paragraphs = (_fold_paragraph(paragraph) for paragraph in text.strip().split("\n\n"))
     return "\n\n".join("\n".join(lines) for lines in paragraphs)
 
 
@@ -40,5 +40,5 @@ def _fold_paragraph(text: str) -> list[str]:
     margin = " " * len(usage[0])
     lines = text.splitlines()
     return [
-        line for one in lines for line in ([one] if len(one) <= WIDTH else fold(one, "", margin))
+        line for row in lines for line in ([row] if len(row) <= WIDTH else fold(row, "", margin))
     ]

@@ -76,14 +76,14 @@ def appearing_together(folder: Path, last: str) -> Iterator[Path]:
     Raises:
         BadInput: no file can be written there.
     """
-    with folder_beside(folder / last, told=folder) as made:
-        yield made
-        inside = [path.relative_to(made) for path in made.rglob("*") if path.is_file()]
-        inside.sort(key=lambda path: (path == Path(last), path))
-        for place in {folder / path.parent for path in inside}:
-            make_folder(place)  # before the first file moves, so that errors leave the old files
-        for path in inside:
-            os.replace(made / path, folder / path)
+    with folder_beside(folder / last, told=folder) as temporary:
+        yield temporary
+        files = [path.relative_to(temporary) for path in temporary.rglob("*") if path.is_file()]
+        files.sort(key=lambda path: (path == Path(last), path))
+        for target in {folder / path.parent for path in files}:
+            make_folder(target)  # before the first file moves, so that errors leave the old files
+        for path in files:
+            os.replace(temporary / path, folder / path)
 
 
 def _beside(path: Path, a_folder: bool = False) -> Path:
@@ -93,18 +93,18 @@ def _beside(path: Path, a_folder: bool = False) -> Path:
     process left behind is recognised and removed here.
     """
     file = sha256(os.fsencode(path.name)).hexdigest()[:12]
-    here = f".{file}-{gethostname()[:40]}-"
+    prefix = f".{file}-{gethostname()[:40]}-"
     try:
         if path.is_dir() and not a_folder:
             raise IsADirectoryError(errno.EISDIR, "a folder of that name is in the way")
         path.parent.mkdir(parents=True, exist_ok=True)
-        for old in path.parent.glob(f"{glob.escape(here)}*"):
-            if not _lives(old.name.removeprefix(here).partition("-")[0]):
-                _remove(old)
-        mine = f"{here}{os.getpid()}-"
+        for leftover in path.parent.glob(f"{glob.escape(prefix)}*"):
+            if not _lives(leftover.name.removeprefix(prefix).partition("-")[0]):
+                _remove(leftover)
+        own_prefix = f"{prefix}{os.getpid()}-"
         if a_folder:
-            return Path(tempfile.mkdtemp(dir=path.parent, prefix=mine))
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=mine, suffix=path.suffix)
+            return Path(tempfile.mkdtemp(dir=path.parent, prefix=own_prefix))
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=own_prefix, suffix=path.suffix)
     except OSError as error:
         raise unwritable(path, error) from None
     os.close(handle)
@@ -189,11 +189,11 @@ def read_json(path: Path) -> Any:
     try:
         return json.loads(read_text(path))
     except json.JSONDecodeError as error:
-        found, where = error.msg, f"{path}, line {error.lineno}"
+        fault, where = error.msg, f"{path}, line {error.lineno}"
     except (ValueError, RecursionError) as error:  # a number too long, or nested too deeply
-        found, where = str(error), f"{path}"
+        fault, where = str(error), f"{path}"
     raise BadInput(
-        f"not JSON ({found})",
+        f"not JSON ({fault})",
         where=where,
         expected="a JSON file",
         remedy="Write the file again with the command that made it.",
@@ -232,16 +232,16 @@ def read_text(path: Path) -> str:
     try:
         if path.is_file() or not path.exists() or path.is_dir():
             return path.read_text(encoding="utf-8-sig")
-        found, remedy = "no file but a device or a pipe", "Copy its content into a file."
+        fault, remedy = "no file but a device or a pipe", "Copy its content into a file."
     except FileNotFoundError:
-        found, remedy = "no such file", "Check the path."
+        fault, remedy = "no such file", "Check the path."
     except IsADirectoryError:
-        found, remedy = "a folder", "Name the file inside it."
+        fault, remedy = "a folder", "Name the file inside it."
     except UnicodeDecodeError as error:
-        found, remedy = f"byte {error.start} is not UTF-8", "Save the file as UTF-8 text."
+        fault, remedy = f"byte {error.start} is not UTF-8", "Save the file as UTF-8 text."
     except OSError as error:
-        found, remedy = f"cannot be read ({error.strerror})", "Check its permissions."
-    raise BadInput(found, where=path, expected="a readable text file", remedy=remedy)
+        fault, remedy = f"cannot be read ({error.strerror})", "Check its permissions."
+    raise BadInput(fault, where=path, expected="a readable text file", remedy=remedy)
 
 
 def plain(value: Any) -> Any:

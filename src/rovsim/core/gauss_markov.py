@@ -49,8 +49,8 @@ def lag(a: Array, kicks: Array, begin: Array) -> Array:
         kicks: inputs (n, c).
         begin: x (c,) before the first kick.
     """
-    each = zip(np.broadcast_to(a, begin.shape), begin, kicks.T, strict=True)
-    return np.stack([_lag_column(float(a), float(first), own) for a, first, own in each], axis=1)
+    columns = zip(np.broadcast_to(a, begin.shape), begin, kicks.T, strict=True)
+    return np.stack([_lag_column(float(a), float(first), k) for a, first, k in columns], axis=1)
 
 
 def _lag_column(a: float, begin: float, kicks: Array) -> Array:
@@ -62,11 +62,11 @@ def _lag_column(a: float, begin: float, kicks: Array) -> Array:
 
 def _lag_by_rows(a: Array, kicks: Array, begin: Array) -> Array:
     """Compute `lag` with factors (n, ..., c) that differ; for many draws, rows are faster."""
-    found, x = np.empty_like(kicks), begin
+    values, x = np.empty_like(kicks), begin
     for k, kick in enumerate(kicks):
         x = a[k] * x + kick
-        found[k] = x
-    return found
+        values[k] = x
+    return values
 
 
 def variance_of_mean(ratio: Array) -> Array:

@@ -20,8 +20,8 @@ def tell_making() -> str:
     """Sentence with date, version, commit (where known) and machine."""
     commit = describe_commit()
     version = f"rovsim {rovsim.__version__}" + (f" (commit {commit})" if commit else "")
-    when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(_now()))
-    return f"Made {when} by {version}, on {describe_machine()}."
+    date = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(_now()))
+    return f"Made {date} by {version}, on {describe_machine()}."
 
 
 def describe_machine() -> str:
@@ -43,21 +43,21 @@ def describe_commit(sources: Path = SOURCES) -> str:
 
 def _git(folder: Path, *words: str) -> str:
     """Run git in a folder and return its output; empty where git is missing or does not answer."""
-    quiet = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}  # do not disturb another git at work there
+    env = os.environ | {"GIT_OPTIONAL_LOCKS": "0"}  # do not disturb another git at work there
     with suppress(OSError, subprocess.SubprocessError):
-        done = subprocess.run(
+        process = subprocess.run(
             ["git", "-C", str(folder), *words],
             capture_output=True,
             text=True,
             check=True,
             timeout=PATIENCE,
-            env=quiet,
+            env=env,
         )
-        return done.stdout.strip()
+        return process.stdout.strip()
     return ""
 
 
 def _now() -> float:
     """Seconds since 1970; SOURCE_DATE_EPOCH (reproducible-builds.org) takes the clock's place."""
-    given = os.environ.get("SOURCE_DATE_EPOCH", "")
-    return float(given) if given.isdigit() else time.time()
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    return float(epoch) if epoch.isdigit() else time.time()

@@ -68,8 +68,8 @@ def heard_by(listener: Tell = _nobody) -> Iterator[None]:
 def counted(items: Sequence[T], what: str) -> Iterable[T]:
     """Iterate over items and show how many are done and how long the rest takes."""
     with _shown(what) as tell:
-        for done, item in enumerate(items):
-            tell(what, done / len(items))
+        for k, item in enumerate(items):
+            tell(what, k / len(items))
             yield item
 
 
@@ -77,7 +77,7 @@ def counted(items: Sequence[T], what: str) -> Iterable[T]:
 def reported(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield a function to be called with the number of rounds done and the total number."""
     with _shown(what) as tell:
-        yield lambda done, total: tell(what, done / total if total else None)
+        yield lambda k, count: tell(what, k / count if count else None)
 
 
 @contextmanager

@@ -27,11 +27,11 @@ def of_outputs(pulses: Array) -> tuple[Array, tuple[str, ...]]:
     Returns:
         The pulses, and a sentence if any was replaced.
     """
-    none = absent(pulses)
-    if not none.any():
+    missing = absent(pulses)
+    if not missing.any():
         return pulses, ()
-    said = f"{int(none.sum())} outputs without a pulse stand for no command."
-    return np.where(none, CENTER, pulses), (said,)
+    warning = f"{int(missing.sum())} outputs without a pulse stand for no command."
+    return np.where(missing, CENTER, pulses), (warning,)
 
 
 def to_commands(pulses: Array) -> Array:

@@ -53,10 +53,10 @@ def multiply(a: Array, b: Array) -> Array:
 
 def _joined(*parts: Array) -> Array:
     """Stack parts (...) along a new last axis; `np.stack` takes twice as long for few numbers."""
-    found = np.empty((*parts[0].shape, len(parts)), parts[0].dtype)
+    stacked = np.empty((*parts[0].shape, len(parts)), parts[0].dtype)
     for i, part in enumerate(parts):
-        found[..., i] = part
-    return found
+        stacked[..., i] = part
+    return stacked
 
 
 def conjugate(q: Array) -> Array:
@@ -114,11 +114,11 @@ def continuous(q: Array) -> Array:
 
 def unwrapped(angles: Array) -> Array:
     """Unwrap angles (time, c) in rad along time, also across gaps (NaN)."""
-    found = angles.copy()
-    for column in found.T:
-        known = np.isfinite(column)
-        column[known] = np.unwrap(column[known])
-    return found
+    result = angles.copy()
+    for column in result.T:
+        finite = np.isfinite(column)
+        column[finite] = np.unwrap(column[finite])
+    return result
 
 
 def from_euler(roll: Array, pitch: Array, yaw: Array) -> Array:

@@ -78,25 +78,25 @@ def checked(kind: type[S], content: Any, where: Path | str) -> S:
 
 def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadInput:
     """Turn pydantic's errors into one message about the first of them."""
-    found = error.errors(include_url=False)
+    errors = error.errors(include_url=False)
     # A mistyped key gives two errors, unknown and missing; the unknown key tells what was meant.
-    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
-    place = ".".join(str(part) for part in first["loc"] if not _is_type(part))
+    first = next((e for e in errors if e["type"] == "extra_forbidden"), errors[0])
+    name = ".".join(str(part) for part in first["loc"] if not _is_type(part))
     if first["type"] == "extra_forbidden":
         key = str(first["loc"][-1])
-        known = _known_keys(kind, first["loc"][:-1])
-        return unlisted(key, known, found=f"unknown key '{place}'", where=where)
+        keys = _known_keys(kind, first["loc"][:-1])
+        return unlisted(key, keys, found=f"unknown key '{name}'", where=where)
     if first["type"] == "missing" and isinstance(first["loc"][-1], int):
-        return _too_few(found, first, place, where)
+        return _too_few(errors, first, name, where)
     if first["type"] == "missing":
         return BadInput(
-            f"'{place}' is missing",
+            f"'{name}' is missing",
             where=where,
-            expected=f"a value for '{place}'",
+            expected=f"a value for '{name}'",
             remedy=f"Add it; {kind.described} has an example.",
         )
     return BadInput(
-        f"'{place}' is {reprlib.repr(first.get('input'))}",
+        f"'{name}' is {reprlib.repr(first.get('input'))}",
         where=where,
         expected=_expected(first, kind),
         remedy=_remedy(first),
@@ -106,7 +106,7 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
 def _too_few(found: list[Any], first: Any, place: str, where: Any) -> BadInput:
     """Make the error for a row of numbers that is too short."""
     row = first["loc"][:-1]
-    missing = [one for one in found if one["type"] == "missing" and one["loc"][:-1] == row]
+    missing = [e for e in found if e["type"] == "missing" and e["loc"][:-1] == row]
     return BadInput(
         f"'{place.rpartition('.')[0]}' is {reprlib.repr(first.get('input'))}",
         where=where,
@@ -130,8 +130,8 @@ def _expected(error: Any, kind: type[Section]) -> str:
         return _several(limits["min_length"], "at least")
     if error["type"] == "too_long":
         return _several(limits["max_length"], "at most")
-    told = _sentence(error["msg"])
-    return WORDS.get(error["type"], f"a number {told}" if told.startswith(BOUNDS) else told)
+    text = _sentence(error["msg"])
+    return WORDS.get(error["type"], f"a number {text}" if text.startswith(BOUNDS) else text)
 
 
 def _several(count: int, bound: str) -> str:
@@ -140,13 +140,13 @@ def _several(count: int, bound: str) -> str:
 
 def _remedy(error: Any) -> str:
     """Suggest the option that was probably meant, if the value must be one of several."""
-    given = error.get("input")
-    if error["type"] != "literal_error" or not isinstance(given, str):
+    value = error.get("input")
+    if error["type"] != "literal_error" or not isinstance(value, str):
         return "Correct that value."
     options = re.findall(r"'([^']*)'", error["msg"])
-    typed = given.casefold()
-    meant = [one for one in options if typed and (typed.startswith(one) or one.startswith(typed))]
-    return f"Did you mean '{meant[0]}'?" if len(meant) == 1 else "Correct that value."
+    text = value.casefold()
+    matches = [o for o in options if text and (text.startswith(o) or o.startswith(text))]
+    return f"Did you mean '{matches[0]}'?" if len(matches) == 1 else "Correct that value."
 
 
 def _sentence(message: str) -> str:
@@ -184,4 +184,4 @@ def _sections_in(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     inner = getattr(annotation, "__args__", ())
-    return [section for one in inner for section in _sections_in(one)]
+    return [section for argument in inner for section in _sections_in(argument)]

@@ -37,7 +37,7 @@ def second_process(*modules: str, first: str | None = None) -> Iterator[Executor
     if usable_cores() < 2 or all(module in sys.modules for module in modules):
         yield _ThisProcess()
         return
-    others, executor = set(active_children()), _OtherProcess()
+    existing, executor = set(active_children()), _OtherProcess()
     try:
         if first is not None:
             executor.submit(call, first)
@@ -45,7 +45,7 @@ def second_process(*modules: str, first: str | None = None) -> Iterator[Executor
         yield executor
     except BaseException as error:
         executor.shutdown(wait=False, cancel_futures=True)
-        for process in set(active_children()) - others:
+        for process in set(active_children()) - existing:
             _end(process)  # its results are not needed any more
         if isinstance(error, (BrokenProcessPool, SystemExit)):  # SystemExit is the other's
             raise RovsimError(
@@ -81,9 +81,9 @@ class _ThisProcess(Executor):
     """Runs functions at once, in this process."""
 
     def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
-        done: Future = Future()
-        done.set_result(function(*given, **named))
-        return done
+        future: Future = Future()
+        future.set_result(function(*given, **named))
+        return future
 
 
 def _obey_the_first() -> None:

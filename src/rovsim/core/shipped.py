@@ -10,8 +10,8 @@ CONF = "conf"
 
 def shipped(folder: str) -> Path:
     """Path of a folder that comes with rovsim, such as `conf` or `docs/images/effects`."""
-    inside = Path(str(files(rovsim))) / folder
-    return inside if inside.is_dir() else Path(rovsim.__file__).parents[2] / folder
+    path = Path(str(files(rovsim))) / folder
+    return path if path.is_dir() else Path(rovsim.__file__).parents[2] / folder
 
 
 def conf_folders() -> list[Path]:
@@ -19,8 +19,8 @@ def conf_folders() -> list[Path]:
 
     A file in the first hides the file of the same name in the second.
     """
-    own = Path(CONF).absolute()
-    return list(dict.fromkeys([own, shipped(CONF)] if own.is_dir() else [shipped(CONF)]))
+    local = Path(CONF).absolute()
+    return list(dict.fromkeys([local, shipped(CONF)] if local.is_dir() else [shipped(CONF)]))
 
 
 def conf_file(name: str) -> Path | None:

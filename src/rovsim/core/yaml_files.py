@@ -96,8 +96,8 @@ def _count(node: Any, known: dict[int, float]) -> float:
         return 1
     if id(node) not in known:
         known[id(node)] = inf  # until it is counted: if it is met before, it contains itself
-        inside = node.values() if isinstance(node, dict) else node
-        known[id(node)] = 1 + sum(_count(child, known) for child in inside)
+        children = node.values() if isinstance(node, dict) else node
+        known[id(node)] = 1 + sum(_count(child, known) for child in children)
     return known[id(node)]
 
 
