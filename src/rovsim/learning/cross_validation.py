@@ -37,12 +37,12 @@ def noise_factor(
     Returns:
         One of `FACTORS`.
     """
-    seen = vectors.T @ error.T
-    missed = np.zeros(len(FACTORS))
+    projected = vectors.T @ error.T
+    losses = np.zeros(len(FACTORS))
     for i, factor in enumerate(FACTORS):
         inverse = 1.0 / (outputscale * np.maximum(values, 0.0) + factor * noise)
-        weights = vectors @ (inverse[:, None] * seen)
+        weights = vectors @ (inverse[:, None] * projected)
         for out in split_rows(len(values)):
-            own = (vectors[out] * inverse) @ vectors[out].T
-            missed[i] += np.sum(np.linalg.solve(own, weights[out]) ** 2)
-    return FACTORS[int(np.argmin(missed))]
+            block = (vectors[out] * inverse) @ vectors[out].T
+            losses[i] += np.sum(np.linalg.solve(block, weights[out]) ** 2)
+    return FACTORS[int(np.argmin(losses))]

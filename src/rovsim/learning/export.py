@@ -75,15 +75,15 @@ def export_neighbours(
     header = _header(NEIGHBOURS, features, len(Z), Y.shape[1], k)
     header[WEIGHTING] = DISTANCE if weights == "distance" else UNIFORM
     axes = principal_axes(Z)
-    turned = Z @ axes.T
-    tree = packed_tree(turned)
+    rotated = Z @ axes.T
+    tree = packed_tree(rotated)
     parts = [
         header,
         scaling.shift,
         scaling.scale,
         _sheet(axes, filled(len(axes), PASS), len(axes)),
         tree.boxes,
-        side_by_side(turned[tree.order]),
+        side_by_side(rotated[tree.order]),
         _row(tree.order, filled(len(Z), LANES)),
         Z[tree.order],
         Y[tree.order],

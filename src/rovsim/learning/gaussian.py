@@ -51,10 +51,10 @@ def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
     if settings.huberized is None or len(X) <= NEARBY:
         return Y
     Z = fit_scaling("standard", X).apply(X)
-    _, near = scipy.spatial.cKDTree(Z).query(Z, NEARBY + 1)
-    usual = np.median(Y[np.asarray(near)[:, 1:]], axis=1)
-    reach = settings.huberized * STD_PER_MAD * np.median(np.abs(Y - usual), axis=0)
-    return usual + np.clip(Y - usual, -reach, reach)
+    _, neighbours = scipy.spatial.cKDTree(Z).query(Z, NEARBY + 1)
+    medians = np.median(Y[np.asarray(neighbours)[:, 1:]], axis=1)
+    reach = settings.huberized * STD_PER_MAD * np.median(np.abs(Y - medians), axis=0)
+    return medians + np.clip(Y - medians, -reach, reach)
 
 
 def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
@@ -135,14 +135,14 @@ def optimise(
 
     adam = torch.optim.Adam(parameters, lr=rate)
     value = float("nan")
-    for done in range(rounds):
-        adam.param_groups[0]["lr"] = rate * (1.0 - 0.9 * done / rounds)
+    for k in range(rounds):
+        adam.param_groups[0]["lr"] = rate * (1.0 - 0.9 * k / rounds)
         adam.zero_grad()
-        now = loss()
-        now.backward()
+        current = loss()
+        current.backward()
         adam.step()
-        value = float(now.detach())
-        progress(done + 1, rounds)
+        value = float(current.detach())
+        progress(k + 1, rounds)
     return value
 
 
@@ -228,8 +228,8 @@ def library_posterior(model: Any, arrays: Mapping[str, Array], fast: bool = Fals
         # its path for small kernels does not take one kernel for six outputs
         lazy = settings.max_eager_kernel_size(1)
         with torch.no_grad(), settings.debug(False), settings.fast_pred_var(fast), lazy:
-            found = model(Z)
-            mean, variance = found.mean.numpy().T, found.variance.numpy().T
+            posterior = model(Z)
+            mean, variance = posterior.mean.numpy().T, posterior.variance.numpy().T
         scale = arrays["target_scale"]
         return mean * scale + arrays["target_shift"], variance * scale**2
 
@@ -256,12 +256,12 @@ def export(
     mean = arrays["target_shift"] + arrays["target_scale"] * arrays["mean"]
     scale = arrays["target_scale"] * arrays["outputscale"]
     prior = arrays["target_scale"] * scale
-    parts = len(arrays["lengthscale"])
-    columns = np.split((weights * scale[:, None]).T, parts, axis=1)
+    count = len(arrays["lengthscale"])
+    columns = np.split((weights * scale[:, None]).T, count, axis=1)
     kernels = [
-        Kernel(Z, *of_one)
-        for of_one in zip(
-            arrays["lengthscale"], columns, np.split(prior, parts), variances, strict=True
+        Kernel(Z, *fields)
+        for fields in zip(
+            arrays["lengthscale"], columns, np.split(prior, count), variances, strict=True
         )
     ]
     fades = settings.extrapolation_quantile is not None
@@ -289,8 +289,8 @@ def fade_beyond(
     """
     if settings.extrapolation_quantile is None:
         return list(variances)
-    some = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])
+    sample = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])
     return [
-        one.faded_from(rbf(some, points, lengthscale), settings.extrapolation_quantile)
-        for one, lengthscale in zip(variances, arrays["lengthscale"], strict=True)
+        variance.faded_from(rbf(sample, points, lengthscale), settings.extrapolation_quantile)
+        for variance, lengthscale in zip(variances, arrays["lengthscale"], strict=True)
     ]

@@ -99,8 +99,8 @@ def learners() -> Mapping[str, Learner]:
     """Find every learner that a module of `rovsim.learning.learners` declares, by its kind."""
     package = rovsim.learning.learners
     names = [module.name for module in pkgutil.iter_modules(package.__path__)]
-    found = [import_module(f"{package.__name__}.{name}").LEARNER for name in names]
-    return {learner.settings.model_fields["kind"].default: learner for learner in found}
+    declared = [import_module(f"{package.__name__}.{name}").LEARNER for name in names]
+    return {learner.settings.model_fields["kind"].default: learner for learner in declared}
 
 
 def learner(kind: str, where: object = "residual") -> Learner:
@@ -109,10 +109,10 @@ def learner(kind: str, where: object = "residual") -> Learner:
     Raises:
         BadInput: there is no learner of this kind; the nearest known kind is named.
     """
-    known = learners()
-    if kind in known:
-        return known[kind]
-    raise unlisted(kind, known, found=f"unknown residual '{kind}'", where=where)
+    by_kind = learners()
+    if kind in by_kind:
+        return by_kind[kind]
+    raise unlisted(kind, by_kind, found=f"unknown residual '{kind}'", where=where)
 
 
 def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:

@@ -25,9 +25,9 @@ def flown_with(control: str, run: Any) -> bool:
 
 def _refuse_parts(motion: Motion) -> None:
     """Refuse a run of which not all six axes were measured."""
-    known = np.ones(6, bool) if motion.measured is None else motion.measured.axes
-    if not known.all():
-        missing = ", ".join(axis for axis, yes in zip(AXES, known, strict=True) if not yes)
+    measured = np.ones(6, bool) if motion.measured is None else motion.measured.axes
+    if not measured.all():
+        missing = ", ".join(axis for axis, shown in zip(AXES, measured, strict=True) if not shown)
         raise BadInput(
             f"nothing was measured of {missing}",
             where=f"run {motion.run.id}",
@@ -42,19 +42,19 @@ def training_runs(motions: Iterable[Motion], control: str) -> Iterator[Motion]:
     Raises:
         BadInput: there is no such run, or not all axes of one were measured.
     """
-    seen, none = [], True
+    descriptions, empty = [], True
     for motion in motions:
-        seen.append(f"{motion.run.id} ({motion.run.control}, {motion.run.split})")
+        descriptions.append(f"{motion.run.id} ({motion.run.control}, {motion.run.split})")
         if motion.run.split == "train" and flown_with(control, motion.run):
             _refuse_parts(motion)
-            none = False
+            empty = False
             yield motion
-    if none:
+    if empty:
         raise BadInput(
             f"no train run with control {control}",
             where="campaign.yaml",
             expected="at least one run with that control and split: train",
-            remedy=f"Its runs are {', '.join(seen)}. "
+            remedy=f"Its runs are {', '.join(descriptions)}. "
             "Train with the other control, or record such a run.",
         )
 
@@ -87,7 +87,7 @@ class Gathered:
         self._kept.append(self._thinned(pairs, self._every))
         while sum(len(Y) for _, Y in self._kept) > max(self.most, len(self.runs)):
             self._every *= 2
-            self._kept = [self._thinned(kept, 2) for kept in self._kept]
+            self._kept = [self._thinned(block, 2) for block in self._kept]
 
     def _thinned(self, pairs: tuple[Array, Array], every: int) -> tuple[Array, Array]:
         """Keep one of `every` rows of X (n, d) and Y (n, 6)."""

@@ -44,8 +44,8 @@ class PosteriorVariance:
 
     def prior_share(self, k: Array, rank: int) -> Array:
         """Compute rho (q,) at q queries with kernel values k (q, n), from `rank` vectors."""
-        seen = (k @ self.vectors[:rank].T) ** 2 @ self.spectrum[:rank]
-        return np.clip(1.0 - self.identity * (k**2).sum(1) - seen, 0.0, 1.0)
+        reduction = (k @ self.vectors[:rank].T) ** 2 @ self.spectrum[:rank]
+        return np.clip(1.0 - self.identity * (k**2).sum(1) - reduction, 0.0, 1.0)
 
     def faded_from(self, k: Array, share: float) -> "PosteriorVariance":
         """Set the limit so that the correction counts fully at this share of q queries k (q, n)."""
@@ -69,9 +69,9 @@ def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVar
         vectors: the eigenvectors (n, n), one a column.
         noise: variance of the noise, > 0, in units of the prior variance.
     """
-    kept = values > _least(noise, EXACT)
-    kept[-1] = True  # even with much noise: rank 0 would mean that there is no variance
-    values, vectors = values[kept][::-1], vectors[:, kept][:, ::-1]
+    used = values > _least(noise, EXACT)
+    used[-1] = True  # even with much noise: rank 0 would mean that there is no variance
+    values, vectors = values[used][::-1], vectors[:, used][:, ::-1]
     spectrum = -values / (noise * (values + noise))
     fading_rank = int(np.sum(values > _least(noise, ROUGH)))
     return PosteriorVariance(

@@ -35,9 +35,9 @@ def packed_tree(points: Array) -> Tree:
     lower = np.minimum.reduceat(points[order], starts)
     upper = np.maximum.reduceat(points[order], starts)
     levels = []
-    for below, count in pairwise(tree_levels(len(points))):
+    for nodes, count in pairwise(tree_levels(len(points))):
         levels.append(np.stack([side_by_side(lower), side_by_side(upper)], axis=1))
-        starts = np.arange(0, below, LANES)
+        starts = np.arange(0, nodes, LANES)
         lower, upper = np.minimum.reduceat(lower, starts), np.maximum.reduceat(upper, starts)
         assert len(levels[-1]) == len(lower) == count
     return Tree(order, np.concatenate(levels))

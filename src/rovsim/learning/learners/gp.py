@@ -48,10 +48,10 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
     """
     Y = gaussian.huberize(X, Y, settings)
     rows = spread_rows(len(X), settings.max_points, seed)
-    some = rows[spread_rows(len(rows), settings.tuning_points, seed)]
+    tuning_rows = rows[spread_rows(len(rows), settings.tuning_points, seed)]
     arrays = gaussian.scalings(settings.features.scaling, X, Y)
     with seeded_torch(seed):
-        model = _model(*gaussian.scaled_pairs(arrays, X[some], Y[some]), settings)
+        model = _model(*gaussian.scaled_pairs(arrays, X[tuning_rows], Y[tuning_rows]), settings)
         loss = _tune(model, settings, progress)
         Z, T = gaussian.scaled_pairs(arrays, X[rows], Y[rows])
         arrays |= gaussian.hyperparameters(model) | {"points": Z, "targets": T}
@@ -63,7 +63,7 @@ def fit(X: Array, Y: Array, settings: GpSettings, seed: int, progress: Progress)
         weights = model.prediction_strategy.mean_cache.numpy()
     variances = gaussian.fade_beyond(_posterior_variances(arrays, spectra), arrays, Z, X, settings)
     data = gaussian.export(settings, arrays, Z, weights, variances)
-    info = {"points": len(rows), "tuning_points": len(some), "loss": loss}
+    info = {"points": len(rows), "tuning_points": len(tuning_rows), "loss": loss}
     info |= {name: arrays[name].tolist() for name in ("lengthscale", "outputscale", "noise")}
     return Trained(settings, data, arrays, info)
 
@@ -98,7 +98,9 @@ def _posterior_variances(
 ) -> list[PosteriorVariance]:
     """Make the posterior variance of each kernel's process."""
     noise = arrays["noise"] / arrays["outputscale"]
-    return [decompose_exact(*own, float(ratio)) for own, ratio in zip(spectra, noise, strict=True)]
+    return [
+        decompose_exact(*pair, float(ratio)) for pair, ratio in zip(spectra, noise, strict=True)
+    ]
 
 
 def _model(Z: Array, T: Array, settings: GpSettings) -> Any:

@@ -66,20 +66,22 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
         Y: targets (n, 6), m/s2 and rad/s2.
         weights: `uniform`, or `distance` for inverse distances.
     """
-    tried = [k for k in TRIED if k <= len(Z) - -(-len(Z) // PARTS)]
-    if len(tried) < 2:
+    candidates = [k for k in TRIED if k <= len(Z) - -(-len(Z) // PARTS)]
+    if len(candidates) < 2:
         return max(1, min(TRIED[0], len(Z)))
     scale = np.maximum(np.std(Y, axis=0), CONSTANT)
-    missed = np.zeros(len(tried))
+    errors = np.zeros(len(candidates))
     for out in split_rows(len(Z)):
-        kept = np.setdiff1d(np.arange(len(Z)), out)
-        distance, near = map(np.asarray, scipy.spatial.cKDTree(Z[kept]).query(Z[out], tried[-1]))
+        training = np.setdiff1d(np.arange(len(Z)), out)
+        distance, nearest = map(
+            np.asarray, scipy.spatial.cKDTree(Z[training]).query(Z[out], candidates[-1])
+        )
         share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)
-        known = np.cumsum(share[..., None] * Y[kept][near], axis=1)
-        for i, k in enumerate(tried):
-            mean = known[:, k - 1] / share[:, :k].sum(axis=1)[:, None]
-            missed[i] += np.sum(((mean - Y[out]) / scale) ** 2)
-    return tried[int(np.argmin(missed))]
+        sums = np.cumsum(share[..., None] * Y[training][nearest], axis=1)
+        for i, k in enumerate(candidates):
+            mean = sums[:, k - 1] / share[:, :k].sum(axis=1)[:, None]
+            errors[i] += np.sum(((mean - Y[out]) / scale) ** 2)
+    return candidates[int(np.argmin(errors))]
 
 
 def library_from(arrays: Mapping[str, Array], settings: KnnSettings) -> Predict:

@@ -196,10 +196,10 @@ def _posterior_variances(model: Any, arrays: Mapping[str, Array]) -> list[Poster
 
     with torch.no_grad():
         L = _root(model)
-        one = torch.eye(L.shape[-1])
-        inverse = torch.linalg.solve_triangular(L, one, upper=False)
+        identity = torch.eye(L.shape[-1])
+        inverse = torch.linalg.solve_triangular(L, identity, upper=False)
         root = torch.as_tensor(np.tril(arrays["variational_root"]))
-        A = (inverse.mT @ (one - root @ root.mT) @ inverse).numpy()
+        A = (inverse.mT @ (identity - root @ root.mT) @ inverse).numpy()
     return [
         decompose_quadratic(quadratic * scale)
         for quadratic, scale in zip(A, arrays["outputscale"], strict=True)
