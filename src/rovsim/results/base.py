@@ -41,9 +41,9 @@ class Result(Section):
             return cls.model_validate(read_json(path))
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-        place = ".".join(str(part) for part in first["loc"])
+        name = ".".join(str(part) for part in first["loc"])
         raise BadInput(
-            f"is not a {cls.noun} of this program ({f'{place}: ' if place else ''}{first['msg']})",
+            f"is not a {cls.noun} of this program ({f'{name}: ' if name else ''}{first['msg']})",
             where=path,
             expected=f"what {cls.command} wrote",
             remedy=f"Run {cls.command} again.",

@@ -54,4 +54,4 @@ class Comparison(Result):
     @staticmethod
     def merged(parts: Iterable["Comparison"]) -> "Comparison":
         """One of several, their models in the order given."""
-        return Comparison(models={name: m for part in parts for name, m in part.models.items()})
+        return Comparison(models={name: m for c in parts for name, m in c.models.items()})

@@ -117,7 +117,7 @@ def bound_unexplained(fraction: float | None, reductions: Iterable[float | None]
         fraction: `Unexplained.fraction`; None: nothing is known of it.
         reductions: `error_reduction` of the selected effects.
     """
-    return (fraction or 0.0) * max(0.0, 1.0 - sum(one or 0.0 for one in reductions))
+    return (fraction or 0.0) * max(0.0, 1.0 - sum(reduction or 0.0 for reduction in reductions))
 
 
 class DiagnosisErrors(Section):
@@ -228,7 +228,7 @@ class Diagnosis(Result):
     @property
     def fitted(self) -> dict[str, FittedEffect]:
         """All that has values, by id: the selected effects first, with those of the final model."""
-        selected = {one.effect: one for one in self.selected}
+        selected = {s.effect: s for s in self.selected}
         return selected | {r.effect: r for r in self.ranking if r.effect not in selected}
 
 

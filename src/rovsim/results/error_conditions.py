@@ -90,4 +90,4 @@ class ErrorConditions(Result):
     @staticmethod
     def merged(parts: Iterable["ErrorConditions"]) -> "ErrorConditions":
         """One of several, their models in the order given."""
-        return ErrorConditions(models={n: m for part in parts for n, m in part.models.items()})
+        return ErrorConditions(models={n: m for c in parts for n, m in c.models.items()})

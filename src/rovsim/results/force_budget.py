@@ -49,12 +49,12 @@ class ForceBudget:
 
     def rms(self) -> dict[str, ByAxis]:
         """Root mean square of every part and of what is missing, by axis, at usable instants."""
-        known = np.isfinite(self.missing).any(axis=1)
+        usable = np.isfinite(self.missing).any(axis=1)
         forces = {**self.parts, MISSING: self.missing}
-        if not known.any():
+        if not usable.any():
             return {name: ByAxis() for name in forces}
         return {
-            name: ByAxis.of(np.sqrt(np.mean(force[known] ** 2, axis=0)))
+            name: ByAxis.of(np.sqrt(np.mean(force[usable] ** 2, axis=0)))
             for name, force in forces.items()
         }
 

@@ -53,7 +53,7 @@ class Ladder(Result):
 
         The effects stand where the model that has all of them would.
         """
-        added = [s for s in diagnosed if s.model.startswith("+")]
+        effects = [s for s in diagnosed if s.model.startswith("+")]
         floor = [s for s in diagnosed if s.model == NOISE_FLOOR]
-        steps = [s for m in models for s in (added if m.model == EFFECTS else [m])]
+        steps = [s for m in models for s in (effects if m.model == EFFECTS else [m])]
         return Ladder(steps=(*steps, *floor))

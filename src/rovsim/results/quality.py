@@ -107,4 +107,4 @@ class Quality(Result):
     @property
     def excited(self) -> tuple[str, ...]:
         """Axes that moved enough to be judged."""
-        return tuple(axis for axis, one in self.excitation.items() if one.excited)
+        return tuple(axis for axis, excitation in self.excitation.items() if excitation.excited)
