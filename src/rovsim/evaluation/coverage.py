@@ -22,16 +22,16 @@ def cover(motion: Motion, band: Band, spans: Spans) -> Coverage:
     Returns:
         Shares and mean width by axis, over all samples and over the last one of each window.
     """
-    known = np.isfinite(band.nu).all(axis=(0, 2)) & motion.usable
+    finite = np.isfinite(band.nu).all(axis=(0, 2)) & motion.usable
     inside = (motion.nu >= band.nu[0]) & (motion.nu <= band.nu[1])
-    last = last_predicted(motion, spans)
-    last = last[known[last]]
+    ends = last_predicted(motion, spans)
+    ends = ends[finite[ends]]
     return Coverage(
-        points=int(known.sum()),
-        windows=len(last),
-        inside=ByAxis.of(_mean(inside[known])),
-        at_end=ByAxis.of(_mean(inside[last])),
-        width=ByAxis.of(_mean(band.nu[1, known] - band.nu[0, known])),
+        points=int(finite.sum()),
+        windows=len(ends),
+        inside=ByAxis.of(_mean(inside[finite])),
+        at_end=ByAxis.of(_mean(inside[ends])),
+        width=ByAxis.of(_mean(band.nu[1, finite] - band.nu[0, finite])),
     )
 
 

@@ -57,14 +57,14 @@ def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> For
         motion: the run.
         how: settings of the filter of the measurement, and of how commands are held.
     """
-    found = sample_run(model, motion, how)
+    samples = sample_run(model, motion, how)
     parts: dict[str, Array] = {}
-    before = np.zeros((len(motion.time), 6))
+    previous = np.zeros((len(motion.time), 6))
     for name, force in _cumulative(model, undo_mocap_view(model, motion), how.replay):
-        parts[name] = parts.get(name, 0.0) + force - before
-        before = force
+        parts[name] = parts.get(name, 0.0) + force - previous
+        previous = force
     missing = np.full((len(motion.time), 6), np.nan)
-    missing[found.index] = blank(motion.measured, found.a_res @ model.M.T, np.nan)
+    missing[samples.index] = blank(motion.measured, samples.a_res @ model.M.T, np.nan)
     return ForceBudget(model.name, motion.run.id, motion.time, parts, missing)
 
 
@@ -76,20 +76,20 @@ def _cumulative(
     Forces are in N and N m, FRD at CO.
     """
     neutral = [effect.neutral() for effect in model.effects]
-    bare = _with(model, neutral)
-    none = drive_as_measured(bare, motion, settings).idle()
-    still = replace(motion, state_nu=0 * motion.state_nu)
-    yield RESTORING, _force(bare, still, none)
-    yield CORIOLIS, _force(bare, motion, none)
-    own = len(model.effects) - len(model.added)
-    for k in sorted(range(own), key=lambda k: _place(model.effects[k])):
+    inertia_only = _with(model, neutral)
+    no_thrust = drive_as_measured(inertia_only, motion, settings).idle()
+    at_rest = replace(motion, state_nu=0 * motion.state_nu)
+    yield RESTORING, _force(inertia_only, at_rest, no_thrust)
+    yield CORIOLIS, _force(inertia_only, motion, no_thrust)
+    vehicle_count = len(model.effects) - len(model.added)
+    for k in sorted(range(vehicle_count), key=lambda k: _place(model.effects[k])):
         effect = model.effects[k]
         if neutral[k] is not effect:  # else every vehicle has it, so it is in from the start
             neutral[k] = effect
             name = NOMINAL.get(effect.id, effect.id)
-            yield name, _force(_with(model, neutral), motion, none)
+            yield name, _force(_with(model, neutral), motion, no_thrust)
     yield THRUSTERS, _at(_with(model, neutral), motion, settings)
-    for k in range(own, len(neutral)):
+    for k in range(vehicle_count, len(neutral)):
         neutral[k] = model.effects[k]
         yield f"+{neutral[k].id}", _at(_with(model, neutral), motion, settings)
     if model.residual is not None:

@@ -34,22 +34,22 @@ class GrowthScore:
         if motion.run.split != "test":
             return
         age = _age(motion, self.horizon)
-        known = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
+        scored = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
         member = np.digitize(age, self._edges) - 1
-        known &= (member >= 0) & (member < self._bins)
-        count = np.bincount(member[known], minlength=self._bins)
+        scored &= (member >= 0) & (member < self._bins)
+        count = np.bincount(member[scored], minlength=self._bins)
         self._count += count[:, None] * find_measured(motion.measured)
         with np.errstate(over="ignore"):  # infinite, if the model diverged
-            squares = np.square((prediction.nu - motion.nu)[known])
-        np.add.at(self._squares, member[known], blank(motion.measured, squares, 0.0))
+            squares = np.square((prediction.nu - motion.nu)[scored])
+        np.add.at(self._squares, member[scored], blank(motion.measured, squares, 0.0))
 
     @property
     def curve(self) -> Curve:
         """Velocity RMSE of measured axes against time; empty without test runs."""
-        seen = np.flatnonzero(self._count.any(axis=1))
-        rows = root_mean(self._squares[seen], self._count[seen])
+        filled = np.flatnonzero(self._count.any(axis=1))
+        rows = root_mean(self._squares[filled], self._count[filled])
         columns = {a: tuple(map(or_none, row)) for a, row in zip(AXES, rows.T, strict=True)}
-        return Curve(horizon_s=tuple(self._edges[seen + 1].tolist()), velocity_rmse=columns)
+        return Curve(horizon_s=tuple(self._edges[filled + 1].tolist()), velocity_rmse=columns)
 
 
 def _age(motion: Motion, horizon: float) -> Array:

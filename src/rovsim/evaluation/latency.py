@@ -37,23 +37,23 @@ def time_calls(
         seconds: no further call is started after this long; at least one is timed.
     """
     rows = [queries[i : i + 1] for i in range(len(queries))]
-    begun = perf_counter_ns()
+    begin = perf_counter_ns()
     for i in range(max(warmup, 1)):
         answer = call(rows[i % len(rows)])
-        if perf_counter_ns() - begun > 1e8 * seconds:
+        if perf_counter_ns() - begin > 1e8 * seconds:
             break
     with _no_collection():
-        took = _timed(call, rows, calls, int(seconds * 1e9))
+        durations = _timed(call, rows, calls, int(seconds * 1e9))
     return Latency(
         points=points,
         features=int(queries.shape[1]),
         outputs=int(np.shape(answer)[-1]),
-        calls=len(took),
-        median_us=float(np.median(took)) / 1e3,
-        p99_us=float(np.percentile(took, 99.0)) / 1e3,
-        p999_us=float(np.percentile(took, 99.9)) / 1e3,
-        max_us=float(took.max()) / 1e3,
-        misses={str(rate): int(np.sum(took > 1e9 / rate)) for rate in RATES},
+        calls=len(durations),
+        median_us=float(np.median(durations)) / 1e3,
+        p99_us=float(np.percentile(durations, 99.0)) / 1e3,
+        p999_us=float(np.percentile(durations, 99.9)) / 1e3,
+        max_us=float(durations.max()) / 1e3,
+        misses={str(rate): int(np.sum(durations > 1e9 / rate)) for rate in RATES},
     )
 
 
@@ -66,29 +66,29 @@ def _timed(call: Callable[[Array], Array], rows: list[Array], calls: int, limit:
         calls: how many, at most.
         limit: nanoseconds after which no further call is started.
     """
-    took = np.zeros(max(calls, 1), dtype=np.int64)
+    durations = np.zeros(max(calls, 1), dtype=np.int64)
     end = perf_counter_ns() + limit
-    for i in range(len(took)):
+    for i in range(len(durations)):
         row = rows[i % len(rows)]
         start = perf_counter_ns()
         call(row)
         stop = perf_counter_ns()
-        took[i] = stop - start
+        durations[i] = stop - start
         if stop > end:
-            return took[: i + 1]
-    return took
+            return durations[: i + 1]
+    return durations
 
 
 @contextmanager
 def _no_collection() -> Iterator[None]:
     """Collect garbage once, and keep the collector off inside the `with` block."""
-    was = gc.isenabled()
+    was_enabled = gc.isenabled()
     gc.collect()
     gc.disable()
     try:
         yield
     finally:
-        if was:
+        if was_enabled:
             gc.enable()
 
 

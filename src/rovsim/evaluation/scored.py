@@ -27,11 +27,11 @@ class Scored:
     @staticmethod
     def of(motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> "Scored":
         """Collect replays, given by model and run."""
-        found = Scored(replays, _find_longest(replays))
+        scored = Scored(replays, _find_longest(replays))
         for motion in motions:
             for runs in replays.values():
-                found.add(motion, runs[motion.run.id])
-        return found
+                scored.add(motion, runs[motion.run.id])
+        return scored
 
     def add(self, motion: Motion, replay: Replay) -> None:
         """Add the replay of a run by one of the models."""
@@ -47,30 +47,30 @@ class Scored:
     @property
     def comparison(self) -> Comparison:
         """Errors by model and run, as `comparison.json`."""
-        models = {name: ModelErrors(runs=one.runs) for name, one in self._models.items()}
+        models = {name: ModelErrors(runs=s.runs) for name, s in self._models.items()}
         return Comparison(models=models)
 
     @property
     def growth(self) -> Growth:
         """Growth of the error of each model, as `growth.json`."""
-        return Growth(models={name: one.growth.curve for name, one in self._models.items()})
+        return Growth(models={name: s.growth.curve for name, s in self._models.items()})
 
     @property
     def steps(self) -> list[Step]:
         """The step of each model on the ladder, on the test runs."""
-        return [one.step.step for one in self._models.values()]
+        return [s.step.step for s in self._models.values()]
 
 
 def score(motion: Motion, replay: Replay) -> RunErrors:
     """Compute all metrics of one model on one run."""
-    one = _Score(replay.model, replay.longest)
-    one.add(motion, replay.horizons.items())
-    return one.runs[motion.run.id]
+    run_score = _Score(replay.model, replay.longest)
+    run_score.add(motion, replay.horizons.items())
+    return run_score.runs[motion.run.id]
 
 
 def _find_longest(replays: Mapping[str, Mapping[str, Replay]]) -> float:
     """The longest horizon of all replays, which are of one configuration; 0 without replays."""
-    return next((one.longest for runs in replays.values() for one in runs.values()), 0.0)
+    return next((r.longest for runs in replays.values() for r in runs.values()), 0.0)
 
 
 class _Score:
@@ -81,13 +81,16 @@ class _Score:
         self.growth, self.step = GrowthScore(longest), StepScore(model)
 
     def add(self, motion: Motion, horizons: Iterable[tuple[str, Prediction]]) -> None:
-        found = {}
+        summaries = {}
         for name, prediction in horizons:
-            found[name] = self._summarize(motion, name, prediction)
+            summaries[name] = self._summarize(motion, name, prediction)
             del prediction  # frees its memory before the next one is made
         run = motion.run
         self.runs[run.id] = RunErrors(
-            split=run.split, control=run.control, open_loop=found.pop(OPEN_LOOP), windows=found
+            split=run.split,
+            control=run.control,
+            open_loop=summaries.pop(OPEN_LOOP),
+            windows=summaries,
         )
 
     def _summarize(self, motion: Motion, horizon: str, prediction: Prediction) -> Metrics:

@@ -40,16 +40,22 @@ class Errors:
 
 def subtract(motion: Motion, prediction: Prediction) -> Errors:
     """Errors of a prediction at all usable samples; infinite or NaN from where it diverged."""
-    both = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
-    moved = both & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
+    finite = motion.usable & ~np.isnan(prediction.nu).any(axis=1)
+    finite_dot = (
+        finite & ~np.isnan(prediction.nu_dot).any(axis=1) & np.isfinite(motion.nu_dot).all(axis=1)
+    )
     with np.errstate(invalid="ignore"):
-        turn = log(multiply(conjugate(motion.eta[both, 3:]), prediction.eta[both, 3:]))
+        turn = log(multiply(conjugate(motion.eta[finite, 3:]), prediction.eta[finite, 3:]))
     placed, turned = _find_posed(motion.measured)
-    apart = np.linalg.norm(prediction.eta[both, :3] - motion.eta[both, :3], axis=1)
+    distance = np.linalg.norm(prediction.eta[finite, :3] - motion.eta[finite, :3], axis=1)
     return Errors(
-        blank(motion.measured, prediction.nu[both] - motion.nu[both], np.nan),
-        blank(motion.measured, prediction.nu_dot[moved] - motion.nu_dot[moved], np.nan),
-        np.where(placed, apart, np.nan),
+        blank(motion.measured, prediction.nu[finite] - motion.nu[finite], np.nan),
+        blank(
+            motion.measured,
+            prediction.nu_dot[finite_dot] - motion.nu_dot[finite_dot],
+            np.nan,
+        ),
+        np.where(placed, distance, np.nan),
         np.where(turned, np.linalg.norm(turn, axis=1), np.nan),
         find_measured(motion.measured),
         placed,
@@ -93,29 +99,29 @@ class Sums:
     @staticmethod
     def nothing() -> "Sums":
         """Sums over no samples."""
-        none, zero = np.zeros(6, int), np.zeros(6)
-        return Sums(none, none, 0, 0, zero, zero, zero, 0.0, 0.0)
+        no_counts, zero = np.zeros(6, int), np.zeros(6)
+        return Sums(no_counts, no_counts, 0, 0, zero, zero, zero, 0.0, 0.0)
 
     @staticmethod
     def of(errors: Errors) -> "Sums":
         """Sums of the errors of one run."""
-        known = errors.axes
+        measured = errors.axes
         with np.errstate(over="ignore"):  # the errors of a model that diverged are infinite
             return Sums(
-                len(errors.nu) * known.astype(int),
-                len(errors.nu_dot) * known.astype(int),
+                len(errors.nu) * measured.astype(int),
+                len(errors.nu_dot) * measured.astype(int),
                 len(errors.position) * int(errors.placed),
                 len(errors.attitude) * int(errors.turned),
-                np.where(known, np.square(errors.nu).sum(axis=0), 0.0),
-                np.where(known, np.abs(errors.nu).sum(axis=0), 0.0),
-                np.where(known, np.square(errors.nu_dot).sum(axis=0), 0.0),
+                np.where(measured, np.square(errors.nu).sum(axis=0), 0.0),
+                np.where(measured, np.abs(errors.nu).sum(axis=0), 0.0),
+                np.where(measured, np.square(errors.nu_dot).sum(axis=0), 0.0),
                 float(np.square(errors.position).sum()) if errors.placed else 0.0,
                 float(np.square(errors.attitude).sum()) if errors.turned else 0.0,
             )
 
     def __add__(self, other: "Sums") -> "Sums":
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
-        return Sums(*(one + more for one, more in pairs))
+        return Sums(*(a + b for a, b in pairs))
 
     @property
     def velocity_rmse(self) -> Array:
@@ -189,9 +195,9 @@ class Moments:
 
     def __add__(self, other: "Moments") -> "Moments":
         count = self.count + other.count
-        share, apart = other.count / np.maximum(count, 1), other.mean - self.mean
-        squares = self.squares + other.squares + apart**2 * self.count * share
-        return Moments(count, self.mean + share * apart, squares)
+        share, shift = other.count / np.maximum(count, 1), other.mean - self.mean
+        squares = self.squares + other.squares + shift**2 * self.count * share
+        return Moments(count, self.mean + share * shift, squares)
 
     @property
     def std(self) -> Array:
@@ -216,5 +222,5 @@ def normalize(spread: Array, velocity_rmse: Array) -> float | None:
     Returns:
         The mean; None where no axis was excited, or the model diverged.
     """
-    moved = spread > EXCITED
-    return or_none(np.mean(velocity_rmse[moved] / spread[moved])) if moved.any() else None
+    excited = spread > EXCITED
+    return or_none(np.mean(velocity_rmse[excited] / spread[excited])) if excited.any() else None

@@ -65,9 +65,9 @@ def tell_together(
     """
     if len(found) < 2:
         return ""
-    scores, lags = np.array([one.best(axes) for one in found]).reshape(-1, 2).T
-    alike = min(scores) >= MIN_CORRELATION and np.ptp(lags) < SCATTER
-    if not alike or not all(is_off(one, axes) for one in found):
+    scores, lags = np.array([correlation.best(axes) for correlation in found]).reshape(-1, 2).T
+    consistent = min(scores) >= MIN_CORRELATION and np.ptp(lags) < SCATTER
+    if not consistent or not all(is_off(correlation, axes) for correlation in found):
         return ""
     return _tell(float(np.mean(scores)), float(np.median(lags)), start)
 
@@ -75,10 +75,10 @@ def tell_together(
 def is_off(found: CrossCorrelation, axes: Array) -> bool:
     """Whether a motion follows its commands clearly later, or earlier, than thrusters answer."""
     score, lag = found.best(axes)
-    beyond = max(EARLIEST - lag, lag - LATEST)
-    usual = (found.lag >= EARLIEST) & (found.lag <= LATEST)
-    near = found.along(axes)[usual].max(initial=-1.0)
-    return bool(beyond > 0.0 and (beyond <= AWAY or score >= near + CLEARER))
+    excess = max(EARLIEST - lag, lag - LATEST)
+    plausible = (found.lag >= EARLIEST) & (found.lag <= LATEST)
+    plausible_best = found.along(axes)[plausible].max(initial=-1.0)
+    return bool(excess > 0.0 and (excess <= AWAY or score >= plausible_best + CLEARER))
 
 
 def _by_start(lag: float, start: float) -> str:
@@ -94,11 +94,11 @@ def _by_start(lag: float, start: float) -> str:
     zone = QUARTER * round((start + lag) / QUARTER)
     if abs(lag) < DAY or abs(zone) > DAY or not EARLIEST <= lag + start - zone <= LATEST:
         return ""
-    less = f", less {zone / 3600.0:+g} h for its time zone" if zone else ""
+    remark = f", less {zone / 3600.0:+g} h for its time zone" if zone else ""
     return (
         "the times of the commands count from 1970, those of the motion from its start: add "
         f"{zone - start:+.3f} s {THERE}. That is the start in the header of "
-        f"the motion{less}; an `input_delay` that a diagnosis then finds is what is left of it."
+        f"the motion{remark}; an `input_delay` that a diagnosis then finds is what is left of it."
     )
 
 
@@ -110,23 +110,23 @@ def _tell(score: float, lag: float, start: float | None) -> str:
         lag: by which the motion comes after its commands, s.
         start: when the motion began, see `tell_following`.
     """
-    if start is not None and (told := _by_start(lag, start)):
-        return told
-    how = "after" if lag > 0 else "before"
+    if start is not None and (advice := _by_start(lag, start)):
+        return advice
+    side = "after" if lag > 0 else "before"
     zone = QUARTER * round(lag / QUARTER)
     if zone and abs(lag) < DAY and abs(lag - zone) < LOOSE:
-        left = f"{lag - zone:+.1f}"
-        rest = f" first, and look at the {left} s that remain" if float(left) else ""
-        told = f"a time zone? Add {zone:+.0f} s {THERE}{rest}"
+        remainder = f"{lag - zone:+.1f}"
+        next_step = f" first, and look at the {remainder} s that remain" if float(remainder) else ""
+        advice = f"a time zone? Add {zone:+.0f} s {THERE}{next_step}"
     else:
-        told = (
+        advice = (
             f"add {lag:+.1f} s {THERE}. That holds the answer of the "
             "thrusters too, some 0.2 s: an `input_delay` that a diagnosis then finds, of either "
             "sign, is what is left of the clock; add it as well"
         )
         if abs(lag) < FITTED:
-            told = f"let `input_delay` find it, or {told}"
+            advice = f"let `input_delay` find it, or {advice}"
     return (
-        f"the motion comes {abs(lag):.2f} s {how} its commands (likeness {score:.2f}): the clocks "
-        f"differ; {told}."
+        f"the motion comes {abs(lag):.2f} s {side} its commands (likeness {score:.2f}): the clocks "
+        f"differ; {advice}."
     )

@@ -111,16 +111,16 @@ def find_convention(
     commanded = Commanded(poses.time, *caused, shift, LATEST)
 
     def likeness(reading: _Reading) -> _Likeness:
-        measured = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
-        found = commanded.correlate(measured)
-        whole, best = max(((found.best(one)[0], k) for k, one in enumerate(axes)))
-        linear = replace(found, excited=found.excited & LINEAR)
-        return _Likeness(whole, linear.best(axes[best])[0])
+        motion = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
+        correlation = commanded.correlate(motion)
+        score, k_best = max(((correlation.best(a)[0], k) for k, a in enumerate(axes)))
+        linear = replace(correlation, excited=correlation.excited & LINEAR)
+        return _Likeness(score, linear.best(axes[k_best])[0])
 
-    own = likeness(_Reading(poses.attitude, poses.position))
-    if own.whole > 1.0 - BETTER:
+    unchanged = likeness(_Reading(poses.attitude, poses.position))
+    if unchanged.whole > 1.0 - BETTER:
         return None
-    return _told(own, [(likeness(one), one) for one in _readings(poses, angles)])
+    return _told(unchanged, [(likeness(r), r) for r in _readings(poses, angles)])
 
 
 def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherReading | None:
@@ -133,23 +133,24 @@ def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherRead
     Returns:
         At most two readings in one, the simplest ones; None where none is clearly better.
     """
-    enough = max(own.whole + BETTER, MIN_CORRELATION)
-    better = [
-        (found, reading)
-        for found, reading in scored
-        if found.whole >= enough and found.linear >= own.linear + FASTER
+    threshold = max(own.whole + BETTER, MIN_CORRELATION)
+    candidates = [
+        (likeness, reading)
+        for likeness, reading in scored
+        if likeness.whole >= threshold and likeness.linear >= own.linear + FASTER
     ]
-    if not better:
+    if not candidates:
         return None
-    best = max(found for found, _ in better)
-    alike = [
+    best_likeness = max(likeness for likeness, _ in candidates)
+    best_readings = [
         reading
-        for found, reading in better
-        if found.whole >= best.whole - AS_GOOD and found.linear >= best.linear - AS_FAST
+        for likeness, reading in candidates
+        if likeness.whole >= best_likeness.whole - AS_GOOD
+        and likeness.linear >= best_likeness.linear - AS_FAST
     ][:2]
-    said = ", or with ".join(reading.said for reading in alike)
-    remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in alike))
-    return OtherReading(best.whole, own.whole, said, remedy)
+    wording = ", or with ".join(reading.said for reading in best_readings)
+    remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in best_readings))
+    return OtherReading(best_likeness.whole, own.whole, wording, remedy)
 
 
 def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
@@ -170,15 +171,15 @@ def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
 
 def _of_positions(poses: ResampledPoses, axes: tuple[tuple[float, ...], ...]) -> _Reading:
     """Read positions along swapped or mirrored axes: the rows of the matrix `axes` (3, 3)."""
-    told = ", ".join(
+    order = ", ".join(
         minus(f"{'-' if row[k := int(np.argmax(np.abs(row)))] < 0 else ''}{'xyz'[k]}")
         for row in axes
     )
-    usual = " (north, east, down for east, north, up, or back)" if axes == EAST_NORTH_UP else ""
+    hint = " (north, east, down for east, north, up, or back)" if axes == EAST_NORTH_UP else ""
     return _Reading(
         poses.attitude,
         poses.position @ np.array(axes).T,
-        f"{told} in place of x, y, z of the positions{usual}",
+        f"{order} in place of x, y, z of the positions{hint}",
         "Check how the axes of the positions were exported: some are swapped or mirrored.",
     )
 
@@ -189,8 +190,8 @@ def _of_angles(poses: ResampledPoses) -> Iterator[_Reading]:
     signs = [(np.array(s), turns) for s in product((1.0, -1.0), repeat=3) for turns in range(4)]
     for sign, turns in sorted(signs, key=lambda pair: (pair[1] > 0, -pair[0].sum())):
         if np.any(sign < 0.0):
-            read = angles * sign + [0.0, 0.0, 0.5 * np.pi * turns]
-            yield _Reading(_composed("ZYX", read), poses.position, *_of_signs(sign, turns))
+            changed = angles * sign + [0.0, 0.0, 0.5 * np.pi * turns]
+            yield _Reading(_composed("ZYX", changed), poses.position, *_of_signs(sign, turns))
     for order in ORDERS:
         rule = " ".join(f"R{axis.lower()}({ANGLES['XYZ'.index(axis)]})" for axis in order)
         yield _Reading(
@@ -208,24 +209,24 @@ def _of_signs(sign: Array, turns: int) -> tuple[str, str]:
         sign: of roll, pitch and yaw (3,), 1 or -1.
         turns: quarter turns that are added to yaw.
     """
-    turned = [name for name, s in zip(ANGLES, sign, strict=True) if s < 0.0]
-    names = " and ".join(filter(None, [", ".join(turned[:-1]), turned[-1]]))
-    said = f"the sign{'s' * (len(turned) > 1)} of {names} turned"
-    remedy = f"Turn {'these signs' if len(turned) > 1 else 'that sign'} in the columns of angles"
+    negated = [name for name, s in zip(ANGLES, sign, strict=True) if s < 0.0]
+    names = " and ".join(filter(None, [", ".join(negated[:-1]), negated[-1]]))
+    change = f"the sign{'s' * (len(negated) > 1)} of {names} turned"
+    remedy = f"Turn {'these signs' if len(negated) > 1 else 'that sign'} in the columns of angles"
     if turns:
         from_zero = {1: "90°", 2: "180°", 3: "−90°"}[turns]
-        said += f", and {from_zero} added to yaw"
+        change += f", and {from_zero} added to yaw"
         remedy += f", and add {from_zero} to yaw, as a compass counts from north"
-    if turned == ["pitch", "yaw"]:
+    if negated == ["pitch", "yaw"]:
         remedy += " (attitudes of axes with z down beside positions with z up, or the reverse)"
-    return said, f"{remedy}: roll, pitch and yaw are right-handed about x, y and z."
+    return change, f"{remedy}: roll, pitch and yaw are right-handed about x, y and z."
 
 
 def _composed(order: str, angles: Array) -> Array:
     """Quaternions (n, 4) of roll, pitch and yaw (n, 3), rad, rotated in another order."""
-    known = np.isfinite(angles).all(axis=1)
-    found = np.full((len(angles), 4), np.nan)
-    chosen = angles[known][:, ["XYZ".index(axis) for axis in order]]
-    turns = scipy.spatial.transform.Rotation.from_euler(order, chosen)
-    found[known] = continuous(turns.as_quat(scalar_first=True))
-    return found
+    finite = np.isfinite(angles).all(axis=1)
+    quaternions = np.full((len(angles), 4), np.nan)
+    ordered = angles[finite][:, ["XYZ".index(axis) for axis in order]]
+    rotations = scipy.spatial.transform.Rotation.from_euler(order, ordered)
+    quaternions[finite] = continuous(rotations.as_quat(scalar_first=True))
+    return quaternions

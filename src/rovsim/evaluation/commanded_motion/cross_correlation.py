@@ -74,21 +74,21 @@ def _vertex(score: Array, k: int) -> float:
     """Offset of the maximum from its sample k, in steps, by a parabola through three samples."""
     if not 0 < k < len(score) - 1:
         return 0.0
-    before, here, after = score[k - 1 : k + 2]
-    bend = before - 2.0 * here + after
-    return float(0.5 * (before - after) / bend) if bend < -SPARSE else 0.0
+    left, middle, right = score[k - 1 : k + 2]
+    curvature = left - 2.0 * middle + right
+    return float(0.5 * (left - right) / curvature) if curvature < -SPARSE else 0.0
 
 
 @cache
 def orientations() -> tuple[tuple[tuple[float, ...], ...], ...]:
     """The 48 matrices (3, 3) that permute axes and change signs; half of them mirror."""
-    found = []
+    matrices = []
     for order in permutations(range(3)):
         for signs in product((1.0, -1.0), repeat=3):
             axes = np.zeros((3, 3))
             axes[list(order), range(3)] = signs
-            found.append(tuple(map(tuple, axes.tolist())))
-    return tuple(found)
+            matrices.append(tuple(map(tuple, axes.tolist())))
+    return tuple(matrices)
 
 
 def rotations() -> list[Array]:
@@ -119,31 +119,31 @@ class Commanded:
     ) -> None:
         self.commanded, step = commanded, time_step(clock)
         count = max(1, int(reach / step))
-        first, last = clock[0] - count * step, clock[-1] + count * step
-        times = first + step * np.arange(round((last - first) / step) + 1)
+        begin, end = clock[0] - count * step, clock[-1] + count * step
+        times = begin + step * np.arange(round((end - begin) / step) + 1)
         inside = (times >= time[0] + shift) & (times <= time[-1] + shift + AFTER)
-        other = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
-        inside &= finite_rows(other)
-        other = np.where(inside[:, None], other - _mean(other[inside]), 0.0)
+        padded = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
+        inside &= finite_rows(padded)
+        padded = np.where(inside[:, None], padded - _mean(padded[inside]), 0.0)
         # measured velocities begin `k` steps after the commanded ones: lag = (count - k) * step
-        lags = len(other) - len(clock) + 1
+        lags = len(padded) - len(clock) + 1
         self.lag = step * (count - np.arange(lags)) + shift
         self.seen = inside.sum()
-        laid = _Windows if lags <= FEW else _Spectra
+        kind = _Windows if lags <= FEW else _Spectra
         self.itself, self.squared, self.known = (
-            laid(x, len(clock)) for x in (other, other**2, inside[:, None].astype(float))
+            kind(x, len(clock)) for x in (padded, padded**2, inside[:, None].astype(float))
         )
 
     def correlate(self, measured: Velocities) -> CrossCorrelation:
         """Correlate a measured motion with the commanded velocities."""
-        here = np.isfinite(measured.nu).any(axis=0)
-        nu = np.where(here, measured.nu, 0.0)
+        finite = np.isfinite(measured.nu).any(axis=0)
+        nu = np.where(finite, measured.nu, 0.0)
         table = self._correlations(nu, finite_rows(nu))
-        known = np.isfinite(table).all(axis=(1, 2))
-        moved = self.commanded.std(axis=0) > EXCITED
-        excited = here & moved
-        table = np.where(known[:, None, None], table, 0.0)
-        strength, unseen = _strength(nu, self.commanded, excited), bool((moved & ~here).any())
+        defined = np.isfinite(table).all(axis=(1, 2))
+        driven = self.commanded.std(axis=0) > EXCITED
+        excited = finite & driven
+        table = np.where(defined[:, None, None], table, 0.0)
+        strength, unseen = (_strength(nu, self.commanded, excited), bool((driven & ~finite).any()))
         return CrossCorrelation(self.lag[::-1], table[::-1], excited, strength, unseen)
 
     def _correlations(self, nu: Array, whole: Array) -> Array:
@@ -154,11 +154,11 @@ class Commanded:
             whole: mask (n,) of the rows without unknown values.
         """
         a = np.where(whole[:, None], nu - _mean(nu[whole]), 0.0)
-        seen = whole[:, None].astype(float)
-        few = self.known.sums(seen)[:, 0, 0] < OVERLAP * min(whole.sum(), self.seen)
-        size = self.known.sums(a**2) * self.squared.sums(seen)
-        found = self.itself.sums(a) / np.sqrt(np.maximum(size, SPARSE))
-        return np.where(few[:, None, None], np.nan, found)
+        mask = whole[:, None].astype(float)
+        too_short = self.known.sums(mask)[:, 0, 0] < OVERLAP * min(whole.sum(), self.seen)
+        size = self.known.sums(a**2) * self.squared.sums(mask)
+        correlations = self.itself.sums(a) / np.sqrt(np.maximum(size, SPARSE))
+        return np.where(too_short[:, None, None], np.nan, correlations)
 
 
 def _strength(nu: Array, commanded: Array, excited: Array) -> float:
@@ -167,9 +167,9 @@ def _strength(nu: Array, commanded: Array, excited: Array) -> float:
     Linear velocities are compared, or angular ones where no linear axis is excited.
     """
     axes = slice(0, 3) if excited[:3].any() else slice(3, 6)
-    measured = np.sqrt(np.nansum(np.nanvar(nu[:, axes], axis=0)))
-    caused = np.sqrt(np.sum(commanded[:, axes].var(axis=0)))
-    return float(measured / max(caused, SPARSE))
+    motion_std = np.sqrt(np.nansum(np.nanvar(nu[:, axes], axis=0)))
+    commanded_std = np.sqrt(np.sum(commanded[:, axes].var(axis=0)))
+    return float(motion_std / max(commanded_std, SPARSE))
 
 
 class _Windows:
@@ -200,9 +200,9 @@ class _Spectra:
 
     def sums(self, short: Array) -> Array:
         """Sums (l, k, c) with the columns of `short` (n, k)."""
-        own = np.conj(scipy.fft.rfft(short, self.length, axis=0))
-        both = own[:, :, None] * self.spectra[:, None]
-        return np.asarray(scipy.fft.irfft(both, self.length, axis=0)[: self.lags])
+        spectrum = np.conj(scipy.fft.rfft(short, self.length, axis=0))
+        products = spectrum[:, :, None] * self.spectra[:, None]
+        return np.asarray(scipy.fft.irfft(products, self.length, axis=0)[: self.lags])
 
 
 def _mean(x: Array) -> Array:

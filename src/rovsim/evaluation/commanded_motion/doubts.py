@@ -40,8 +40,8 @@ def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
         vehicle: the vehicle.
     """
     upside_down = list(_upside_down(recording, vehicle))
-    found = [] if upside_down else list(_unlike(recording, vehicle))
-    return (*upside_down, *found, *_out_of_tank(recording), *_log_that_ends(recording))
+    mismatches = [] if upside_down else list(_unlike(recording, vehicle))
+    return (*upside_down, *mismatches, *_out_of_tank(recording), *_log_that_ends(recording))
 
 
 def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
@@ -58,32 +58,36 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     """Remark a motion unlike its commands: another convention, other axes or another clock."""
-    caused = _caused(recording, vehicle)
-    if caused is None:
+    predicted = _caused(recording, vehicle)
+    if predicted is None:
         return
-    posed = recording.found.any() and recording.nu is None
-    poses = even_poses(recording) if posed else None
-    measured = velocities(recording) if poses is None else of_poses(poses)
-    if not np.isfinite(measured.nu).any():
+    has_poses = recording.found.any() and recording.nu is None
+    poses = even_poses(recording) if has_poses else None
+    motion = velocities(recording) if poses is None else of_poses(poses)
+    if not np.isfinite(motion.nu).any():
         return
-    found = cross_correlate(measured, *caused)
-    if not found.excited.any() or not found.overlaps:
+    correlation = cross_correlate(motion, *predicted)
+    if not correlation.excited.any() or not correlation.overlaps:
         return
-    own, lag = found.best(np.eye(3))
-    best, axes = max(((found.best(a := np.array(o))[0], a) for o in orientations()), key=_first)
-    if best < CLEAR and not can_push_sideways(vehicle):
+    score, lag = correlation.best(np.eye(3))
+    best_score, axes = max(
+        ((correlation.best(a := np.array(o))[0], a) for o in orientations()), key=_first
+    )
+    if best_score < CLEAR and not can_push_sideways(vehicle):
         return
-    lag = lag if own >= MIN_CORRELATION else 0.0
-    if poses and (said := _read_otherwise(poses, recording.site.axes, caused, lag, best)):
-        yield said[0].upper() + said[1:]
-    elif best >= MIN_CORRELATION and best > AHEAD * own:
+    lag = lag if score >= MIN_CORRELATION else 0.0
+    if poses and (
+        message := _read_otherwise(poses, recording.site.axes, predicted, lag, best_score)
+    ):
+        yield message[0].upper() + message[1:]
+    elif best_score >= MIN_CORRELATION and best_score > AHEAD * score:
         yield (
             f"The vehicle moves along other axes than those commanded: {_told(axes)} (likeness "
-            f"{best:.2f}; as described {own:.2f}). Check 'mocap.body_axes', 'mocap.world_axes' and "
-            "the order and signs of 'commands.columns'."
+            f"{best_score:.2f}; as described {score:.2f}). Check 'mocap.body_axes', "
+            "'mocap.world_axes' and the order and signs of 'commands.columns'."
         )
-    elif said := tell_following(found, np.eye(3)):
-        yield said[0].upper() + said[1:]
+    elif message := tell_following(correlation, np.eye(3)):
+        yield message[0].upper() + message[1:]
 
 
 def _read_otherwise(
@@ -103,11 +107,11 @@ def _read_otherwise(
     """
     turn = half_turn(signs)
     # poses along the axes of the file again, as in its columns
-    own = ResampledPoses(
+    as_in_file = ResampledPoses(
         poses.time, poses.position * signs, multiply(turn, multiply(poses.attitude, turn))
     )
-    found = find_convention(own, caused, [np.diag(signs)], lag)
-    return str(found) if found is not None and found.score > best + CLEARER else ""
+    convention = find_convention(as_in_file, caused, [np.diag(signs)], lag)
+    return str(convention) if convention is not None and convention.score > best + CLEARER else ""
 
 
 def _first(pair: tuple[float, Array]) -> float:
@@ -122,22 +126,22 @@ def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | Non
     """
     commands = recording.commands
     # stretches that `use` leaves out are not found, and may last longer than `LONGEST`
-    seen = recording.time[recording.found] if recording.found.any() else recording.time
-    if len(commands.time) < 2 or np.ptp(seen) < SHORTEST:
+    covered = recording.time[recording.found] if recording.found.any() else recording.time
+    if len(commands.time) < 2 or np.ptp(covered) < SHORTEST:
         return None
-    begin = max(float(commands.time[0]), float(seen[0]))
+    begin = max(float(commands.time[0]), float(covered[0]))
     return cause(vehicle, commands, begin, LONGEST)
 
 
 def _told(axes: Array) -> str:
     """Say in which direction a vehicle moves for each commanded one, where these are different."""
-    seen = []
+    swaps = []
     for name, column in zip(MOVES, axes.T, strict=True):
         k = int(np.argmax(np.abs(column)))
-        shown = f"{'−' if column[k] < 0 else ''}{MOVES[k]}"
-        if shown != name:
-            seen.append(f"{name} shows as {shown}")
-    return ", ".join(seen)
+        move = f"{'−' if column[k] < 0 else ''}{MOVES[k]}"
+        if move != name:
+            swaps.append(f"{name} shows as {move}")
+    return ", ".join(swaps)
 
 
 def _out_of_tank(recording: Recording) -> Iterator[str]:
@@ -167,9 +171,9 @@ def _log_that_ends(recording: Recording) -> Iterator[str]:
     time, end = recording.commands.time, float(recording.time[-1])
     if len(time) < 2 or not np.any(recording.commands.value[-1]):
         return
-    left = end - float(time[-1])
-    if left > max(STOPPED, OFTEN * float(np.diff(time).max())):
+    gap = end - float(time[-1])
+    if gap > max(STOPPED, OFTEN * float(np.diff(time).max())):
         yield (
-            f"The log of commands ends {left:.1f} s before the recording; its last line is held "
+            f"The log of commands ends {gap:.1f} s before the recording; its last line is held "
             "until then. Leave that part out with 'use', or complete the log."
         )

@@ -76,14 +76,14 @@ def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:
     """
     inertia, linear, quadratic, stiffness = _diagonals(vehicle)
     nu, angle = np.zeros(6), np.zeros(6)
-    found = np.empty((len(tau), 6))
+    path = np.empty((len(tau), 6))
     for k, push in enumerate(tau):
-        found[k] = nu
+        path[k] = nu
         # drag is integrated implicitly, which is stable for any step
-        resisted = inertia / step + linear + quadratic * np.abs(nu)
-        nu = (inertia / step * nu + push - stiffness * angle) / resisted
+        denominator = inertia / step + linear + quadratic * np.abs(nu)
+        nu = (inertia / step * nu + push - stiffness * angle) / denominator
         angle = angle + step * nu
-    return np.where(vehicle.free, found, 0.0)
+    return np.where(vehicle.free, path, 0.0)
 
 
 def held(time: Array, value: Array, at: Array) -> Array:

@@ -77,10 +77,10 @@ def number_stretches(blocks: Blocks, error: Array) -> Array:
     Returns:
         Number of the stretch, 0 to g - 1, to which each block belongs (n,).
     """
-    usual = np.clip(
+    typical = np.clip(
         TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST
     )
-    length = max(float(usual), len(error) * BLOCK / MANY)
+    length = max(float(typical), len(error) * BLOCK / MANY)
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)
     return np.unique(key, axis=0, return_inverse=True)[1].ravel()
 
@@ -107,8 +107,8 @@ def correlation_time(error: Array, blocks: Blocks) -> float:
     power = float(np.mean(error**2))
     total = 1.0
     for lag in range(1, int(LONGEST / BLOCK)):
-        near = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK) < NEAR * BLOCK
-        pairs = near & (blocks.run[lag:] == blocks.run[:-lag])
+        lagged = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK) < NEAR * BLOCK
+        pairs = lagged & (blocks.run[lag:] == blocks.run[:-lag])
         product = float(np.mean((error[lag:] * error[:-lag])[pairs])) if pairs.any() else 0.0
         if product <= 0 or power == 0:
             break
@@ -163,19 +163,19 @@ def bin_errors(binning: Binning, error: Array, stretch: Array) -> BinnedErrors:
         error: of one axis (n,), m/s2 or rad/s2.
         stretch: number (n,) of the stretch of each block.
     """
-    total, safe = sums(binning, error, stretch), np.maximum(binning.count, 1)
-    mean = total.sum(axis=1) / safe
+    total, divisor = sums(binning, error, stretch), np.maximum(binning.count, 1)
+    mean = total.sum(axis=1) / divisor
     size = sums(binning, np.ones(len(error)), stretch)
     visits = (size > 0).sum(axis=1)
     inflation = visits / np.maximum(visits - 1, 1)
-    spread = np.sum((total - size * mean[:, None]) ** 2, axis=1) * inflation / safe**2
-    square = np.bincount(binning.bin, error**2, minlength=len(safe)) / safe
+    spread = np.sum((total - size * mean[:, None]) ** 2, axis=1) * inflation / divisor**2
+    square = np.bincount(binning.bin, error**2, minlength=len(divisor)) / divisor
     variance = np.maximum(square - mean**2, 0.0)
-    alone = np.minimum(safe, variance / np.where(spread > 0, spread, np.inf))
-    gained = np.sum((binning.count * (mean**2 - spread))[binning.judged])
+    effective_count = np.minimum(divisor, variance / np.where(spread > 0, spread, np.inf))
+    explained = np.sum((binning.count * (mean**2 - spread))[binning.judged])
     power = float(np.sum(error**2))
-    share = max(float(gained) / power, 0.0) if power > 0 else 0.0
-    return BinnedErrors(binning, mean, np.sqrt(spread), np.sqrt(square), alone, share)
+    share = max(float(explained) / power, 0.0) if power > 0 else 0.0
+    return BinnedErrors(binning, mean, np.sqrt(spread), np.sqrt(square), effective_count, share)
 
 
 def weigh_evidence(cuts: Sequence[Binning], error: Array, stretch: Array, signs: Array) -> Array:
@@ -199,8 +199,8 @@ def weigh_evidence(cuts: Sequence[Binning], error: Array, stretch: Array, signs:
     owner = np.repeat(np.arange(len(cuts)), [len(part) for part in parts])
     total = np.concatenate(parts)
     scale = np.sqrt(np.sum(total**2, axis=1))
-    moved = scale > 0
-    squares = (total[moved] / scale[moved, None] @ signs) ** 2
-    found = np.zeros((len(cuts), signs.shape[1]))
-    np.add.at(found, owner[moved], squares)
-    return found
+    nonzero = scale > 0
+    squares = (total[nonzero] / scale[nonzero, None] @ signs) ** 2
+    evidence = np.zeros((len(cuts), signs.shape[1]))
+    np.add.at(evidence, owner[nonzero], squares)
+    return evidence

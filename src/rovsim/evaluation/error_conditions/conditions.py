@@ -78,35 +78,35 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     time = motion.time[samples.index] - motion.time[0]
     step = float(np.median(np.diff(motion.time)))
     block, count = np.unique(np.floor(time / BLOCK).astype(int), return_counts=True)
-    kept = count * step >= SEEN * BLOCK
+    full = count * step >= SEEN * BLOCK
     member = np.searchsorted(block, np.floor(time / BLOCK).astype(int))
 
     def mean(x: Array) -> Array:
         total = np.zeros((len(block), *x.shape[1:]))
         np.add.at(total, member, x)
-        return (total.T / count).T[kept]
+        return (total.T / count).T[full]
 
     values = {
         c: _mean_angle(mean, x) if c.name == HEADING else mean(x)
         for c, x in _values(motion, samples, time).items()
     }
-    measured = motion.nu_dot[samples.index]
-    run = np.zeros(int(kept.sum()), int)
+    acceleration = motion.nu_dot[samples.index]
+    run = np.zeros(int(full.sum()), int)
     axes = find_measured(motion.measured)
-    return Blocks(mean(samples.a_res), mean(measured), values, mean(time), run, axes)
+    return Blocks(mean(samples.a_res), mean(acceleration), values, mean(time), run, axes)
 
 
 def join_blocks(parts: Sequence[Blocks]) -> Blocks:
     """Join the blocks of several runs; a condition that is unknown in one of them is left out."""
     shared = [c for c in parts[0].values if all(c in p.values for p in parts)]
-    joined = {c: np.concatenate([p.values[c] for p in parts]) for c in shared}
+    values = {c: np.concatenate([p.values[c] for p in parts]) for c in shared}
     run = np.concatenate([np.full(len(p.time), k) for k, p in enumerate(parts)])
 
     def join(name: str) -> Array:
         return np.concatenate([getattr(p, name) for p in parts])
 
     axes = np.all([p.axes for p in parts], axis=0)
-    return Blocks(join("error"), join("measured"), joined, join("time"), run, axes)
+    return Blocks(join("error"), join("measured"), values, join("time"), run, axes)
 
 
 def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
@@ -116,36 +116,38 @@ def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
     searched: the error contains their noise, so the two would seem related. A figure may compare
     the errors of two models over them, as the same noise is in both.
     """
-    shown = dict(blocks.values)
+    conditions = dict(blocks.values)
     for k in np.flatnonzero(blocks.axes).tolist():
         unit = ("m/s²", "rad/s²")[int(k >= 3)]
         condition = Condition(f"{AXES[k]} acceleration", unit, ACCELERATION, AXES[k])
-        shown[condition] = blocks.measured[:, k]
-    return shown
+        conditions[condition] = blocks.measured[:, k]
+    return conditions
 
 
 def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Array]:
     """Values (n,) of every condition at n samples; conditions that nobody measured are left out."""
     moves = find_measured(motion.measured)
-    found = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
+    values = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
     rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
     for k in np.flatnonzero(moves).tolist():
         unit = UNITS["speed"][int(k >= 3)]
-        found[Condition(SPEEDS[k], unit, "speed", AXES[k])] = samples.nu[:, k]
+        values[Condition(SPEEDS[k], unit, "speed", AXES[k])] = samples.nu[:, k]
     for k in np.flatnonzero(moves).tolist():
         name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][int(k >= 3)]
-        found[Condition(name, unit, "absolute", AXES[k])] = np.abs(samples.nu[:, k])
+        values[Condition(name, unit, "absolute", AXES[k])] = np.abs(samples.nu[:, k])
     for k, axis in enumerate(AXES):
         unit = UNITS["thrust"][int(k >= 3)]
-        found[Condition(f"{axis} thrust", unit, "thrust", axis)] = samples.wrench[:, k]
+        values[Condition(f"{axis} thrust", unit, "thrust", axis)] = samples.wrench[:, k]
     for k, axis in enumerate(AXES):
         unit = UNITS["change"][int(k >= 3)]
-        found[Condition(f"change of {axis} thrust", unit, "change", axis)] = rate[:, k]
+        values[Condition(f"change of {axis} thrust", unit, "change", axis)] = rate[:, k]
     angles = to_euler(samples.attitude)
     turns = moves[3:] if motion.measured is None else [*moves[3:5], *motion.measured.heading]
     for k in np.flatnonzero(turns).tolist():
-        found[Condition(ANGLES[k], "rad", "attitude", AXES[3 + k])] = angles[:, k]
-    return found | _place(motion, samples.index) | {Condition("time in the run", "s", "time"): time}
+        values[Condition(ANGLES[k], "rad", "attitude", AXES[3 + k])] = angles[:, k]
+    return (
+        values | _place(motion, samples.index) | {Condition("time in the run", "s", "time"): time}
+    )
 
 
 def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
@@ -153,22 +155,22 @@ def _place(motion: Motion, index: Array) -> dict[Condition, Array]:
 
     Unmeasured coordinates, and distances to unknown walls or an unknown surface, are left out.
     """
-    known = np.ones(3, bool) if motion.measured is None else motion.measured.coordinates
+    coordinates = np.ones(3, bool) if motion.measured is None else motion.measured.coordinates
     position = motion.eta[index, :3]
     in_mocap = position * motion.site.axes
     walls, surface = motion.site.tank[:2], motion.site.tank[2, 0]
     names = "xy" if np.isfinite(surface) else "xyz"
-    found = {
+    places = {
         Condition(f"MoCap {n}", "m", "place"): in_mocap[:, k]
         for k, n in enumerate(names)
-        if known[k]
+        if coordinates[k]
     }
-    if np.isfinite(walls).all() and known[:2].all():
+    if np.isfinite(walls).all() and coordinates[:2].all():
         away = np.concatenate([position[:, :2] - walls[:, 0], walls[:, 1] - position[:, :2]], 1)
-        found[Condition("distance to the nearest wall", "m", "place")] = away.min(axis=1)
-    if np.isfinite(surface) and known[2]:
-        found[Condition("depth below the surface", "m", "place")] = position[:, 2] - surface
-    return found
+        places[Condition("distance to the nearest wall", "m", "place")] = away.min(axis=1)
+    if np.isfinite(surface) and coordinates[2]:
+        places[Condition("depth below the surface", "m", "place")] = position[:, 2] - surface
+    return places
 
 
 def _mean_angle(mean, angle: Array) -> Array:

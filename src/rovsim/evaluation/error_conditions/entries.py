@@ -21,7 +21,7 @@ from rovsim.results.error_conditions import (
 
 def list_conditions(models: Sequence[SearchedModel]) -> ErrorConditions:
     """Put together `where.json` of several models, in the order given."""
-    return ErrorConditions(models={one.model: _list_model(one) for one in models})
+    return ErrorConditions(models={m.model: _list_model(m) for m in models})
 
 
 def _list_model(one: SearchedModel) -> ModelConditions:

@@ -63,12 +63,12 @@ class Finding:
 
     def share(self) -> ConditionShare:
         """The finding, as a diagnosis lists it under `where`."""
-        alone = self.push is not None and self.condition == THROUGHOUT
+        constant = self.push is not None and self.condition == THROUGHOUT
         return ConditionShare(
             axis=self.axis,
             condition=self.condition,
             share_of_error=round(self.share_of_error, 3),
-            push=float(f"{self.push:.4g}") if alone else None,
+            push=float(f"{self.push:.4g}") if constant else None,
         )
 
 
@@ -105,20 +105,22 @@ def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> Erro
     if len(blocks.time) < 2:
         return ErrorExplanation.nothing()
     tables: dict[str, dict[str, BinnedErrors]] = {axis: {} for axis in AXES}
-    found: list[Finding] = []
-    enough = True
+    findings: list[Finding] = []
+    enough_stretches = True
     for k in np.flatnonzero(blocks.axes).tolist():
         axis, error = AXES[k], blocks.error[:, k]
         stretch = number_stretches(blocks, error)
         cuts = [cut_bins(c, x, stretch) for c, x in blocks.values.items()]
         tables[axis] = {b.condition.name: bin_errors(b, error, stretch) for b in cuts}
-        worth = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
+        threshold = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
         with threadpool_limits(1, "blas"):  # the matrices are small: threads would wait
             causes = _of_axis(axis, error, cuts, stretch, seed)
         pushes = [_pushed(f, blocks, k, inertia) for f in causes]
-        found += [f for f in pushes if f.share_of_error > worth]
-        enough = enough and int(stretch.max()) + 1 >= FEWEST
-    return ErrorExplanation(blocks, tables, sorted(found, key=lambda f: -f.share_of_error), enough)
+        findings += [f for f in pushes if f.share_of_error > threshold]
+        enough_stretches = enough_stretches and int(stretch.max()) + 1 >= FEWEST
+    return ErrorExplanation(
+        blocks, tables, sorted(findings, key=lambda f: -f.share_of_error), enough_stretches
+    )
 
 
 def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:
@@ -150,16 +152,16 @@ def _of_axis(
     """
     count = int(stretch.max()) + 1
     signs = np.random.default_rng(seed).choice([-1.0, 1.0], (count, FLIPS))
-    found: list[Finding] = []
-    left, power = error, float(np.sum(error**2))
-    while count >= FEWEST and len(found) < MOST and power > 0:
-        best = _next(axis, left, cuts, stretch, signs, float(np.sum(left**2)) / power)
-        if best is None or best.share_of_error < SMALLEST:
+    findings: list[Finding] = []
+    remainder, power = error, float(np.sum(error**2))
+    while count >= FEWEST and len(findings) < MOST and power > 0:
+        finding = _next(axis, remainder, cuts, stretch, signs, float(np.sum(remainder**2)) / power)
+        if finding is None or finding.share_of_error < SMALLEST:
             break
-        found.append(replace(best, after=tuple(f.condition for f in found)))
-        at = best.table.binning
-        left = left - np.where(at.judged, best.table.mean, 0.0)[at.bin]
-    return found
+        findings.append(replace(finding, after=tuple(f.condition for f in findings)))
+        at = finding.table.binning
+        remainder = remainder - np.where(at.judged, finding.table.mean, 0.0)[at.bin]
+    return findings
 
 
 def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
@@ -170,19 +172,23 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     """
     tables = [bin_errors(b, left, stretch) for b in cuts]
     chances = _chances(left, cuts, stretch, signs)
-    real = [(t, p) for t, p in zip(tables, chances, strict=True) if p <= LEVEL / len(AXES)]
-    if not real:
+    significant = [(t, p) for t, p in zip(tables, chances, strict=True) if p <= LEVEL / len(AXES)]
+    if not significant:
         return None
-    most = max(t.share for t, _ in real)
-    close = sorted((r for r in real if r[0].share >= AS_GOOD * most), key=lambda r: -r[0].share)
-    simplest = [r for r in close if r[0].binning.condition.name == THROUGHOUT]
-    best, chance = (simplest or close)[0]
-    alike = () if simplest else tuple(t.binning.condition for t, _ in close[1:])
-    name = best.binning.condition.name
-    alone = next((t for t in tables if t.binning.condition.name == THROUGHOUT), None)
-    constant, steady = (alone.share * scale, float(alone.mean[0])) if alone else (0.0, 0.0)
+    largest = max(t.share for t, _ in significant)
+    near_largest = sorted(
+        (r for r in significant if r[0].share >= AS_GOOD * largest), key=lambda r: -r[0].share
+    )
+    simplest = [r for r in near_largest if r[0].binning.condition.name == THROUGHOUT]
+    table, chance = (simplest or near_largest)[0]
+    similar = () if simplest else tuple(t.binning.condition for t, _ in near_largest[1:])
+    name = table.binning.condition.name
+    whole_run = next((t for t in tables if t.binning.condition.name == THROUGHOUT), None)
+    constant, steady = (
+        (whole_run.share * scale, float(whole_run.mean[0])) if whole_run else (0.0, 0.0)
+    )
     return Finding(
-        axis, name, best.share * scale, chance, best, alike, constant=constant, steady=steady
+        axis, name, table.share * scale, chance, table, similar, constant=constant, steady=steady
     )
 
 
@@ -195,11 +201,11 @@ def _chances(error: Array, cuts: Sequence[Binning], stretch: Array, signs: Array
         stretch: number (n,) of the stretch of each block.
         signs: random signs (g, f) of the stretches.
     """
-    none = np.ones((len(signs), 1))
+    unflipped = np.ones((len(signs), 1))
     flipped = weigh_evidence(cuts, error, stretch, signs)
-    seen = weigh_evidence(cuts, error, stretch, none)[:, 0]
+    actual = weigh_evidence(cuts, error, stretch, unflipped)[:, 0]
     mean, spread = flipped.mean(axis=1), flipped.std(axis=1)
     spread = np.where(spread > 0, spread, np.inf)
     highest = ((flipped - mean[:, None]) / spread[:, None]).max(axis=0)
-    ours = (seen - mean) / spread
-    return [float(1 + np.sum(highest >= z)) / (1 + len(highest)) for z in ours]
+    z_scores = (actual - mean) / spread
+    return [float(1 + np.sum(highest >= z)) / (1 + len(highest)) for z in z_scores]

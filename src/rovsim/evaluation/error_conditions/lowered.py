@@ -65,21 +65,21 @@ def find_most_lowered(
     """
     if len(before.time) < 2 or not np.array_equal(before.time, after.time):
         return None
-    found = [
-        one
+    candidates = [
+        c
         for axis, conditions in _list_choices(before, shown)
         if axis in axes
-        for one in _compare(before, after, axis, conditions, shown is not None and shown.size)
+        for c in _compare(before, after, axis, conditions, shown is not None and shown.size)
     ]
-    most = max((one.removed for one in found), default=0.0)
-    near = [one for one in found if one.removed >= NEARLY * most]
+    largest = max((c.removed for c in candidates), default=0.0)
+    near_largest = [c for c in candidates if c.removed >= NEARLY * largest]
     declared = shown.condition if shown else ""
     return max(
-        near,
-        key=lambda one: (
-            one.condition.name == declared,
-            one.condition.axis == one.axis,
-            one.removed,
+        near_largest,
+        key=lambda c: (
+            c.condition.name == declared,
+            c.condition.axis == c.axis,
+            c.removed,
         ),
         default=None,
     )
@@ -89,13 +89,13 @@ def _list_choices(
     blocks: Blocks, shown: Signature | None
 ) -> Iterator[tuple[str, Sequence[Condition]]]:
     """Yield the axes that were measured, each with the conditions over which it may be shown."""
-    known = [*list_shown_conditions(blocks)]
-    declared = next((c for c in known if shown and c.name == shown.condition), None)
+    conditions = [*list_shown_conditions(blocks)]
+    declared = next((c for c in conditions if shown and c.name == shown.condition), None)
     for k in np.flatnonzero(blocks.axes).tolist():
         if shown is None or declared is None:
             yield AXES[k], [*blocks.values]
         else:
-            yield AXES[k], [c for c in known if _is_alike(c, AXES[k], declared, shown.axis)]
+            yield AXES[k], [c for c in conditions if _is_alike(c, AXES[k], declared, shown.axis)]
 
 
 def _is_alike(condition: Condition, axis: str, declared: Condition, shown_axis: str) -> bool:
@@ -105,8 +105,8 @@ def _is_alike(condition: Condition, axis: str, declared: Condition, shown_axis: 
     """
     if declared.axis == "" or declared.name == HEADING:
         return condition == declared
-    own = declared.axis == shown_axis
-    return condition.kind == declared.kind and (condition.axis == axis) == own
+    on_shown_axis = declared.axis == shown_axis
+    return condition.kind == declared.kind and (condition.axis == axis) == on_shown_axis
 
 
 def _compare(
@@ -114,15 +114,15 @@ def _compare(
 ) -> Iterator[Lowered]:
     """Yield those of the conditions over which the error of an axis fell."""
     k = AXES.index(axis)
-    old, new, measured = before.error[:, k], after.error[:, k], before.measured[:, k]
+    old, new, acceleration = before.error[:, k], after.error[:, k], before.measured[:, k]
     stretch = number_stretches(before, old)
     values = list_shown_conditions(before)
     for condition in conditions:
         cut = cut_bins(condition, values[condition], stretch)
         tables = bin_errors(cut, old, stretch), bin_errors(cut, new, stretch)
-        removed = _removed(*tables, size) / float(np.mean(measured**2) or np.inf)
-        if removed > 0.0:
-            yield Lowered(axis, condition, *tables, size, removed)
+        reduction = _removed(*tables, size) / float(np.mean(acceleration**2) or np.inf)
+        if reduction > 0.0:
+            yield Lowered(axis, condition, *tables, size, reduction)
 
 
 def _removed(before: BinnedErrors, after: BinnedErrors, size: bool) -> float:
@@ -130,5 +130,5 @@ def _removed(before: BinnedErrors, after: BinnedErrors, size: bool) -> float:
     count = before.binning.count * before.binning.judged
     if len(count) < 2:
         return 0.0
-    old, new = (one.rms if size else one.mean for one in (before, after))
+    old, new = (errors.rms if size else errors.mean for errors in (before, after))
     return float(count @ (old**2 - new**2) / max(count.sum(), 1))

@@ -53,8 +53,8 @@ STRAIGHT = 0.6  # correlation of error and condition: beyond, the error grows or
 
 def say(found: Finding) -> str:
     """Say a finding in sentences that need no others."""
-    after = f", beyond {' and '.join(found.after)}" if found.after else ""
-    return f"{_begin(found.axis)}{after}: {_what(found)} {_share(found)} {_usual(found)}"
+    earlier = f", beyond {' and '.join(found.after)}" if found.after else ""
+    return f"{_begin(found.axis)}{earlier}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
 def summarize(explanation: ErrorExplanation) -> list[str]:
@@ -66,7 +66,7 @@ def summarize(explanation: ErrorExplanation) -> list[str]:
             "No condition explains the error. Over speed, thrust, attitude, place and time, the "
             "mean error is no larger than chance would make it."
         ]
-    return [say(found) for found in explanation.findings]
+    return [say(finding) for finding in explanation.findings]
 
 
 def amount(value: float) -> str:
@@ -90,10 +90,10 @@ def _what(found: Finding) -> str:
     condition, unit = found.table.binning.condition, UNITS.get(found.axis, "rad/s²")
     if condition.kind == THROUGHOUT:
         return _constant(found, unit)
-    own = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
+    wordings = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
     r = relation(found)
-    if own and condition.name != "heading" and abs(r) > STRAIGHT:
-        return f"the model {own[0] if r > 0 else own[1]}. {_extreme(found, unit)}."
+    if wordings and condition.name != "heading" and abs(r) > STRAIGHT:
+        return f"the model {wordings[0] if r > 0 else wordings[1]}. {_extreme(found, unit)}."
     return f"the error changes with {condition.name}: {_range(found, unit)}."
 
 
@@ -124,9 +124,9 @@ def _extreme(found: Finding, unit: str) -> str:
 
 def _range(found: Finding, unit: str) -> str:
     """Say the lowest and the highest mean error, and in which bins they are."""
-    judged, mean = found.table.binning.judged, found.table.mean
-    low = int(np.argmin(np.where(judged, mean, np.inf)))
-    high = int(np.argmax(np.where(judged, mean, -np.inf)))
+    filled, mean = found.table.binning.judged, found.table.mean
+    low = int(np.argmin(np.where(filled, mean, np.inf)))
+    high = int(np.argmax(np.where(filled, mean, -np.inf)))
     return (
         f"{_signed(mean[low])} {unit} {_span(found, low)}, "
         f"{_signed(mean[high])} {unit} {_span(found, high)} (measured minus model)"
@@ -165,11 +165,11 @@ def _share(found: Finding) -> str:
     if found.constant > SMALLEST:
         push = f" (a push of {_push(found)})" if found.push is not None else ""
         text = f"{text[:-1]}, a constant alone {100 * found.constant:.0f} %{push}."
-    others = [c.name for c in found.alike[:2]]
-    if not others:
+    alternatives = [c.name for c in found.alike[:2]]
+    if not alternatives:
         return text
-    would = " or ".join(others)
-    return f"{text} ({_begin(would)} would explain about as much: they varied together.)"
+    names = " or ".join(alternatives)
+    return f"{text} ({_begin(names)} would explain about as much: they varied together.)"
 
 
 def _begin(words: str) -> str:
@@ -186,5 +186,5 @@ def _cause(axis: str, condition: Condition) -> str:
     """Key in `USUAL` of an axis and a condition; "coupled" if the condition is of another axis."""
     if condition.name == "heading":
         return "heading"
-    moved = condition.kind in ("speed", "thrust", "attitude")
-    return "coupled" if moved and condition.axis not in ("", axis) else condition.kind
+    of_motion = condition.kind in ("speed", "thrust", "attitude")
+    return "coupled" if of_motion and condition.axis not in ("", axis) else condition.kind

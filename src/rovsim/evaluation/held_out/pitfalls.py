@@ -34,21 +34,21 @@ FAR = 1e6  # standard deviations from all training data: there a Gaussian proces
 def on_wrong_clock(motion: Motion) -> Motion:
     """Change the clock of a binned run as if each bin lasted `SAID` s; its commands move along."""
     edges = np.append(motion.time, motion.end)
-    said = motion.time[0] + SAID * np.arange(len(edges))
-    arrival = np.interp(motion.commands.time, edges, said)
+    clock = motion.time[0] + SAID * np.arange(len(edges))
+    arrival = np.interp(motion.commands.time, edges, clock)
     return replace(
         motion,
-        time=said[:-1],
-        end=float(said[-1]),
-        nu_dot=backward_difference(motion.nu, said[:-1]),
+        time=clock[:-1],
+        end=float(clock[-1]),
+        nu_dot=backward_difference(motion.nu, clock[:-1]),
         commands=replace(motion.commands, time=arrival),
     )
 
 
 def replay_error(model: Model, motion: Motion, how: SimulationSettings) -> float | None:
     """Normalised velocity RMSE of an open-loop replay (`scores.normalize`)."""
-    found = replay(model, motion, how).horizons[OPEN_LOOP]
-    return normalize(measured_spread([motion]), rms(subtract(motion, found).nu))
+    prediction = replay(model, motion, how).horizons[OPEN_LOOP]
+    return normalize(measured_spread([motion]), rms(subtract(motion, prediction).nu))
 
 
 def explained(predict: Callable[[Array], Array], X: Array, Y: Array) -> float:
@@ -87,31 +87,35 @@ def measure_pitfalls(
     Returns:
         The number without the mistake (`right`) and with it (`wrong`), by name of the mistake.
     """
-    found = {m.run.id: sample_run(model, m, how) for m in runs}
-    asked = sample_run(model, test, how)
+    samples = {m.run.id: sample_run(model, m, how) for m in runs}
+    test_samples = sample_run(model, test, how)
 
     def taught(kind: str, names: Sequence[str]) -> tuple[Trained, Array]:
-        own = [found[name] for name in names]
-        return _trained(own, learners[kind]), asked.features(learners[kind].features)
+        training = [samples[name] for name in names]
+        return _trained(training, learners[kind]), test_samples.features(learners[kind].features)
 
-    gp, X = taught("gp", list(found))
-    scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in found.values()]), axis=0), 1e-9)
-    same = [m.run.id for m in runs if m.run.control == "3dof"]
-    real = [m.run.id for m in runs if m.run.control == "6dof"]
+    gp, X = taught("gp", list(samples))
+    scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in samples.values()]), axis=0), 1e-9)
+    planar = [m.run.id for m in runs if m.run.control == "3dof"]
+    full = [m.run.id for m in runs if m.run.control == "6dof"]
     costs: dict[str, Cost] = {}
     if test.binned:
         costs["wrong clock"] = Cost(
             right=replay_error(model, test, how),
             wrong=replay_error(model, on_wrong_clock(test), how),
         )
-    right = explained(gp.predict, X, asked.a_res)
-    lost, twice = (explained(gp.predict, x, asked.a_res) for x in (X + FAR * scale, X / scale))
-    costs["lost data"] = Cost(right=right, wrong=lost)
+    right = explained(gp.predict, X, test_samples.a_res)
+    far, twice = (
+        explained(gp.predict, x, test_samples.a_res) for x in (X + FAR * scale, X / scale)
+    )
+    costs["lost data"] = Cost(right=right, wrong=far)
     costs["scaled twice"] = Cost(right=right, wrong=twice)
-    if same and real:
-        (knn, K), (copy, _) = taught("knn", real), taught("knn", same * len(real))
-        copied = explained(copy.predict, K, asked.a_res)
-        costs["copied runs"] = Cost(right=explained(knn.predict, K, asked.a_res), wrong=copied)
+    if planar and full:
+        (knn, K), (copy, _) = taught("knn", full), taught("knn", planar * len(full))
+        score_of_copies = explained(copy.predict, K, test_samples.a_res)
+        costs["copied runs"] = Cost(
+            right=explained(knn.predict, K, test_samples.a_res), wrong=score_of_copies
+        )
     return costs
 
 

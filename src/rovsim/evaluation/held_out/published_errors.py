@@ -118,15 +118,15 @@ def compare_published(
     Raises:
         BadInput: nobody published anything for any of the runs.
     """
-    known = [run for run in comparisons if any(p.run == run for p in published)]
-    if not known:
+    published_runs = [run for run in comparisons if any(p.run == run for p in published)]
+    if not published_runs:
         raise BadInput(
             f"nothing is published for the runs {', '.join(comparisons)}",
             where="published numbers",
             expected=f"one of the runs {', '.join(dict.fromkeys(p.run for p in published))}",
             remedy="Name the runs of the campaign as in the published file.",
         )
-    found = [
+    candidates = [
         _cell(
             _of(published, run, axis),
             _errors(comparisons[run], run, axis, metric),
@@ -135,15 +135,15 @@ def compare_published(
             axis,
             metric,
         )
-        for run in known
+        for run in published_runs
         for axis in AXES
         for metric in METRICS
     ]
-    cells = tuple(cell for cell in found if cell)
+    cells = tuple(cell for cell in candidates if cell)
     names = dict.fromkeys(name for cell in cells for name in cell.ratios)
     return PublishedErrors(
-        runs=tuple(known),
-        without_published=tuple(run for run in comparisons if run not in known),
+        runs=tuple(published_runs),
+        without_published=tuple(run for run in comparisons if run not in published_runs),
         models={name: _stand(name, cells) for name in names},
         cells=cells,
     )
@@ -184,11 +184,11 @@ def _cell(
     Returns:
         The cell; None without a published error, or where nothing was measured.
     """
-    still = ours.get(ZERO_ACCELERATION)
-    if not theirs or still is None:
+    at_rest = ours.get(ZERO_ACCELERATION)
+    if not theirs or at_rest is None:
         return None
     best = min(theirs, key=lambda p: p.errors[metric])
-    mark = best.errors[metric] if moved[axis] else max(best.errors[metric], still)
+    mark = best.errors[metric] if moved[axis] else max(best.errors[metric], at_rest)
     smallest = {
         f"{PUBLISHED}{model}": min(p.errors[metric] for p in theirs if p.model == model)
         for model in dict.fromkeys(p.model for p in theirs)
@@ -228,21 +228,23 @@ def stand(ratios: Sequence[float | None]) -> Standing:
 
 def _stand(name: str, cells: Sequence[PublishedCell]) -> ModelStanding:
     """Tell how one model stands: in the counted metrics together, by metric, and by axis."""
-    own = [cell for cell in cells if name in cell.ratios]
-    counted = [cell for cell in own if cell.metric in COUNTED]
+    model_cells = [cell for cell in cells if name in cell.ratios]
+    counted = [cell for cell in model_cells if cell.metric in COUNTED]
 
     def among(cells: Sequence[PublishedCell]) -> Standing:
         return stand([cell.ratios[name] for cell in cells])
 
     axes = {axis: among([c for c in counted if c.axis == axis]) for axis in AXES}
-    whole = among(counted)
+    total = among(counted)
     return ModelStanding(
-        cells=whole.cells,
-        below=whole.below,
-        share_below=whole.share_below,
-        geometric_mean=whole.geometric_mean,
-        by_metric={metric: among([c for c in own if c.metric == metric]) for metric in METRICS},
-        by_axis=ByAxis(**{axis: one.geometric_mean for axis, one in axes.items()}),
+        cells=total.cells,
+        below=total.below,
+        share_below=total.share_below,
+        geometric_mean=total.geometric_mean,
+        by_metric={
+            metric: among([c for c in model_cells if c.metric == metric]) for metric in METRICS
+        },
+        by_axis=ByAxis(**{axis: s.geometric_mean for axis, s in axes.items()}),
         not_below=tuple(
             MissedCell(run=c.run, axis=c.axis, metric=c.metric, ratio=c.ratios[name])
             for c in counted
