@@ -76,16 +76,18 @@ def _list_starts(cls: type[Effect], site: Site) -> list[dict[str, float]]:
     starts = list(cls.starts_at(site))
     for p in cls.parameters:
         if p.tried:
-            every = [start | {p.name: value} for start in starts for value in p.tried]
-            starts = [start for k, start in enumerate(every) if start not in every[:k]]
+            combinations = [start | {p.name: value} for start in starts for value in p.tried]
+            starts = [
+                start for k, start in enumerate(combinations) if start not in combinations[:k]
+            ]
     return starts
 
 
 def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement]:
     """Through what effects can act in these runs of a vehicle: thrusters, surfaces, demands, …"""
-    commands = [one.motion.commands for one in runs if len(one.motion.commands.time)]
-    kinds = {one.kind for one in commands}
-    given: dict[Requirement, object] = {
+    commands = [source.motion.commands for source in runs if len(source.motion.commands.time)]
+    kinds = {source.kind for source in commands}
+    conditions: dict[Requirement, object] = {
         "nothing": True,
         "commands": commands,
         "demands": "demand" in kinds,
@@ -93,17 +95,19 @@ def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement
         "surfaces": vehicle.surfaces,
         "waterplane": vehicle.floats,
     }
-    return {means for means, there in given.items() if there}
+    return {means for means, met in conditions.items() if met}
 
 
 def _can_act(start: Effect, runs: Sequence[ObservedRun]) -> bool:
     """Whether all runs have what the effect needs."""
-    logged = [set(one.motion.commands.auxiliary) for one in runs]
-    if isinstance(start, Wrench) and not all(set(start.channels) <= known for known in logged):
+    logged = [set(run.motion.commands.auxiliary) for run in runs]
+    if isinstance(start, Wrench) and not all(
+        set(start.channels) <= channels for channels in logged
+    ):
         return False
     try:
-        for one in runs:
-            start.check(one.motion.site, one.motion.commands.kind)
+        for run in runs:
+            start.check(run.motion.site, run.motion.commands.kind)
     except BadInput:
         return False
     return True

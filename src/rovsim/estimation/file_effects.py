@@ -42,8 +42,8 @@ def has_loose_file(h: Hypothesis) -> bool:
 
 def mark_gain(h: Hypothesis) -> Array:
     """Mask (k,) of the free parameter that is the common gain of all thrusters."""
-    each = ((term.id, name) for term in h.terms for name in term.free)
-    return np.array([one == (ThrusterGain.id, *ONE_GAIN) for one in each], bool)
+    names = ((term.id, name) for term in h.terms for name in term.free)
+    return np.array([n == (ThrusterGain.id, *ONE_GAIN) for n in names], bool)
 
 
 def doubt_gain(h: Hypothesis) -> float:
@@ -56,8 +56,8 @@ def doubt_gain(h: Hypothesis) -> float:
     """
     if not has_loose_file(h):
         return 0.0
-    away = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN
-    return float(np.sum(cauchy(away**2)))
+    offset = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN
+    return float(np.sum(cauchy(offset**2)))
 
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
@@ -73,8 +73,8 @@ def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> fl
     In scales of the parameter; 0 where the file states zero, or nothing is known.
     """
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
-    stated = 0.0 if bounds is None else -bounds.low
-    return SHARE.get(effect.id, 0.0) * stated / parameter.scale
+    file_value = 0.0 if bounds is None else -bounds.low
+    return SHARE.get(effect.id, 0.0) * file_value / parameter.scale
 
 
 def free_terms(
@@ -96,8 +96,8 @@ def free_terms(
 def _physical_bounds(base: Model) -> dict[str, dict[str, Bounds]]:
     """Bounds of each change of drag or added mass, by effect and axis: none becomes negative."""
     return {
-        name: {a: Bounds(float(-x), np.inf) for a, x in zip(AXES, own, strict=True)}
-        for name, own in base.body.stated.items()
+        name: {a: Bounds(float(-x), np.inf) for a, x in zip(AXES, values, strict=True)}
+        for name, values in base.body.stated.items()
     }
 
 

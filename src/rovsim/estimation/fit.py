@@ -70,8 +70,8 @@ class Fit:
 
         Their squared distance from their absence, in standard deviations; `own` are their numbers.
         """
-        off, V = (self.hypothesis.x - self.hypothesis.absence)[own], self.covariance[own][:, own]
-        return float(off @ solve(V, off))
+        offset, V = (self.hypothesis.x - self.hypothesis.absence)[own], self.covariance[own][:, own]
+        return float(offset @ solve(V, offset))
 
 
 def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf) -> Fit:
@@ -106,8 +106,8 @@ def fit_or_give_up(
     """
 
     def monitor(seen: Linearised, predicted_reduction: float) -> None:
-        here = bank.fit_noise(seen.e, noise).two_log_likelihood
-        if here + REACHABLE * predicted_reduction < least:
+        two_log_likelihood = bank.fit_noise(seen.e, noise).two_log_likelihood
+        if two_log_likelihood + REACHABLE * predicted_reduction < least:
             raise GivenUp
 
     prior = Prior.around(first.hypothesis.x, reach)
@@ -142,10 +142,10 @@ def polish(
 
     polished = again(start)
     for _ in range(1, POLISHING_ROUNDS):
-        finer = again(polished[0])
-        if not finer[0].is_finite:
+        refined = again(polished[0])
+        if not refined[0].is_finite:
             break
-        polished = finer
+        polished = refined
     return polished
 
 
@@ -161,8 +161,8 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None 
     if not seen.finite:
         unknown = np.full((len(seen.hypothesis.x), len(seen.hypothesis.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)
-    own, two_log_likelihood = bank.fit_noise(seen.e, noise)
-    information = gram(as_rows(bank.whiten(seen.J, own)))
+    fitted_noise, two_log_likelihood = bank.fit_noise(seen.e, noise)
+    information = gram(as_rows(bank.whiten(seen.J, fitted_noise)))
     if prior is not None:
         information = information + np.diag(prior.weights(seen.hypothesis.x))
-    return Fit(seen, own, two_log_likelihood, solve(information, np.eye(len(information))))
+    return Fit(seen, fitted_noise, two_log_likelihood, solve(information, np.eye(len(information))))

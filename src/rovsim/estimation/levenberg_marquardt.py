@@ -46,25 +46,25 @@ def levenberg_marquardt(
             predict that the sum of squares is lowered yet.
     """
     problem = _LeastSquares(source, noise, prior or Prior.around(start.x, np.inf))
-    seen, damping, rough = first or source.linearise(start), INITIAL_DAMPING, first is not None
-    if not len(start.x) or not seen.finite:
-        return seen
-    quadratic = problem.expand(seen)
+    current, damping, rough = (first or source.linearise(start), INITIAL_DAMPING, first is not None)
+    if not len(start.x) or not current.finite:
+        return current
+    quadratic = problem.expand(current)
     for _ in range(MOST_ITERATIONS):
         step, ended = _find_reducing_step(problem, quadratic, damping), False
-        if step is None and seen.hypothesis is quadratic.hypothesis and not rough:
-            return seen
+        if step is None and current.hypothesis is quadratic.hypothesis and not rough:
+            return current
         if step is not None:
             damping = max(step.damping / 10.0, MIN_DAMPING)
             ended = _is_small(step, quadratic)
             quadratic = problem.shift(quadratic, step)
             if step.gain_ratio_near_one and not ended:
                 continue
-        seen, ended, rough = source.linearise(quadratic.hypothesis), ended and not rough, False
-        if ended or not seen.finite:
-            return seen
-        quadratic = problem.expand(seen)
-        monitor(seen, quadratic.predicted_reduction)
+        current, ended, rough = (source.linearise(quadratic.hypothesis), ended and not rough, False)
+        if ended or not current.finite:
+            return current
+        quadratic = problem.expand(current)
+        monitor(current, quadratic.predicted_reduction)
     return source.linearise(quadratic.hypothesis)
 
 
@@ -113,8 +113,8 @@ class _LeastSquares:
 
     def errors(self, wanted: Hypothesis) -> Array:
         """Whitened errors (size,); infinite where the model diverges."""
-        e = [one[0] for one in self.source.evaluate([wanted.model])]
-        if not all(np.isfinite(one).all() for one in e):
+        e = [e_run[0] for e_run in self.source.evaluate([wanted.model])]
+        if not all(np.isfinite(e_run).all() for e_run in e):
             return np.array([np.inf])
         return self.source.whiten(e, self.noise).ravel()
 
@@ -144,8 +144,8 @@ class _LeastSquares:
 def _is_small(step: TrialStep, quadratic: QuadraticModel) -> bool:
     """Whether a step need not be followed by another."""
     excess = max(0.0, step.cost - quadratic.size)
-    small = max(STEP_TOLERANCE**2 * len(quadratic.g), MISFIT_TOLERANCE * excess)
-    return step.damping <= LIGHT_DAMPING and step.length < small
+    tolerance = max(STEP_TOLERANCE**2 * len(quadratic.g), MISFIT_TOLERANCE * excess)
+    return step.damping <= LIGHT_DAMPING and step.length < tolerance
 
 
 def _find_reducing_step(
@@ -164,8 +164,8 @@ def _find_reducing_step(
         step = _try_step(problem, quadratic, damping, goal)
         if step.cost >= quadratic.cost:
             goals = _move_coarse_less(quadratic, goal, damping)
-            careful = [_try_step(problem, quadratic, damping, x) for x in goals]
-            step = min([step, *careful], key=lambda one: one.cost)
+            trials = [_try_step(problem, quadratic, damping, x) for x in goals]
+            step = min([step, *trials], key=lambda one: one.cost)
         if step.cost < quadratic.cost:
             return step
         if step.length < STEP_TOLERANCE**2:
@@ -187,23 +187,23 @@ def _move_coarse_less(quadratic: QuadraticModel, goal: Array, damping: float) ->
     H = quadratic.H[np.ix_(~coarse, ~coarse)]
     damped = H + damping * np.diag(np.diag(H))
     for reach in (1.0, 0.0):
-        moved = x.copy()
-        moved[coarse] += np.clip((goal - x)[coarse], *(reach * grains[coarse] * [[-1.0], [1.0]]))
-        coupled = quadratic.H[np.ix_(~coarse, coarse)] @ (moved - x)[coarse]
-        moved[~coarse] -= solve(damped, quadratic.g[~coarse] + coupled)
-        if np.isfinite(moved).all():
-            yield moved
+        trial = x.copy()
+        trial[coarse] += np.clip((goal - x)[coarse], *(reach * grains[coarse] * [[-1.0], [1.0]]))
+        coupled = quadratic.H[np.ix_(~coarse, coarse)] @ (trial - x)[coarse]
+        trial[~coarse] -= solve(damped, quadratic.g[~coarse] + coupled)
+        if np.isfinite(trial).all():
+            yield trial
 
 
 def _try_step(
     problem: _LeastSquares, quadratic: QuadraticModel, damping: float, goal: Array
 ) -> TrialStep:
     """Where a step to a goal (k,) leads."""
-    wanted = quadratic.hypothesis.at(goal)
-    step = wanted.x - quadratic.hypothesis.x
-    residuals = problem.errors(wanted)
-    cost, length = problem.cost(wanted, residuals), float(step @ quadratic.H @ step)
+    trial = quadratic.hypothesis.at(goal)
+    step = trial.x - quadratic.hypothesis.x
+    residuals = problem.errors(trial)
+    cost, length = problem.cost(trial, residuals), float(step @ quadratic.H @ step)
     predicted = -float(2.0 * quadratic.g @ step + length)
     # gain ratio (actual over predicted reduction) within the tolerance of 1
     near_one = abs(quadratic.cost - cost - predicted) < GAIN_RATIO_TOLERANCE * predicted
-    return TrialStep(wanted, cost, damping, length, residuals, near_one)
+    return TrialStep(trial, cost, damping, length, residuals, near_one)

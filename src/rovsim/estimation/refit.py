@@ -32,16 +32,18 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
     usable = select_usable(train)
     if not usable.enough:
         return base.called(REFITTED)
-    here, noise = _start(base, usable.moved), FIRST_NOISE
+    hypothesis, noise = _start(base, usable.moved), FIRST_NOISE
     for _ in range(ROUNDS):
-        fitted = fit(here, FilterBank.design(usable.runs, base, noise), noise)
-        here, noise = _fix_at_bounds(fitted.hypothesis), fitted.noise
-    return here.model.called(REFITTED)
+        result = fit(hypothesis, FilterBank.design(usable.runs, base, noise), noise)
+        hypothesis, noise = _fix_at_bounds(result.hypothesis), result.noise
+    return hypothesis.model.called(REFITTED)
 
 
 def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     """All parameters free and unchanged."""
-    terms = free_terms(base, moved, [one for one in FILE_EFFECTS if one is not ThrusterGain])
+    terms = free_terms(
+        base, moved, [effect for effect in FILE_EFFECTS if effect is not ThrusterGain]
+    )
     gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
     return Hypothesis(base, (*terms, gain))
 
@@ -50,7 +52,7 @@ def _fix_at_bounds(fitted: Hypothesis) -> Hypothesis:
     """With what came to rest at a bound fixed there."""
 
     def inside(term: Term) -> tuple[str, ...]:
-        known = zip(term.parameters, (term.effect[name] for name in term.free), strict=True)
-        return tuple(p.name for p, value in known if p.low < value < p.high)
+        values = zip(term.parameters, (term.effect[name] for name in term.free), strict=True)
+        return tuple(p.name for p, value in values if p.low < value < p.high)
 
     return replace(fitted, terms=tuple(replace(t, free=inside(t)) for t in fitted.terms))

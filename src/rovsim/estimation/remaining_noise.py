@@ -43,20 +43,20 @@ def fit_remaining_noise(
     """
     bank, e, columns = sensitivities.bank, sensitivities.base, sensitivities.columns
     if at.terms:
-        seen = bank.linearise(at)
-        e, columns = seen.e, _join(seen.J, columns)
+        linearised = bank.linearise(at)
+        e, columns = linearised.e, _join(linearised.J, columns)
     for _ in range(rounds - 1):
-        known = noise
-        noise = bank.fit_axes(draw_remainder(bank, e, columns, known), known).noise
+        previous = noise
+        noise = bank.fit_axes(draw_remainder(bank, e, columns, previous), previous).noise
         if (
-            np.max(np.abs(np.log(noise.disturbance_std / known.disturbance_std)))
+            np.max(np.abs(np.log(noise.disturbance_std / previous.disturbance_std)))
             < LOG_STD_TOLERANCE
         ):
             break
     fit = bank.fit_noise(draw_remainder(bank, e, columns, noise), noise, thorough=True)
-    own = _fit_own_noise(bank, at.model, fit.noise)
-    likelier = own.two_log_likelihood > fit.two_log_likelihood + sensitivities.count
-    return (own if likelier else fit).noise
+    own_fit = _fit_own_noise(bank, at.model, fit.noise)
+    likelier = own_fit.two_log_likelihood > fit.two_log_likelihood + sensitivities.count
+    return (own_fit if likelier else fit).noise
 
 
 def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
@@ -64,7 +64,7 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
 
     Each round starts from the same guess, since a level that has fallen to zero would stay there.
     """
-    first = replace(
+    start = replace(
         FIRST_NOISE,
         bias_std=noise.bias_std,
         bias_correlation_time=noise.bias_correlation_time,
@@ -73,16 +73,16 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
     fit = NoiseFit(noise, -np.inf)
     for _ in range(ROUNDS):
         bank = bank.redesign(model, fit.noise)
-        again = bank.fit_noise(bank.innovations(model), first)
-        if not again.two_log_likelihood > fit.two_log_likelihood + MIN_LR_OF_OWN_NOISE:
+        refit = bank.fit_noise(bank.innovations(model), start)
+        if not refit.two_log_likelihood > fit.two_log_likelihood + MIN_LR_OF_OWN_NOISE:
             break
-        fit = again
+        fit = refit
     return fit
 
 
 def _join(J: Sequence[Array], columns: Sequence[Array]) -> list[Array]:
     pairs = zip(J, columns, strict=True)
-    return [np.concatenate([own.astype(more.dtype), more]) for own, more in pairs]
+    return [np.concatenate([rows.astype(added.dtype), added]) for rows, added in pairs]
 
 
 def draw_remainder(
@@ -97,18 +97,22 @@ def draw_remainder(
     Returns:
         The remainder (6, n) of each run; all runs of the first draw, then those of the next.
     """
-    target = bank.flatten([one[None] for one in e], noise)[0]
+    target = bank.flatten([e_run[None] for e_run in e], noise)[0]
     white = bank.flatten(columns, noise)
     H = gram(white).astype(float)
     size = np.sqrt(np.diag(H))
     size[size == 0.0] = 1.0
-    sure, turn = np.linalg.eigh(H / np.outer(size, size))
-    sure = np.maximum(sure, 0.0) + SHRINK
+    eigenvalues, vectors = np.linalg.eigh(H / np.outer(size, size))
+    eigenvalues = np.maximum(eigenvalues, 0.0) + SHRINK
     draws = -(-MIN_READINGS // len(target))
     # by the symmetric root: unlike eigenvectors it hardly changes with a rounding
-    chance = turn.T @ np.random.default_rng(DRAW).normal(size=(draws, len(H))).T
-    best = turn.T @ (white @ target / size) / sure
-    likely = (turn @ (chance / np.sqrt(sure)[:, None] - best[:, None])).T / size
+    normals = vectors.T @ np.random.default_rng(DRAW).normal(size=(draws, len(H))).T
+    solution = vectors.T @ (white @ target / size) / eigenvalues
+    coefficients = (
+        vectors @ (normals / np.sqrt(eigenvalues)[:, None] - solution[:, None])
+    ).T / size
     return [
-        one + np.tensordot(x, c, axes=1) for x in likely for one, c in zip(e, columns, strict=True)
+        e_run + np.tensordot(x, c, axes=1)
+        for x in coefficients
+        for e_run, c in zip(e, columns, strict=True)
     ]

@@ -55,18 +55,18 @@ class Replays:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of m models on each run; NaN for models that are impossible."""
-        counts = [len(own.number) + int(np.sum(_follows(own))) for own in self.windows]
+        counts = [len(windows.number) + int(np.sum(_follows(windows))) for windows in self.windows]
         return [
-            evaluate_possible(models, count, partial(self._compare, own))
-            for own, count in zip(self.windows, counts, strict=True)
+            evaluate_possible(models, count, partial(self._compare, windows))
+            for windows, count in zip(self.windows, counts, strict=True)
         ]
 
     def _compare(self, windows: Windows, models: Sequence[Model]) -> Array:
         velocity, acceleration = self.spread
         nu, time = windows.compare(models), windows.run.motion.time[windows.compared]
         step = np.diff(nu, axis=1) / np.diff(time)[:, None]
-        both = [nu / velocity, step[:, _follows(windows)] / acceleration]
-        return soften(np.concatenate(both, axis=1)).swapaxes(1, 2)
+        errors = [nu / velocity, step[:, _follows(windows)] / acceleration]
+        return soften(np.concatenate(errors, axis=1)).swapaxes(1, 2)
 
     def linearise(self, at: Hypothesis) -> Linearised:
         """Errors of a hypothesis, and their derivatives to its parameters."""
@@ -80,9 +80,9 @@ class Replays:
         """Number (n,) of the window that each error belongs to, counted over all runs."""
         parts, count = [], 0
         for windows in self.windows:
-            own = windows.number + count
-            parts += [own, own[1:][_follows(windows)]]
-            count = int(own.max(initial=count - 1)) + 1
+            numbers = windows.number + count
+            parts += [numbers, numbers[1:][_follows(windows)]]
+            count = int(numbers.max(initial=count - 1)) + 1
         return np.concatenate(parts)
 
 
@@ -111,21 +111,21 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
         its innovations then have.
     """
     source = Replays(bank.runs)
-    seen = _fit(fit, source)
+    linearised = _fit(fit, source)
     covariance = estimate_covariance_of_few(
-        source.whiten(seen.e, fit.noise),
-        source.whiten(seen.J, fit.noise),
+        source.whiten(linearised.e, fit.noise),
+        source.whiten(linearised.J, fit.noise),
         source.number(),
     )
-    fresh = bank.redesign(seen.hypothesis.model, fit.noise)
-    again = judge(fresh.linearise(seen.hypothesis), fresh, fit.noise)
-    return replace(again, covariance=covariance)
+    fresh = bank.redesign(linearised.hypothesis.model, fit.noise)
+    observed = judge(fresh.linearise(linearised.hypothesis), fresh, fit.noise)
+    return replace(observed, covariance=covariance)
 
 
 def fit_without(fit: Fit, runs: Sequence[ObservedRun], left_out: Sequence[ObservedRun]) -> Model:
     """The model of a fit at the values that replay all runs best but those that are left out."""
-    others = tuple(run for run in runs if all(run is not one for one in left_out))
-    return _fit(fit, Replays(others)).hypothesis.model
+    kept_runs = tuple(run for run in runs if all(run is not r for r in left_out))
+    return _fit(fit, Replays(kept_runs)).hypothesis.model
 
 
 def _fit(fit: Fit, source: Replays) -> Linearised:

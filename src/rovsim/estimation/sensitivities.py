@@ -71,7 +71,7 @@ class Sensitivities:
     @property
     def finite(self) -> bool:
         """Whether the model that the columns were made at did not diverge."""
-        return all(np.isfinite(one).all() for one in self.base)
+        return all(np.isfinite(x).all() for x in self.base)
 
 
 def linearise_candidates(
@@ -84,12 +84,12 @@ def linearise_candidates(
     count = 0
     for candidate in candidates:
         columns = _columns(bank, base, candidate, absent)
-        if all(np.isfinite(one).all() for one in columns):
+        if all(np.isfinite(x).all() for x in columns):
             blocks.append(_place(candidate, count))
             parts.append(columns)
             count += len(columns[0])
-    stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
-    return Sensitivities(base.model, bank, absent, stacked, tuple(blocks))
+    matrices = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
+    return Sensitivities(base.model, bank, absent, matrices, tuple(blocks))
 
 
 def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
@@ -98,40 +98,40 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
     Those of an effect that the hypothesis has itself are made beside its other effects. Columns are
     zero where the model diverges.
     """
-    rests: dict[str, tuple[Hypothesis, list[Array]]] = {}
+    bases: dict[str, tuple[Hypothesis, list[Array]]] = {}
     parts = []
     for candidate in known.candidates:
-        others = tuple(term for term in at.terms if term.id != candidate.effect.id)
-        own = candidate.effect.id if len(others) < len(at.terms) else ""
-        if own not in rests:
-            model = replace(at, terms=others).model
-            rests[own] = Hypothesis(model), bank.innovations(model)
-        columns = _columns(bank, rests[own][0], candidate, rests[own][1])
-        finite = all(np.isfinite(one).all() for one in columns)
-        parts.append(columns if finite else [np.zeros_like(one) for one in columns])
-    stacked = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
+        terms = tuple(term for term in at.terms if term.id != candidate.effect.id)
+        effect_id = candidate.effect.id if len(terms) < len(at.terms) else ""
+        if effect_id not in bases:
+            model = replace(at, terms=terms).model
+            bases[effect_id] = Hypothesis(model), bank.innovations(model)
+        columns = _columns(bank, bases[effect_id][0], candidate, bases[effect_id][1])
+        finite = all(np.isfinite(x).all() for x in columns)
+        parts.append(columns if finite else [np.zeros_like(x) for x in columns])
+    matrices = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
     base, beside = bank.innovations(at.model), tuple(term.id for term in at.terms)
-    return replace(known, bank=bank, base=base, columns=stacked, beside=beside)
+    return replace(known, bank=bank, base=base, columns=matrices, beside=beside)
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
     """Number the candidate's columns, beginning at `first`."""
     if candidate.absent:
         return CandidateColumns(candidate, None, tuple(range(first, first + len(candidate.sloped))))
-    own = range(first + 1, first + 1 + len(candidate.sloped))
-    return CandidateColumns(candidate, first, tuple(own))
+    columns = range(first + 1, first + 1 + len(candidate.sloped))
+    return CandidateColumns(candidate, first, tuple(columns))
 
 
 def _columns(
     bank: FilterBank, base: Hypothesis, candidate: Candidate, absent: Sequence[Array]
 ) -> list[Array]:
     """The candidate's columns (c, 6, n) of each run: its secant, if any, then derivatives."""
-    seen = bank.linearise(Hypothesis(base.model, (candidate.term(candidate.sloped),)))
-    columns = _silence_curvature(bank, seen)
+    linearised = bank.linearise(Hypothesis(base.model, (candidate.term(candidate.sloped),)))
+    columns = _silence_curvature(bank, linearised)
     if not candidate.absent:
-        each = zip(seen.e, absent, seen.J, strict=True)
-        columns = [np.concatenate([(there - without)[None], J]) for there, without, J in each]
-    return [own.astype(np.float32) for own in columns]  # six digits are enough
+        inputs = zip(linearised.e, absent, linearised.J, strict=True)
+        columns = [np.concatenate([(e - e_absent)[None], J]) for e, e_absent, J in inputs]
+    return [c.astype(np.float32) for c in columns]  # six digits are enough
 
 
 def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
@@ -141,20 +141,22 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
-    back = {i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()}
-    able = {i: one for i, one in back.items() if one is not None}
-    if not able or not seen.finite:
+    stepped_back = {
+        i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()
+    }
+    possible = {i: h for i, h in stepped_back.items() if h is not None}
+    if not possible or not seen.finite:
         return seen.J
-    faint = list(able)
-    sizes = np.array([(seen.hypothesis.x - one.x)[i] for i, one in able.items()])[:, None, None]
-    moved = bank.evaluate([one.model for one in able.values()])
-    both = [
+    faint = list(possible)
+    sizes = np.array([(seen.hypothesis.x - h.x)[i] for i, h in possible.items()])[:, None, None]
+    outputs = bank.evaluate([h.model for h in possible.values()])
+    central = [
         0.5 * (J[faint] + (e - beside) / sizes)
-        for J, e, beside in zip(seen.J, seen.e, moved, strict=True)
+        for J, e, beside in zip(seen.J, seen.e, outputs, strict=True)
     ]
-    shown = np.ones((len(lengths), 1, 1))
-    shown[faint, 0, 0] = measure_columns(bank, both) >= SLOPE * lengths[faint]
-    return [shown * J for J in seen.J]
+    scale = np.ones((len(lengths), 1, 1))
+    scale[faint, 0, 0] = measure_columns(bank, central) >= SLOPE * lengths[faint]
+    return [scale * J for J in seen.J]
 
 
 def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:
@@ -163,7 +165,7 @@ def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:
     Only axes that were read count: along others, nobody sees that innovations change.
     """
     squares = [
-        np.sum((run.innovation_mask.T * own / np.sqrt(filters.variance)[:, None]) ** 2, axis=(1, 2))
-        for own, run, filters in zip(columns, bank.runs, bank.run_filters, strict=True)
+        np.sum((run.innovation_mask.T * x / np.sqrt(filters.variance)[:, None]) ** 2, axis=(1, 2))
+        for x, run, filters in zip(columns, bank.runs, bank.run_filters, strict=True)
     ]
     return np.asarray(np.sqrt(np.sum(squares, axis=0)))

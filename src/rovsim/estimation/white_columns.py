@@ -66,10 +66,10 @@ class WhiteColumns:
 
     def relinearised(self, at: Hypothesis) -> "WhiteColumns":
         """The columns made anew with all effects of a hypothesis in place."""
-        loops, fresh = _list_loops(at.model), self._made_beside(at)
+        loops, sensitivities = _list_loops(at.model), self._made_beside(at)
         if loops == _list_loops(self.sensitivities.base_model):
-            return WhiteColumns(self.bank, fresh, self.noise, self._beside)
-        beside = self._beside | {loops: fresh}
+            return WhiteColumns(self.bank, sensitivities, self.noise, self._beside)
+        beside = self._beside | {loops: sensitivities}
         return WhiteColumns(self.bank, self.sensitivities, self.noise, beside)
 
     def _made_beside(self, at: Hypothesis) -> Sensitivities:
@@ -84,22 +84,22 @@ class WhiteColumns:
         h = seen.hypothesis
         if self.bank.coupled:
             return False
-        known = {
+        by_name = {
             (block.candidate.effect.id, name): column
             for block in reversed(self.beside(h).blocks)
             for name, column in zip(block.candidate.sloped, block.derivatives, strict=True)
         }
         names = [(term.id, name) for term in h.terms for name in term.free]
-        both = [(k, known[name]) for k, name in enumerate(names) if name in known]
-        own = self.bank.flatten([J.astype(np.float32) for J in seen.J], self.noise)
+        pairs = [(k, by_name[name]) for k, name in enumerate(names) if name in by_name]
+        rows = self.bank.flatten([J.astype(np.float32) for J in seen.J], self.noise)
         columns = self._whiten(h).columns
-        return any(_turned(own[k], columns[j]) > CHANGED_SQUARE for k, j in both)
+        return any(_turned(rows[k], columns[j]) > CHANGED_SQUARE for k, j in pairs)
 
     def _whiten(self, at: Hypothesis) -> _White:
         loops = _list_loops(at.model)
         if loops not in self._white:
-            known = self.beside(at)
-            columns = known.bank.flatten(known.columns, self.noise)
+            sensitivities = self.beside(at)
+            columns = sensitivities.bank.flatten(sensitivities.columns, self.noise)
             self._white[loops] = _White(columns, gram(columns).astype(float))
         return self._white[loops]
 
@@ -118,17 +118,17 @@ class WhiteColumns:
         return self._grams[seen]
 
     def _multiply(self, seen: Linearised) -> Array:
-        rows = [one.astype(np.float32) for one in seen.rows]
-        own = self.bank.flatten(rows, self.noise)
-        columns, among = self._whiten(seen.hypothesis)
-        across = own @ columns.T
-        G = np.block([[gram(own), across], [across.T, among]])
-        kept = [0, *range(len(own), len(G))]
-        left = project_out(G, range(1, len(own)))[np.ix_(kept, kept)]
-        gone = 1 + np.flatnonzero(np.diag(left)[1:] < EXPLAINED * np.diag(among))
-        left[gone], left[:, gone] = 0.0, 0.0
-        left.setflags(write=False)
-        return left
+        rows = [row.astype(np.float32) for row in seen.rows]
+        white_rows = self.bank.flatten(rows, self.noise)
+        columns, gram_columns = self._whiten(seen.hypothesis)
+        cross = white_rows @ columns.T
+        G = np.block([[gram(white_rows), cross], [cross.T, gram_columns]])
+        places = [0, *range(len(white_rows), len(G))]
+        projected = project_out(G, range(1, len(white_rows)))[np.ix_(places, places)]
+        explained = 1 + np.flatnonzero(np.diag(projected)[1:] < EXPLAINED * np.diag(gram_columns))
+        projected[explained], projected[:, explained] = 0.0, 0.0
+        projected.setflags(write=False)
+        return projected
 
 
 def _turned(a: Array, b: Array) -> float:

@@ -37,16 +37,18 @@ class Stretches(NamedTuple):
     @staticmethod
     def of(runs: Sequence[ObservedRun]) -> "Stretches":
         """The stretches of some runs."""
-        first, shown, count = [np.empty(0, np.int64)], [np.empty((0, 6), bool)], 0
+        begins, masks, count = [np.empty(0, np.int64)], [np.empty((0, 6), bool)], 0
         for run in runs:
             number = np.searchsorted(
                 run.innovation_segments[:, 1], np.arange(len(run.time)), side="right"
             )
-            _, begins, own = np.unique(number[run.settled], return_index=True, return_inverse=True)
-            first.append(count + begins[own])
-            shown.append(run.innovation_mask[run.settled])
-            count += len(own)
-        return Stretches(np.concatenate(first), np.concatenate(shown))
+            _, starts, stretch = np.unique(
+                number[run.settled], return_index=True, return_inverse=True
+            )
+            begins.append(count + starts[stretch])
+            masks.append(run.innovation_mask[run.settled])
+            count += len(stretch)
+        return Stretches(np.concatenate(begins), np.concatenate(masks))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,26 +85,26 @@ def fit_autoregression(
     for axes in SUBSYSTEMS:
         past = [np.concatenate([_past(z[j], stretches.first) for j in axes]) for z in draws]
         for i in axes:
-            shown = stretches.shown[:, i]
-            before = np.concatenate([own[:, shown] for own in past], axis=1)
-            z = np.concatenate([own[i, shown] for own in draws])
-            if shown.sum() <= len(before) or not z.any():
+            mask = stretches.shown[:, i]
+            regressors = np.concatenate([draw[:, mask] for draw in past], axis=1)
+            z = np.concatenate([draw[i, mask] for draw in draws])
+            if mask.sum() <= len(regressors) or not z.any():
                 continue
-            found, *_ = np.linalg.lstsq(before.T, z, rcond=None)
-            variance = float(np.mean((z - found @ before) ** 2))
-            weights[i, list(axes)] = found.reshape(len(axes), -1)
+            coefficients, *_ = np.linalg.lstsq(regressors.T, z, rcond=None)
+            variance = float(np.mean((z - coefficients @ regressors) ** 2))
+            weights[i, list(axes)] = coefficients.reshape(len(axes), -1)
             spread[i] = np.sqrt(variance)
-            lr_statistic += float(z @ z) / len(draws) - shown.sum() * (1.0 + np.log(variance))
+            lr_statistic += float(z @ z) / len(draws) - mask.sum() * (1.0 + np.log(variance))
     return Autoregression(weights, spread), lr_statistic
 
 
 def _past(z: Array, first: Array) -> Array:
     """Sums (g, ..., n) of each group of readings (..., n) before, within the stretch."""
     total = np.concatenate([np.zeros((*z.shape[:-1], 1)), np.cumsum(z, axis=-1, dtype=float)], -1)
-    now = np.arange(z.shape[-1])
+    index = np.arange(z.shape[-1])
     return np.stack(
         [
-            total[..., np.maximum(now - a + 1, first)] - total[..., np.maximum(now - b, first)]
+            total[..., np.maximum(index - a + 1, first)] - total[..., np.maximum(index - b, first)]
             for a, b in GROUPS
         ]
     )

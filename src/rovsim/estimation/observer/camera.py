@@ -77,12 +77,15 @@ def find_smoothing(base: Model, runs: Sequence[ObservedRun]) -> Smoothing | None
 def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
     """The filter that the noise in these spectra went through; None where they show none."""
     highest = MAX_CUTOFF_SHARE * min(float(s.frequency[-1]) for s in spectra)
-    tried = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
-    costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in tried] for kind in KINDS])
-    likely = [_refine(spectra, kind, tried, own) for kind, own in zip(KINDS, costs, strict=True)]
-    least, cutoff, std = min(likely)
+    cutoffs = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
+    costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in cutoffs] for kind in KINDS])
+    minima = [
+        _refine(spectra, kind, cutoffs, kind_costs)
+        for kind, kind_costs in zip(KINDS, costs, strict=True)
+    ]
+    least_cost, cutoff, std = min(minima)
     unfiltered = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS)
-    lr_statistic = unfiltered - least
+    lr_statistic = unfiltered - least_cost
     # A cutoff far below the band that is examined would only make the motion itself fall off more
     # steeply, as it also does where a vehicle tumbles. The cutoff is then hardly determined.
     if (
@@ -91,9 +94,9 @@ def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
         or not std < MAX_RELATIVE_STD * cutoff
     ):
         return None
-    possible = tried[costs.min(axis=0) < costs.min() + OPEN_STDS**2]
-    off = max(OPEN_STDS * std, OPEN_CUTOFF_SHARE * cutoff)
-    lowest, highest = min(cutoff - off, possible[0]), max(cutoff + off, possible[-1])
+    plausible = cutoffs[costs.min(axis=0) < costs.min() + OPEN_STDS**2]
+    margin = max(OPEN_STDS * std, OPEN_CUTOFF_SHARE * cutoff)
+    lowest, highest = min(cutoff - margin, plausible[0]), max(cutoff + margin, plausible[-1])
     frame = max(s.period for s in spectra)
     return Smoothing(cutoff, std, lr_statistic, cutoff, float(lowest), float(highest), frame)
 
@@ -107,11 +110,11 @@ class _LikelyCutoff(NamedTuple):
 
 
 def _cost(spectra: Sequence[NoiseSpectrum], kind: NoiseKind, cutoff: float | None) -> float:
-    return sum(one.cost(kind, cutoff) for one in spectra)
+    return sum(s.cost(kind, cutoff) for s in spectra)
 
 
 def _penalty(spectra: Sequence[NoiseSpectrum], kind: NoiseKind) -> float:
-    return sum(one.penalty(kind) for one in spectra)
+    return sum(s.penalty(kind) for s in spectra)
 
 
 def _refine(
@@ -123,11 +126,11 @@ def _refine(
         return _cost(spectra, kind, float(np.exp(x)))
 
     at = int(np.argmin(costs))
-    between = np.log(tried[[max(at - 1, 0), min(at + 1, len(tried) - 1)]])
-    best = minimize_scalar(cost, bounds=between, method="bounded", options={"xatol": 1e-3})
-    x, least = float(best.x), float(best.fun)
+    bracket = np.log(tried[[max(at - 1, 0), min(at + 1, len(tried) - 1)]])
+    minimum = minimize_scalar(cost, bounds=bracket, method="bounded", options={"xatol": 1e-3})
+    x, least_cost = float(minimum.x), float(minimum.fun)
     sides = cost(x + LOG_CUTOFF_STEP) + cost(x - LOG_CUTOFF_STEP)
-    bend = 0.5 * (sides - 2.0 * least) / LOG_CUTOFF_STEP**2
+    curvature = 0.5 * (sides - 2.0 * least_cost) / LOG_CUTOFF_STEP**2
     cutoff = float(np.exp(x))
-    std = cutoff / np.sqrt(bend) if bend > 0.0 else np.inf
-    return _LikelyCutoff(least + _penalty(spectra, kind), cutoff, float(std))
+    std = cutoff / np.sqrt(curvature) if curvature > 0.0 else np.inf
+    return _LikelyCutoff(least_cost + _penalty(spectra, kind), cutoff, float(std))

@@ -77,18 +77,18 @@ class NoiseSpectrum:
 
     def cost(self, kind: NoiseKind, cutoff: float | None) -> float:
         """Minus twice the log likelihood; `cutoff` Hz of the software's filter, None: none."""
-        others = [(self.frequency / self.frequency[0]) ** -steep for steep in STEEP]
+        shapes = [(self.frequency / self.frequency[0]) ** -exponent for exponent in STEEP]
         if kind.memory is not None:
-            others.append(self._lasting(kind.memory))
+            shapes.append(self._lasting(kind.memory))
         if kind.bridged:  # x in 0 .. 1 of the way: 1 - x (1 - x) (2 - 2 cos), a share of this
-            others.append(0.5 * (1.0 + np.cos(2.0 * np.pi * self.frequency * self.period)))
-        white, most = np.ones_like(self.frequency), [MUCH] * len(others)
+            shapes.append(0.5 * (1.0 + np.cos(2.0 * np.pi * self.frequency * self.period)))
+        white, largest = np.ones_like(self.frequency), [MUCH] * len(shapes)
         if cutoff is not None:
             smoothed = self._response(cutoff)
-            others = [*(smoothed * other for other in others), white]
-            white, most = smoothed, [*most, ROUNDED]
-        low, high = np.full(len(others), np.log(NOTHING)), np.log(most)
-        return 2.0 * self.count * least_misfit(self.power, white, np.array(others), low, high)
+            shapes = [*(smoothed * shape for shape in shapes), white]
+            white, largest = smoothed, [*largest, ROUNDED]
+        low, high = np.full(len(shapes), np.log(NOTHING)), np.log(largest)
+        return 2.0 * self.count * least_misfit(self.power, white, np.array(shapes), low, high)
 
     def penalty(self, kind: NoiseKind) -> float:
         """What its sizes cost beyond those of white noise (Schwarz 1978)."""
@@ -99,17 +99,17 @@ class NoiseSpectrum:
 def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[NoiseSpectrum]:
     """Spectra of the noise of all runs of motion capture, one for each rate of their frames."""
     cameras = [run for run in runs if not run.motion.binned and run.motion.measured is None]
-    found = [one for run in cameras if (one := _measure(base, run)) is not None]
-    alike: dict[tuple[float, int], list[NoiseSpectrum]] = {}
-    for one in found:
-        alike.setdefault((round(one.period, 9), len(one.frequency)), []).append(one)
-    return [_pool(some) for some in alike.values()]
+    spectra = [spectrum for run in cameras if (spectrum := _measure(base, run)) is not None]
+    groups: dict[tuple[float, int], list[NoiseSpectrum]] = {}
+    for spectrum in spectra:
+        groups.setdefault((round(spectrum.period, 9), len(spectrum.frequency)), []).append(spectrum)
+    return [_pool(group) for group in groups.values()]
 
 
 def _pool(some: Sequence[NoiseSpectrum]) -> NoiseSpectrum:
     """The mean of spectra at the same frequencies: the cameras are the same in all runs."""
-    count = sum(one.count for one in some)
-    power = sum(one.count / count * one.power for one in some)
+    count = sum(s.count for s in some)
+    power = sum(s.count / count * s.power for s in some)
     return NoiseSpectrum(np.asarray(power), some[0].frequency, count, some[0].period)
 
 
@@ -120,8 +120,8 @@ def _measure(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
     if (b - a) * period < 2.0 * SEGMENT or 0.5 / period < 2.0 * LOWEST:
         return None
     eta = base.mocap_view.sharpen(run.frames[a:b, :7], period)
-    twice = np.diff(eta, 2, axis=0)  # what the vehicle does is slow, so little of it stays
-    channels = np.hstack([twice[:, :3], body_rates(eta[1:-1, 3:], twice[:, 3:])]).T
+    differences = np.diff(eta, 2, axis=0)  # what the vehicle does is slow, so little of it stays
+    channels = np.hstack([differences[:, :3], body_rates(eta[1:-1, 3:], differences[:, 3:])]).T
     return describe_noise(channels, period)
 
 
@@ -129,9 +129,9 @@ def describe_noise(channels: Array, period: float) -> NoiseSpectrum | None:
     """Of the second differences (6, n) of a pose; None where frequencies are too few."""
     frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT / period))
     differenced = np.abs(1.0 - np.exp(-2j * np.pi * frequency * period)) ** 4
-    kept = (frequency >= LOWEST) & (frequency < TOP_SHARE * frequency[-1])
-    if kept.sum() < FEWEST:
+    band = (frequency >= LOWEST) & (frequency < TOP_SHARE * frequency[-1])
+    if band.sum() < FEWEST:
         return None
     # half overlapping Hann windows: 0.95 of an independent one each (Welch 1967, eq. 12 f.)
     count = 0.95 * (2.0 * channels.shape[1] * period / SEGMENT - 1.0)
-    return NoiseSpectrum(power[:, kept] / differenced[kept], frequency[kept], count, period)
+    return NoiseSpectrum(power[:, band] / differenced[band], frequency[band], count, period)

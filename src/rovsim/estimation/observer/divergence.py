@@ -18,22 +18,22 @@ class ModelLost(Exception):
 
     def __init__(self, e: Sequence[Array]) -> None:
         super().__init__("the model runs away from the recordings")
-        self.finite = [np.isfinite(one).all(axis=0) for one in e]
+        self.finite = [np.isfinite(e_run).all(axis=0) for e_run in e]
 
     def leave_out(self, runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], dict[str, float]]:
         """The same runs, or longer ones, without those stretches; from which s on, by run.
 
         A stretch begins as long before as a disturbance is remembered.
         """
-        kept, lost = [], {}
+        finite_runs, begins = [], {}
         for run, finite in zip(runs, self.finite, strict=True):
             if not finite.all():
-                away, time = run.time[: len(finite)][~finite], run.motion.time
-                begin = float(away[0]) - MAX_CORRELATION_TIME
-                run = run.limited((time < begin) | (time > away[-1]))
-                lost[run.motion.run.id] = max(begin, float(time[0]))
-            kept.append(run)
-        return kept, lost
+                diverged, time = run.time[: len(finite)][~finite], run.motion.time
+                begin = float(diverged[0]) - MAX_CORRELATION_TIME
+                run = run.limited((time < begin) | (time > diverged[-1]))
+                begins[run.motion.run.id] = max(begin, float(time[0]))
+            finite_runs.append(run)
+        return finite_runs, begins
 
 
 def require_finite(e: Sequence[Array]) -> None:
@@ -42,5 +42,5 @@ def require_finite(e: Sequence[Array]) -> None:
     Raises:
         ModelLost: they are not.
     """
-    if not all(np.isfinite(one).all() for one in e):
+    if not all(np.isfinite(e_run).all() for e_run in e):
         raise ModelLost(e)

@@ -68,8 +68,8 @@ class MovingWater:
     @cached_property
     def _pushes(self) -> list[Array]:
         """Accelerations (2, n, 6) of each run per m/s of a faster current."""
-        each = zip(self.runs, self._currents, strict=True)
-        return [push_by_current(self.model, run, current) for run, current in each]
+        pairs = zip(self.runs, self._currents, strict=True)
+        return [push_by_current(self.model, run, current) for run, current in pairs]
 
     @cached_property
     def bends(self) -> list[Array]:
@@ -82,9 +82,9 @@ class MovingWater:
             return [np.zeros((len(run.time), 6)) for run in self.runs]
         accelerations = []
         for run, current, linear in zip(self.runs, self._currents, self._pushes, strict=True):
-            still = _accelerate(self.model, run, np.zeros_like(current))
-            bent = _accelerate(self.model, run, current) - still
-            accelerations.append(bent - np.einsum("dni,nd->ni", linear, current))
+            in_still_water = _accelerate(self.model, run, np.zeros_like(current))
+            change = _accelerate(self.model, run, current) - in_still_water
+            accelerations.append(change - np.einsum("dni,nd->ni", linear, current))
         return accelerations
 
     @property
@@ -104,13 +104,13 @@ class MovingWater:
         rate = self.walk.fit_rate(z, run_filters)
         if rate.lr_statistic < MIN_LR_OF_DRIFT:
             return DriftFit(rate, rate.lr_statistic)
-        others = [force.fit_rate(z, run_filters).lr_statistic for force in self._forces]
+        force_statistics = [force.fit_rate(z, run_filters).lr_statistic for force in self._forces]
         by_place = self._lr_by_place(z, run_filters, self._by_lines)
         if not self.paths:  # about its own path what wanders is always likelier than a steady flow
             flow = self._lr_by_place(z, run_filters, self._by_eddies)
             if flow - rate.lr_statistic > MIN_LR_MARGIN:
                 return DriftFit(rate, rate.lr_statistic - flow)
-        return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *others))
+        return DriftFit(rate, rate.lr_statistic - max(0.0, by_place, *force_statistics))
 
     def varies_with_place(self, z: Sequence[Array], run_filters: Sequence[RunFilters]) -> bool:
         """Whether a steady flow through the tank may be what seems to wander: an eddy, a jet."""
@@ -137,8 +137,8 @@ class MovingWater:
 
         `fields` (k, n) of each run: how each part of it varies along the way.
         """
-        every = zip(self.runs, self.run_filters, fields, self._pushes, self.bends, strict=True)
-        return [self._show(*one) for one in every]
+        inputs = zip(self.runs, self.run_filters, fields, self._pushes, self.bends, strict=True)
+        return [self._show(*run_inputs) for run_inputs in inputs]
 
     def _lr_by_place(
         self, z: Sequence[Array], run_filters: Sequence[RunFilters], shown: Sequence[Array]
@@ -147,8 +147,8 @@ class MovingWater:
 
         A vehicle that moves through it meets a current that wanders. `shown`: by each part of it.
         """
-        every = zip(shown, self.runs, self.run_filters, run_filters, strict=True)
-        return fit_common([whiten_run(*one) for one in every], z).lr_statistic
+        inputs = zip(shown, self.runs, self.run_filters, run_filters, strict=True)
+        return fit_common([whiten_run(*run_inputs) for run_inputs in inputs], z).lr_statistic
 
     def shows_drift(self, run_filters: Sequence[RunFilters]) -> bool:
         """Whether a drift worth looking for would be told from none."""
@@ -156,17 +156,20 @@ class MovingWater:
         return self.walk.expected_lr(rate.scale, run_filters) > MIN_LR_OF_DRIFT
 
     def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
-        each = zip(self.runs, self.run_filters, pushes, self.bends, strict=True)
-        columns = (self._show(run, filters, list_terms(run), *how) for run, filters, *how in each)
+        inputs = zip(self.runs, self.run_filters, pushes, self.bends, strict=True)
+        columns = (
+            self._show(run, filters, list_terms(run), *push_and_bend)
+            for run, filters, *push_and_bend in inputs
+        )
         return RandomWalk(self.runs, tuple(columns), self.run_filters)
 
     def _show(
         self, run: ObservedRun, filters: RunFilters, terms: Array, push: Array, bend: Array
     ) -> Array:
         """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
-        each = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
-        pushed = np.concatenate([bend[None], bend + USUAL_RATE * each])
-        e = observe([self.model] * len(pushed), run, filters, pushed)
+        unit_pushes = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
+        accelerations = np.concatenate([bend[None], bend + USUAL_RATE * unit_pushes])
+        e = observe([self.model] * len(accelerations), run, filters, accelerations)
         return np.asarray((e[0] - e[1:]) / USUAL_RATE)  # what a model does not foresee
 
 
@@ -190,8 +193,8 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
 
     def vary(place: Array) -> Array:
         x, y, z = (place - low) / np.maximum(high - low, MIN_EXTENT)
-        each = [np.cos(np.pi * k * x) * np.cos(np.pi * j * y) / (1 + k + j) for k, j in waves]
-        return np.stack([*each, z - 0.5])
+        modes = [np.cos(np.pi * k * x) * np.cos(np.pi * j * y) / (1 + k + j) for k, j in waves]
+        return np.stack([*modes, z - 0.5])
 
     return [vary(place) for place in places]
 
@@ -200,8 +203,8 @@ def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:
     """Accelerations (2, n, 6) per m/s by which the water moves faster north, and east."""
     pushes = []
     for step in CURRENT_STEP * np.eye(2):
-        there, back = (_accelerate(model, run, current + way * step) for way in (1.0, -1.0))
-        pushes.append((there - back) / (2.0 * CURRENT_STEP))
+        ahead, back = (_accelerate(model, run, current + sign * step) for sign in (1.0, -1.0))
+        pushes.append((ahead - back) / (2.0 * CURRENT_STEP))
     return np.stack(pushes)
 
 
@@ -214,11 +217,11 @@ def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
     states = undo_mocap_view(model, run.motion).state[run.innovation_samples]
     states = np.where(np.isfinite(states).all(axis=1)[:, None], states, _AT_REST)
     water = np.column_stack([current, np.zeros(len(current))])
-    along = np.einsum("nij,ni->nj", rotations.matrix(states[:, 3:7]), water)
-    states[:, 7:10] -= along
+    in_body = np.einsum("nij,ni->nj", rotations.matrix(states[:, 3:7]), water)
+    states[:, 7:10] -= in_body
     accelerations = accelerate(model, run, run.innovation_samples, states[None])[0]
     # the current as seen from a body that turns
-    accelerations[:, :3] += np.cross(along, states[:, 10:])
+    accelerations[:, :3] += np.cross(in_body, states[:, 10:])
     return accelerations
 
 
@@ -234,10 +237,10 @@ def _push_along_body(axes: Sequence[int]) -> PushOnRun:
     """Accelerations (d, n, 6) of 1 m/s2 along some axes of the body."""
 
     def push(model: Model, run: ObservedRun) -> Array:
-        found = np.zeros((len(axes), len(run.innovation_samples), 6))
-        for row, axis in zip(found, axes, strict=True):
+        rows = np.zeros((len(axes), len(run.innovation_samples), 6))
+        for row, axis in zip(rows, axes, strict=True):
             row[:, axis] = 1.0
-        return found
+        return rows
 
     return push
 

@@ -81,8 +81,8 @@ class FilterBank:
 
     def _innovations_of_run(self, k: int, models: Sequence[Model]) -> Array:
         """Innovations (m, 6, n) of the k-th run."""
-        pushed = np.array([self._water.bends[k]] * len(models)) if self.paths else None
-        return observe(models, self.runs[k], self.run_filters[k], pushed)
+        bends = np.array([self._water.bends[k]] * len(models)) if self.paths else None
+        return observe(models, self.runs[k], self.run_filters[k], bends)
 
     def whiten(self, e: Sequence[Array], noise: Noise) -> Array:
         """Whitened settled innovations (..., 6, n) of all runs, one run after the other.
@@ -137,23 +137,25 @@ class FilterBank:
         fit = self.fit_axes(e, start, thorough)
         if not self.coupled:
             return self._fit_drift(e, fit) if thorough and self.looks_for_drift else fit
-        white = [self.whiten(own, fit.noise) for own in self._draws(e)]
-        past, more = fit_autoregression(white, self._stretches)
-        return NoiseFit(replace(fit.noise, autoregression=past), fit.two_log_likelihood + more)
+        white = [self.whiten(draw, fit.noise) for draw in self._draws(e)]
+        autoregression, lr_statistic = fit_autoregression(white, self._stretches)
+        return NoiseFit(
+            replace(fit.noise, autoregression=autoregression), fit.two_log_likelihood + lr_statistic
+        )
 
     def fit_axes(self, e: Sequence[Array], start: Noise, thorough: bool = False) -> NoiseFit:
         """As `fit_noise`, but each axis by itself, and with the wandering current of `start`."""
         draws = self._draws(e)
         if start.drift is None:
             return self._fit_without_drift(draws, start, thorough)
-        each = [self._subtract_drift(own, start, start.drift.rate) for own in draws]
-        rests, walks = [rest for rest, _ in each], each[0][1]
-        fit = self._fit_without_drift(rests, start, thorough)
+        split = [self._subtract_drift(draw, start, start.drift.rate) for draw in draws]
+        remainders, walks = [remainder for remainder, _ in split], split[0][1]
+        fit = self._fit_without_drift(remainders, start, thorough)
         paths = (CurrentPath(run.time, walk) for run, walk in zip(self.runs, walks, strict=True))
         noise = replace(fit.noise, drift=start.drift._replace(paths=tuple(paths)))
         lr_statistics = [
-            self._lr_of_drift(own, rest, noise, start.drift.rate)
-            for own, rest in zip(draws, rests, strict=True)
+            self._lr_of_drift(draw, remainder, noise, start.drift.rate)
+            for draw, remainder in zip(draws, remainders, strict=True)
         ]
         return NoiseFit(noise, fit.two_log_likelihood + float(np.mean(lr_statistics)))
 
@@ -161,7 +163,7 @@ class FilterBank:
         self, draws: Sequence[Sequence[Array]], start: Noise, with_bias: bool
     ) -> NoiseFit:
         count = len(draws)
-        e = [one for own in draws for one in own]
+        e = [e_run for draw in draws for e_run in draw]
         return fit_noise(
             e,
             self.runs * count,
@@ -175,18 +177,22 @@ class FilterBank:
     def _draws(self, e: Sequence[Array]) -> list[Sequence[Array]]:
         """Split innovations into sets that each hold every run once."""
         count = len(self.runs)
-        return [e[first : first + count] for first in range(0, len(e), count)]
+        return [e[k : k + count] for k in range(0, len(e), count)]
 
     def _fit_drift(self, e: Sequence[Array], fit: NoiseFit) -> NoiseFit:
         """Add a wandering current to the noise, if the innovations show one for sure."""
         for _ in range(ROUNDS):
-            drift, before = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
-            now = DriftingCurrent(drift.rate.value) if drift.sure else None
-            if now is None and before is None:
+            drift, previous = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
+            current = DriftingCurrent(drift.rate.value) if drift.sure else None
+            if current is None and previous is None:
                 break
-            if now and before and abs(now.rate - before.rate) < RATE_TOLERANCE * before.rate:
+            if (
+                current
+                and previous
+                and abs(current.rate - previous.rate) < RATE_TOLERANCE * previous.rate
+            ):
                 break
-            fit = self.fit_axes(e, replace(fit.noise, drift=now), thorough=True)
+            fit = self.fit_axes(e, replace(fit.noise, drift=current), thorough=True)
         return fit
 
     def measure_drift(self, e: Sequence[Array], noise: Noise) -> DriftFit:
@@ -217,14 +223,14 @@ class FilterBank:
 
         As a likelihood-ratio statistic; `rest` are the innovations less the drift.
         """
-        z, left = self._whiten_by_run(e, noise), self._whiten_by_run(rest, noise)
-        more = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(left, z, strict=True))
-        return more + self._water.walk.lr_statistic(z, rate, self.design_filters(noise))
+        z, z_rest = self._whiten_by_run(e, noise), self._whiten_by_run(rest, noise)
+        removed = sum(float(np.sum(a**2) - np.sum(b**2)) for a, b in zip(z_rest, z, strict=True))
+        return removed + self._water.walk.lr_statistic(z, rate, self.design_filters(noise))
 
     def _whiten_by_run(self, e: Sequence[Array], noise: Noise) -> list[Array]:
         """Settled innovations (6, m) of each run, whitened axis by axis."""
-        each = zip(e, self.runs, self.run_filters, self.design_filters(noise), strict=True)
-        return [whiten_run(*one) for one in each]
+        inputs = zip(e, self.runs, self.run_filters, self.design_filters(noise), strict=True)
+        return [whiten_run(*run_inputs) for run_inputs in inputs]
 
     def linearise(self, at: Hypothesis, known: Linearised | None = None) -> Linearised:
         """Innovations (6, n) of each run, and their derivatives to the k scaled parameters.

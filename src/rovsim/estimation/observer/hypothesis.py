@@ -76,10 +76,11 @@ class Term:
         """This term with the changes of another of the same effect added."""
         if not more.free:  # what is tried takes the other's place
             return more
-        given, added = self.effect.given(), more.effect.given()
-        known = {p.name: p for p in self.effect.parameters}
+        old, new = self.effect.given(), more.effect.given()
+        parameters = {p.name: p for p in self.effect.parameters}
         values = {
-            k: known[k].combine(given.get(k, known[k].neutral_value), v) for k, v in added.items()
+            k: parameters[k].combine(old.get(k, parameters[k].neutral_value), v)
+            for k, v in new.items()
         }
         free = (*self.free, *(name for name in more.free if name not in self.free))
         return replace(self, effect=self.effect.with_values(values), free=free)
@@ -111,13 +112,13 @@ class Hypothesis:
     @property
     def key(self) -> tuple:
         """The same for the same base and terms, in the same order, at the same values."""
-        given = tuple((e.id, e.values.tobytes()) for e in self.base.effects)
-        own = (
+        effects = tuple((e.id, e.values.tobytes()) for e in self.base.effects)
+        terms = (
             (t.id, t.free, tuple(sorted(t.bounds.items())), t.effect.values.tobytes())
             for t in self.terms
         )
         # a vehicle cannot be hashed; models that come of one another share theirs
-        return (id(self.base.vehicle), self.base.residual, given, *own)
+        return (id(self.base.vehicle), self.base.residual, effects, *terms)
 
     @property
     def x(self) -> Array:
@@ -171,12 +172,12 @@ class Hypothesis:
 
     def with_term(self, term: Term) -> "Hypothesis":
         """The hypothesis and one more term; two of the same effect become one."""
-        same = [i for i, own in enumerate(self.terms) if own.id == term.id]
-        if not same:
+        places = [i for i, other in enumerate(self.terms) if other.id == term.id]
+        if not places:
             return replace(self, terms=(*self.terms, term))
-        both = self.terms[same[0]].merged(term)
+        merged = self.terms[places[0]].merged(term)
         return replace(
-            self, terms=tuple(both if i == same[0] else t for i, t in enumerate(self.terms))
+            self, terms=tuple(merged if i == places[0] else t for i, t in enumerate(self.terms))
         )
 
     def without(self, index: int) -> "Hypothesis":

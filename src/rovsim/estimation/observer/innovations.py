@@ -51,18 +51,18 @@ def observe(
     drives = run.drives.of(models)
     if pushed is not None:
         drives = [
-            drive.pushed(_between(run, own) @ model.M.T)
-            for drive, own, model in zip(drives, pushed, models, strict=True)
+            drive.pushed(_between(run, a) @ model.M.T)
+            for drive, a, model in zip(drives, pushed, models, strict=True)
         ]
     e = batch_of(models, run).innovations(drives, starts, correction)
-    reported = np.stack([m.mocap_view.twists(own) for m, own in zip(models, e, strict=True)])
+    reported = np.stack([m.mocap_view.twists(a) for m, a in zip(models, e, strict=True)])
     return np.ascontiguousarray(reported.swapaxes(1, 2))
 
 
 def _between(run: ObservedRun, a: Array) -> Array:
     """Interpolate accelerations (n, 6) at the readings to the middle of each step, (s, 6)."""
     middle = run.edges[:-1] + 0.5 * np.diff(run.edges) - run.edges[0]
-    return np.column_stack([np.interp(middle, run.time, own) for own in a.T])
+    return np.column_stack([np.interp(middle, run.time, column) for column in a.T])
 
 
 class ErrorDynamics(NamedTuple):
@@ -85,15 +85,15 @@ class ErrorDynamics(NamedTuple):
     @property
     def by_axis(self) -> tuple[AxisErrorDynamics, ...]:
         """The same for each of the six axes by itself, without what couples them."""
-        each = zip(np.diag(self.damping), np.diag(self.stiffness), strict=True)
-        return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in each)
+        diagonals = zip(np.diag(self.damping), np.diag(self.stiffness), strict=True)
+        return tuple(AxisErrorDynamics(float(d), float(k)) for d, k in diagonals)
 
     @property
     def coupling(self) -> float:
         """The fastest rate at which two axes constantly drive each other, 1/s."""
-        lasting = np.where(np.abs(self.damping) > LASTING * self.largest, self.damping, 0.0)
-        across = lasting * lasting.T
-        return float(np.sqrt(np.max(np.abs(across - np.diag(np.diag(across))))))
+        significant = np.where(np.abs(self.damping) > LASTING * self.largest, self.damping, 0.0)
+        products = significant * significant.T
+        return float(np.sqrt(np.max(np.abs(products - np.diag(np.diag(products))))))
 
 
 def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
@@ -116,16 +116,16 @@ def _nudge(states: Array, level: bool) -> Array:
     The states themselves, then with a faster velocity on each of the six axes, then displaced along
     or turned about each of them; along level axes where `level`.
     """
-    nudged = np.tile(states, (13, 1, 1))
+    perturbed = np.tile(states, (13, 1, 1))
     q = states[:, 3:7]
     zero = np.zeros(len(q))
     axes = rotations.from_euler(zero, zero, rotations.to_euler(q)[:, 2]) if level else q
     for i, unit in enumerate(np.eye(3)):
-        nudged[1 + i, :, 7 + i] += NUDGE
-        nudged[4 + i, :, 10 + i] += NUDGE
-        nudged[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
-        nudged[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
-    return nudged
+        perturbed[1 + i, :, 7 + i] += NUDGE
+        perturbed[4 + i, :, 10 + i] += NUDGE
+        perturbed[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
+        perturbed[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
+    return perturbed
 
 
 def accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> Array:
@@ -141,7 +141,7 @@ def accelerate(model: Model, run: ObservedRun, index: Array, states: Array) -> A
     drive = run.replay_drives.of([model])[0].at(np.minimum(at, len(edges) - 2))
     memory = find_fluid_memory([model], run, edges, at).reshape(-1, 6)
     return np.stack(
-        [batch.accelerations(drive, run.since_start(edges)[at], own, memory) for own in states]
+        [batch.accelerations(drive, run.since_start(edges)[at], state, memory) for state in states]
     )
 
 
@@ -160,16 +160,18 @@ def _read_as_modelled(models: Sequence[Model], run: ObservedRun) -> tuple[list[A
         assume the same; and where the models start.
     """
     views = [m.mocap_view.inverse for m in models]
-    readings = {back.key: run.read(back) for back in {v.key: v for v in views}.values()}
-    first = np.array([a for a, _ in run.segments], np.int64)
+    readings = {inverse.key: run.read(inverse) for inverse in {v.key: v for v in views}.values()}
+    begins = np.array([a for a, _ in run.segments], np.int64)
     steps = np.array([b - a for a, b in run.segments], np.int64)
-    alike = {m.mocap_view.key: m for m in models}
-    true = {key: true_states(m, run.motion, run.reading_samples[first]) for key, m in alike.items()}
-    states = np.stack([true[m.mocap_view.key] for m in models])
+    by_view = {m.mocap_view.key: m for m in models}
+    states_by_view = {
+        key: true_states(m, run.motion, run.reading_samples[begins]) for key, m in by_view.items()
+    }
+    states = np.stack([states_by_view[m.mocap_view.key] for m in models])
     starts = Starts(
-        states, first, steps, find_fluid_memory(models, run, run.edges, run.reading_steps[first])
+        states, begins, steps, find_fluid_memory(models, run, run.edges, run.reading_steps[begins])
     )
-    return [readings[back.key] for back in views], starts
+    return [readings[inverse.key] for inverse in views], starts
 
 
 def find_fluid_memory(

@@ -71,18 +71,18 @@ def select_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """The columns that are worth their penalty each, added one by one, then pruned."""
     chosen: list[int] = []
     while len(chosen) < min(len(b), MAX_COLUMNS):
-        left = [j for j in range(len(b)) if j not in chosen]
-        worth = _worth(H, b, chosen)
-        best = max(left, key=lambda j: worth[j])
-        if worth[best] < penalty and chosen:
+        remaining = [j for j in range(len(b)) if j not in chosen]
+        reductions = _worth(H, b, chosen)
+        j_best = max(remaining, key=lambda j: reductions[j])
+        if reductions[j_best] < penalty and chosen:
             break
-        chosen.append(best)
-        if worth[best] < penalty:
+        chosen.append(j_best)
+        if reductions[j_best] < penalty:
             break
-    x, worth = _fit_columns(H, b, chosen)
-    while len(chosen) > 1 and worth.min() < penalty:
-        chosen.pop(int(np.argmin(worth)))
-        x, worth = _fit_columns(H, b, chosen)
+    x, reductions = _fit_columns(H, b, chosen)
+    while len(chosen) > 1 and reductions.min() < penalty:
+        chosen.pop(int(np.argmin(reductions)))
+        x, reductions = _fit_columns(H, b, chosen)
     return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
 
 
@@ -94,18 +94,18 @@ def eliminate_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """
     chosen = [j for j in range(len(b)) if H[j, j] > 0.0]
     while chosen:
-        x, worth = _fit_columns(H, b, chosen)
-        if worth.min() >= penalty:
+        x, reductions = _fit_columns(H, b, chosen)
+        if reductions.min() >= penalty:
             return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
-        chosen.pop(int(np.argmin(worth)))
+        chosen.pop(int(np.argmin(reductions)))
     return Reduction(0.0, (), np.empty(0))
 
 
 def _fit_columns(H: Array, b: Array, chosen: list[int]) -> tuple[Array, Array]:
     """What (k,) chosen columns take of b beside each other, and what each is worth (k,)."""
-    own = H[np.ix_(chosen, chosen)]
-    x = solve(own, b[chosen])
-    return x, x**2 / np.diag(solve(own, np.eye(len(chosen))))
+    block = H[np.ix_(chosen, chosen)]
+    x = solve(block, b[chosen])
+    return x, x**2 / np.diag(solve(block, np.eye(len(chosen))))
 
 
 def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
@@ -113,7 +113,7 @@ def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
     if not chosen:
         return b**2 / np.maximum(np.diag(H), 1e-300)
     solution = solve(H[np.ix_(chosen, chosen)], np.column_stack([H[chosen], b[chosen]]))
-    rest = np.diag(H) - np.einsum("ij,ij->j", H[chosen], solution[:, :-1])
+    remaining = np.diag(H) - np.einsum("ij,ij->j", H[chosen], solution[:, :-1])
     product = b - H[chosen].T @ solution[:, -1]
-    independent = rest > 1e-6 * np.diag(H)
-    return np.where(independent, product**2 / np.where(independent, rest, 1.0), 0.0)
+    independent = remaining > 1e-6 * np.diag(H)
+    return np.where(independent, product**2 / np.where(independent, remaining, 1.0), 0.0)

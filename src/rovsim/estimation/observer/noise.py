@@ -195,7 +195,7 @@ def whiten(
         Those (..., 6, n) of all runs, one run after the other.
     """
     return np.concatenate(
-        [whiten_run(*one) for one in zip(e, runs, made_by, suited, strict=True)], axis=-1
+        [whiten_run(*inputs) for inputs in zip(e, runs, made_by, suited, strict=True)], axis=-1
     )
 
 
@@ -217,7 +217,7 @@ def whiten_run(e: Array, run: ObservedRun, made_by: RunFilters, suited: RunFilte
 
 def _stack(polynomials: Sequence[Array]) -> Array:
     """Polynomials in the delay operator as the rows of one array, padded with zeros at the end."""
-    stacked = np.zeros((len(polynomials), max(len(own) for own in polynomials)))
-    for row, own in zip(stacked, polynomials, strict=True):
-        row[: len(own)] = own
-    return stacked
+    rows = np.zeros((len(polynomials), max(len(polynomial) for polynomial in polynomials)))
+    for row, polynomial in zip(rows, polynomials, strict=True):
+        row[: len(polynomial)] = polynomial
+    return rows

@@ -64,9 +64,9 @@ def fit_noise(
     """
     noises, costs = [], []
     for i, dynamics in enumerate(error_dynamics):
-        filters = tuple(one.filters[i] for one in made_by)
-        own = tuple(one[i] for one in e)
-        axis = _AxisInnovations(i, own, tuple(runs), filters, dynamics, draws)
+        filters = tuple(x.filters[i] for x in made_by)
+        e_axis = tuple(x[i] for x in e)
+        axis = _AxisInnovations(i, e_axis, tuple(runs), filters, dynamics, draws)
         if not axis.counted:
             noises.append(start.of_axis(i))
             continue
@@ -135,9 +135,9 @@ class _AxisInnovations:
         The multiple follows without a search: the variance of the innovations is proportional to
         that of the noise.
         """
-        squares, logs, shown = self._misfit(noise)
-        size = max(squares / shown, FAINTEST)
-        cost = _finite(0.5 * (squares / size + shown * np.log(size) + logs) / self.draws)
+        squares, logs, count = self._misfit(noise)
+        size = max(squares / count, FAINTEST)
+        cost = _finite(0.5 * (squares / size + count * np.log(size) + logs) / self.draws)
         by = float(np.sqrt(size))
         disturbance_std, measurement_std = by * noise.disturbance_std, by * noise.measurement_std
         scaled = noise._replace(disturbance_std=disturbance_std, measurement_std=measurement_std)
@@ -146,16 +146,16 @@ class _AxisInnovations:
     def _misfit(self, noise: AxisNoise) -> _Misfit:
         """What the likelihood of a noise is made of, summed over all runs."""
         values, squares, logs, count = np.array(noise), 0.0, 0.0, 0.0
-        for known in self._known:
-            own, log, more = misfit(values, *known)
-            squares, logs, count = squares + own, logs + more * log, count + more
+        for run_data in self._known:
+            square, log, n = misfit(values, *run_data)
+            squares, logs, count = squares + square, logs + n * log, count + n
         return _Misfit(squares, logs, count)
 
     @cached_property
     def _known(self) -> list[tuple]:
         """Arguments of the kernel `misfit` for each run, without the noise."""
-        each = zip(self.e, self.runs, self.filters, strict=True)
-        return [self._of_run(run, old, e) for e, run, old in each]
+        inputs = zip(self.e, self.runs, self.filters, strict=True)
+        return [self._of_run(run, made_by, e) for e, run, made_by in inputs]
 
     def _of_run(self, run: ObservedRun, old: AxisFilter, e: Array) -> tuple:
         i, kind, h = self.axis, run.reading_kinds[self.axis], float(run.axis_periods[self.axis])
@@ -181,8 +181,8 @@ def _fit_axis(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, floa
         std, lasts, error = np.exp(x)
         return start._replace(disturbance_std=std, correlation_time=lasts, measurement_std=error)
 
-    x, least = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
-    return at(x), least
+    x, least_cost = _descend(lambda x: _cost(axis, at(x)), np.log(start[:3]))
+    return at(x), least_cost
 
 
 def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, float]:
@@ -199,9 +199,9 @@ def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, flo
         scaled, cost = axis.scaled(noise)
         return scaled, _correlation_time_prior(correlation_time) + cost
 
-    first = np.log([start.correlation_time, start.disturbance_std / start.measurement_std])
-    x, least = _descend(lambda x: at(x)[1], first)
-    return at(x)[0], least
+    guess = np.log([start.correlation_time, start.disturbance_std / start.measurement_std])
+    x, least_cost = _descend(lambda x: at(x)[1], guess)
+    return at(x)[0], least_cost
 
 
 def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
@@ -220,13 +220,13 @@ def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[A
         return _cost(axis, AxisNoise(*np.exp(x)))
 
     guess = white._replace(bias_std=white.measurement_std, bias_correlation_time=TYPICAL_BIAS_TIME)
-    first = white if white.bias_std else guess
-    x, least = _descend(cost, np.log(first))
+    x0 = white if white.bias_std else guess
+    x, least_cost = _descend(cost, np.log(x0))
     if white.bias_std:
         white, known = _fit_axis(axis, white._replace(bias_std=0.0))
-    if 2.0 * (known - least) < MIN_LR_OF_BIAS:
+    if 2.0 * (known - least_cost) < MIN_LR_OF_BIAS:
         return white, known
-    return AxisNoise(*np.exp(x)), least
+    return AxisNoise(*np.exp(x)), least_cost
 
 
 def _cost(axis: _AxisInnovations, noise: AxisNoise) -> float:
@@ -242,21 +242,21 @@ def _finite(cost: float) -> float:
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
     """Minimise a cost from a first point (k,): the best point, and its cost."""
     simplex = first + np.vstack([np.zeros(len(first)), FIRST_STEP * np.eye(len(first))])
-    best = minimize(
+    minimum = minimize(
         cost,
         first,
         method="Nelder-Mead",
         options={"initial_simplex": simplex, "xatol": CLOSE, "fatol": FLAT, "maxiter": MOST_STEPS},
     )
-    return best.x, float(best.fun)
+    return minimum.x, float(minimum.fun)
 
 
 def _correlation_time_prior(time: float) -> float:
     """Negative log prior of a correlation time, s; steep beyond the range that eddies can have."""
-    outside = max(0.0, time / MAX_CORRELATION_TIME - 1.0)
-    outside += max(0.0, MIN_CORRELATION_TIME / time - 1.0)
+    excess = max(0.0, time / MAX_CORRELATION_TIME - 1.0)
+    excess += max(0.0, MIN_CORRELATION_TIME / time - 1.0)
     log = np.log(time / TYPICAL_CORRELATION_TIME)
-    return 0.5 * (log / CORRELATION_TIME_LOG_STD) ** 2 + 1e3 * outside
+    return 0.5 * (log / CORRELATION_TIME_LOG_STD) ** 2 + 1e3 * excess
 
 
 def _bias_prior(noise: AxisNoise, single: float) -> float:
@@ -266,5 +266,5 @@ def _bias_prior(noise: AxisNoise, single: float) -> float:
     """
     if noise.bias_std == 0.0:
         return 0.0
-    lasting = np.log(noise.bias_correlation_time / TYPICAL_BIAS_TIME) / BIAS_TIME_LOG_STD
-    return 0.5 * float(lasting**2 + (noise.bias_std / (single * noise.measurement_std)) ** 2)
+    log_ratio = np.log(noise.bias_correlation_time / TYPICAL_BIAS_TIME) / BIAS_TIME_LOG_STD
+    return 0.5 * float(log_ratio**2 + (noise.bias_std / (single * noise.measurement_std)) ** 2)

@@ -94,11 +94,11 @@ class ObservedRun(Steps):
         sharp = view.sharpen(self.frames[:, :7], period)
         if self.group == 1:
             return view.states(np.hstack([sharp, self.frames[:, 7:]]))
-        shown, smooth = view.poses(sharp), view.poses(view.sharpen(self.motion.eta, period))
-        mean = self._average(shown) + smooth[self.reading_samples] - self._average(smooth)
-        mean = np.where(self._summed, shown[self.reading_samples], mean)
-        poses = np.hstack([mean[:, :3], normalized(mean[:, 3:])])
-        return np.hstack([poses, np.zeros((len(poses), 6))])
+        poses, smooth = view.poses(sharp), view.poses(view.sharpen(self.motion.eta, period))
+        mean = self._average(poses) + smooth[self.reading_samples] - self._average(smooth)
+        mean = np.where(self._summed, poses[self.reading_samples], mean)
+        mean_poses = np.hstack([mean[:, :3], normalized(mean[:, 3:])])
+        return np.hstack([mean_poses, np.zeros((len(mean_poses), 6))])
 
     @property
     def _summed(self) -> Array:
@@ -135,10 +135,10 @@ class ObservedRun(Steps):
 
         The engine's `pose_error` takes it in this form.
         """
-        measured = self.motion.measured
-        if measured is None:
+        axes = self.motion.measured
+        if axes is None:
             return np.array([1.0, 1.0, 1.0, 1.0, 0.0])
-        return np.concatenate([measured.coordinates, measured.heading, [True]]).astype(float)
+        return np.concatenate([axes.coordinates, axes.heading, [True]]).astype(float)
 
     @property
     def axes(self) -> Array:
@@ -148,10 +148,10 @@ class ObservedRun(Steps):
     @cached_property
     def reading_mask(self) -> Array:
         """Mask (k, 6) of the axes that each reading shows."""
-        count, measured = len(self.reading_steps), self.motion.measured
-        if measured is None:
+        count, axes = len(self.reading_steps), self.motion.measured
+        if axes is None:
             return np.tile(self.free_axes, (count, 1))
-        frames = measured.when[: count * self.group]
+        frames = axes.when[: count * self.group]
         return np.asarray(frames.reshape(count, self.group, 6).any(axis=1) & self.free_axes)
 
     @cached_property
@@ -159,15 +159,15 @@ class ObservedRun(Steps):
         """Kind of the readings of each axis (6,): poses, means or sums, see `axis_kernels`."""
         if self.motion.binned:
             return np.full(6, BIN_MEAN)
-        measured = self.motion.measured
-        return np.full(6, POSE) if measured is None else np.where(measured.summed, SUM, POSE)
+        axes = self.motion.measured
+        return np.full(6, POSE) if axes is None else np.where(axes.summed, SUM, POSE)
 
     @cached_property
     def axis_periods(self) -> Array:
         """Mean time (6,) between two readings of each axis, s; `period` for an axis without any."""
         count = self.reading_mask.sum(axis=0)
-        each = self.period * len(self.reading_mask) / np.maximum(count, 1)
-        return np.where(count > 0, each, self.period)
+        periods = self.period * len(self.reading_mask) / np.maximum(count, 1)
+        return np.where(count > 0, periods, self.period)
 
     @property
     def frame_period(self) -> float:
@@ -206,11 +206,11 @@ class ObservedRun(Steps):
     @cached_property
     def settled(self) -> Array:
         """Mask (n,) of the innovations that count: from when the filters have settled."""
-        kept = np.zeros(len(self.time), bool)
+        mask = np.zeros(len(self.time), bool)
         settling = SETTLING if self.axes[self.free_axes].all() else SETTLING_UNREAD
-        for (first, last), (a, _) in zip(self.innovation_segments, self.segments, strict=True):
-            kept[first:last] = self.time[first:last] > self.reading_times[a] + settling
-        return kept
+        for (begin, end), (a, _) in zip(self.innovation_segments, self.segments, strict=True):
+            mask[begin:end] = self.time[begin:end] > self.reading_times[a] + settling
+        return mask
 
 
 def prepare_run(
@@ -233,16 +233,16 @@ def prepare_run(
     """
     grid = StepGrid.over(motion, settings.step)
     steps = divide_run(stage, motion, grid)
-    fine = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
-    drives = Drives(motion.commands, fine, settings.commands, steps.substeps, kept)
-    replayed = drives
+    fine_grid = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
+    drives = Drives(motion.commands, fine_grid, settings.commands, steps.substeps, kept)
+    replay_drives = drives
     if not motion.binned:
-        replayed = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
+        replay_drives = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
         **vars(steps),
         motion=motion,
         drives=drives,
-        replay_drives=replayed,
+        replay_drives=replay_drives,
         wrenches=catalogue.wrenches,
         free_axes=free,
     )
@@ -261,9 +261,9 @@ def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK) -> Array:
     A block lasts `seconds`, and belongs to one run.
     """
     parts, count = [np.arange(0)], 0
-    for one in runs:
-        number = (one.time[one.settled] / seconds).astype(int)
-        kept, own = np.unique(number, return_inverse=True)
-        parts.append(own + count)
-        count += len(kept)
+    for run in runs:
+        number = (run.time[run.settled] / seconds).astype(int)
+        numbers, index = np.unique(number, return_inverse=True)
+        parts.append(index + count)
+        count += len(numbers)
     return np.concatenate(parts)

@@ -58,10 +58,10 @@ class _Principal(NamedTuple):
 
 def list_terms(run: ObservedRun) -> Array:
     """Terms (k, n) of a walk of rate 1 at the readings of a run, the first where it begins."""
-    before, lasts = run.motion.commands.before, float(run.time[-1])
-    w = np.pi * (np.arange(max(1, round(2.0 * MAX_FREQUENCY_HZ * lasts))) + 0.5)
-    terms = np.sqrt(2.0 * lasts) / w[:, None] * np.sin(w[:, None] * run.time / lasts)
-    return np.vstack([np.full(len(run.time), np.sqrt(LEAD_SECONDS + before)), terms])
+    lead, duration = run.motion.commands.before, float(run.time[-1])
+    w = np.pi * (np.arange(max(1, round(2.0 * MAX_FREQUENCY_HZ * duration))) + 0.5)
+    terms = np.sqrt(2.0 * duration) / w[:, None] * np.sin(w[:, None] * run.time / duration)
+    return np.vstack([np.full(len(run.time), np.sqrt(LEAD_SECONDS + lead)), terms])
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,20 +78,20 @@ class RandomWalk:
     _kept: Recent[list[_Principal]] = field(default_factory=Recent)
 
     def _decompose(self, wanted: Sequence[RunFilters]) -> list[_Principal]:
-        key = tuple((f.gain.tobytes(), f.variance) for one in wanted for f in one.filters)
-        each = zip(self.columns, self.runs, self.made_by, wanted, strict=True)
-        return self._kept.get(key, lambda: [_decompose(whiten_run(*one)) for one in each])
+        key = tuple((f.gain.tobytes(), f.variance) for filters in wanted for f in filters.filters)
+        inputs = zip(self.columns, self.runs, self.made_by, wanted, strict=True)
+        return self._kept.get(key, lambda: [_decompose(whiten_run(*x)) for x in inputs])
 
     def whiten(self, z: Array, rate: float, run_filters: Sequence[RunFilters]) -> Array:
         """Innovations (..., 6, m) of all runs, whitened axis by axis, white beside this walk."""
-        out, first = np.array(z), 0
-        for own in self._decompose(run_filters):
-            at = slice(first, first + own.directions.shape[1] // 6)
-            rows = z[..., at].reshape(-1, own.directions.shape[1])
-            shrunk = 1.0 - 1.0 / np.sqrt(1.0 + rate**2 * own.power)
-            taken = (rows @ own.directions.T * shrunk) @ own.directions
-            out[..., at] -= taken.reshape(out[..., at].shape)
-            first = at.stop
+        out, begin = np.array(z), 0
+        for principal in self._decompose(run_filters):
+            at = slice(begin, begin + principal.directions.shape[1] // 6)
+            rows = z[..., at].reshape(-1, principal.directions.shape[1])
+            shrinkage = 1.0 - 1.0 / np.sqrt(1.0 + rate**2 * principal.power)
+            projection = (rows @ principal.directions.T * shrinkage) @ principal.directions
+            out[..., at] -= projection.reshape(out[..., at].shape)
+            begin = at.stop
         return out
 
     def lr_statistic(
@@ -106,7 +106,7 @@ class RandomWalk:
 
     def expected_lr(self, rate: float, run_filters: Sequence[RunFilters]) -> float:
         """The likelihood-ratio statistic that a walk of that rate would reach on average."""
-        power = np.concatenate([own.power for own in self._decompose(run_filters)])
+        power = np.concatenate([principal.power for principal in self._decompose(run_filters)])
         return _WalkLikelihood(1.0 + rate**2 * power, power).lr_statistic(rate)
 
     def subtract(
@@ -123,16 +123,16 @@ class RandomWalk:
             rate: of the walk.
             run_filters: the filters that made them white.
         """
-        rests, walks, random = [], [], np.random.default_rng(DRAW)
-        every = zip(self._decompose(run_filters), z, e, self.columns, self.runs, strict=True)
-        for own, white, one, columns, run in every:
-            sure = own.power + rate**-2.0
-            best = own.mix @ (own.directions @ white.ravel() / sure)
-            drawn = best + own.spread(sure**-0.5, random.normal(size=len(best)))
-            rests.append(one - np.tensordot(drawn, columns, axes=1))
+        remainders, walks, random = [], [], np.random.default_rng(DRAW)
+        inputs = zip(self._decompose(run_filters), z, e, self.columns, self.runs, strict=True)
+        for principal, white, e_run, columns, run in inputs:
+            precision = principal.power + rate**-2.0
+            mean = principal.mix @ (principal.directions @ white.ravel() / precision)
+            draw = mean + principal.spread(precision**-0.5, random.normal(size=len(mean)))
+            remainders.append(e_run - np.tensordot(draw, columns, axes=1))
             terms = list_terms(run)
-            walks.append(terms.T @ best.reshape(len(terms), -1))
-        return rests, walks
+            walks.append(terms.T @ mean.reshape(len(terms), -1))
+        return remainders, walks
 
 
 def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> WalkRate:
@@ -141,17 +141,17 @@ def fit_common(columns: Sequence[Array], z: Sequence[Array]) -> WalkRate:
     `columns` (c, 6, m) of each run: innovations, white too, by each of its parts for a size of 1.
     The parts are independent normal numbers.
     """
-    joined = np.concatenate([own.reshape(len(own), -1) for own in columns], axis=1)
-    white = np.concatenate([own.ravel() for own in z])
-    return _WalkLikelihood.of([white], [_decompose(joined)]).fit()
+    rows = np.concatenate([block.reshape(len(block), -1) for block in columns], axis=1)
+    white = np.concatenate([block.ravel() for block in z])
+    return _WalkLikelihood.of([white], [_decompose(rows)]).fit()
 
 
 def _decompose(columns: Array) -> _Principal:
     """Of whitened columns (c, 6, m)."""
     columns = columns.reshape(len(columns), -1)
     power, vectors = np.linalg.eigh((columns @ columns.T).astype(float))
-    shown = power > MIN_POWER_SHARE * max(power[-1], 1e-300)
-    power, vectors = power[shown], vectors[:, shown]
+    significant = power > MIN_POWER_SHARE * max(power[-1], 1e-300)
+    power, vectors = power[significant], vectors[:, significant]
     directions = (vectors / np.sqrt(power)).T @ columns
     return _Principal(directions, power, vectors * np.sqrt(power))
 
@@ -167,27 +167,27 @@ class _WalkLikelihood:
     def of(z: Sequence[Array], principal: Sequence[_Principal]) -> "_WalkLikelihood":
         """Of all runs."""
         pairs = zip(z, principal, strict=True)
-        squares = np.concatenate([(own.directions @ one.ravel()) ** 2 for one, own in pairs])
-        return _WalkLikelihood(squares, np.concatenate([own.power for own in principal]))
+        squares = np.concatenate([(p.directions @ white.ravel()) ** 2 for white, p in pairs])
+        return _WalkLikelihood(squares, np.concatenate([p.power for p in principal]))
 
     def lr_statistic(self, rate: float) -> float:
         """Twice the logarithm of the likelihood ratio to no walk."""
-        more = rate**2 * self.power
-        return float(np.sum(self.squares * more / (1.0 + more) - np.log1p(more)))
+        variance = rate**2 * self.power
+        return float(np.sum(self.squares * variance / (1.0 + variance) - np.log1p(variance)))
 
     def fit(self) -> WalkRate:
         """The likeliest rate."""
-        tried = np.linspace(np.log(MIN_RATE), np.log(MAX_RATE), RATES_TRIED)
-        best = tried[int(np.argmax([self.lr_statistic(np.exp(x)) for x in tried]))]
-        width = tried[1] - tried[0]
-        found = minimize_scalar(
+        log_rates = np.linspace(np.log(MIN_RATE), np.log(MAX_RATE), RATES_TRIED)
+        start = log_rates[int(np.argmax([self.lr_statistic(np.exp(x)) for x in log_rates]))]
+        width = log_rates[1] - log_rates[0]
+        minimum = minimize_scalar(
             lambda x: -self.lr_statistic(np.exp(x)),
             method="bounded",
-            bounds=(best - width, best + width),
+            bounds=(start - width, start + width),
         )
-        x, lr_statistic = float(found.x), -float(found.fun)
+        x, lr_statistic = float(minimum.x), -float(minimum.fun)
         sides = self.lr_statistic(np.exp(x - LOG_RATE_STEP))
         sides += self.lr_statistic(np.exp(x + LOG_RATE_STEP))
-        bend = (2.0 * lr_statistic - sides) / LOG_RATE_STEP**2
-        std = np.exp(x) * np.sqrt(2.0 / bend) if bend > 0.0 else np.inf
+        curvature = (2.0 * lr_statistic - sides) / LOG_RATE_STEP**2
+        std = np.exp(x) * np.sqrt(2.0 / curvature) if curvature > 0.0 else np.inf
         return WalkRate(float(np.exp(x)), float(std), lr_statistic)

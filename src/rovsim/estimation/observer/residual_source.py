@@ -33,7 +33,7 @@ class Linearised:
     @property
     def finite(self) -> bool:
         """Whether no error and no derivative diverged on any run."""
-        return all(np.isfinite(one).all() for one in (*self.e, *self.J))
+        return all(np.isfinite(x).all() for x in (*self.e, *self.J))
 
     @property
     def rows(self) -> list[Array]:
@@ -64,16 +64,16 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
             parameters of a law are never the same: its terms are numbered anew as others go.
     """
     count = len(at.x)
-    taken = {} if known is None else _take(at, known)
-    new = [i for i in range(count) if i not in taken]
+    reused = {} if known is None else _take(at, known)
+    new = [i for i in range(count) if i not in reused]
     sizes = at.steps[new][:, None, None]
-    every = errors([at.model, *(at.beside[i].model for i in new)])
-    J = [np.empty((count, *e.shape[1:])) for e in every]
-    for k, e in enumerate(every):
+    outputs = errors([at.model, *(at.beside[i].model for i in new)])
+    J = [np.empty((count, *e.shape[1:])) for e in outputs]
+    for k, e in enumerate(outputs):
         J[k][new] = (e[1:] - e[0]) / sizes
-        for i, of_runs in taken.items():
+        for i, of_runs in reused.items():
             J[k][i] = of_runs[k]
-    return Linearised(at, [e[0] for e in every], J)
+    return Linearised(at, [e[0] for e in outputs], J)
 
 
 def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
@@ -83,8 +83,8 @@ def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
     """
     listed = [term.effect.listed for term in known.hypothesis.terms for _ in term.free]
     rows = {name: k for k, name in enumerate(known.hypothesis.parameter_names) if listed[k]}
-    each = enumerate(at.parameter_names)
-    return {i: [J[rows[name]] for J in known.J] for i, name in each if name in rows}
+    names = enumerate(at.parameter_names)
+    return {i: [J[rows[name]] for J in known.J] for i, name in names if name in rows}
 
 
 def step_back(at: Hypothesis, i: int) -> Hypothesis | None:
@@ -106,8 +106,8 @@ def evaluate_possible(
         count: of the errors on each axis.
         errors: gives those of the possible models.
     """
-    able = [m.possible for m in models]
+    possible = [m.possible for m in models]
     e = np.full((len(models), 6, count), np.nan)
-    if any(able):
-        e[able] = errors([m for m, yes in zip(models, able, strict=True) if yes])
+    if any(possible):
+        e[possible] = errors([m for m, flag in zip(models, possible, strict=True) if flag])
     return e

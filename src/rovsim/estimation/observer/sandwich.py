@@ -18,8 +18,8 @@ def estimate_covariance(rows: Array, cluster: Array) -> Array:
         rows: whitened errors and their derivatives (1 + k, 6, n).
         cluster: number (n,) of the one that each reading lies in.
     """
-    each = rows[1:] * rows[:1]
-    scores = np.array([each[..., cluster == b].sum(axis=(1, 2)) for b in np.unique(cluster)])
+    products = rows[1:] * rows[:1]
+    scores = np.array([products[..., cluster == b].sum(axis=(1, 2)) for b in np.unique(cluster)])
     scores = scores - scores.mean(axis=0)
     inverse = solve(gram(as_rows(rows[1:])), np.eye(len(rows) - 1))
     return np.asarray(inverse @ (scores.T @ scores) @ inverse * len(scores) / (len(scores) - 1))
@@ -38,9 +38,9 @@ def estimate_covariance_of_few(e: Array, J: Array, cluster: Array) -> Array:
     """
     bread = solve(gram(as_rows(J)), np.eye(len(J)))
     scores = np.einsum("kin,in->kn", J, e)
-    each = bread @ np.array([np.bincount(cluster, row) for row in scores])
-    alone = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)
-    ratio = np.sqrt(np.maximum(np.sum(each**2, axis=1), alone) / np.diag(bread))
+    influences = bread @ np.array([np.bincount(cluster, row) for row in scores])
+    homoscedastic = np.diag(bread) * np.sum(e**2) / max(e.size - len(J), 1)
+    ratio = np.sqrt(np.maximum(np.sum(influences**2, axis=1), homoscedastic) / np.diag(bread))
     return bread * np.outer(ratio, ratio)
 
 

@@ -57,8 +57,8 @@ def _divide(at: Array, most: float) -> tuple[Array, Array]:
     count = np.maximum(1, np.round(np.diff(at) / most)).astype(int)
     ends = np.concatenate([[0], np.cumsum(count)])
     number = np.arange(ends[-1]) - np.repeat(ends[:-1], count)
-    within = number * np.repeat(np.diff(at), count) // np.repeat(count, count)
-    return np.append(np.repeat(at[:-1], count) + within, at[-1]), ends
+    offset = number * np.repeat(np.diff(at), count) // np.repeat(count, count)
+    return np.append(np.repeat(at[:-1], count) + offset, at[-1]), ends
 
 
 def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:

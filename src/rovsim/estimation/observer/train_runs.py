@@ -42,9 +42,9 @@ class TrainRuns:
     @property
     def looked_at(self) -> LookedAt:
         """How much of the campaign that is: standard deviations fall with the root of the time."""
-        wider = np.sqrt(self.of / self.seconds) if self.seconds else 1.0
+        widening = np.sqrt(self.of / self.seconds) if self.seconds else 1.0
         return LookedAt(
-            seconds=round(self.seconds, 1), of=round(self.of, 1), wider=round(float(wider), 2)
+            seconds=round(self.seconds, 1), of=round(self.of, 1), wider=round(float(widening), 2)
         )
 
 
@@ -66,14 +66,14 @@ def prepare_train(
 ) -> TrainRuns:
     """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
     parts = [part for name in runs.of("train") for part in _divide(runs.motions[name])]
-    whole = sum(part.lasts for part in parts)
-    chosen = [(name, slice(None)) for name in runs.of("train")]
-    if whole > most:
+    total = sum(part.lasts for part in parts)
+    places = [(name, slice(None)) for name in runs.of("train")]
+    if total > most:
         parts = _choose(parts, most)
-        chosen = [(part.run, part.at) for part in parts]
-    kept: Recent = Recent(DRIVES)
-    found = [_prepare(runs, *one, settings, catalogue, free, kept) for one in chosen]
-    return TrainRuns(tuple(found), sum(part.lasts for part in parts), whole)
+        places = [(part.run, part.at) for part in parts]
+    drives: Recent = Recent(DRIVES)
+    observed = [_prepare(runs, *place, settings, catalogue, free, drives) for place in places]
+    return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total)
 
 
 def prepare_test(
@@ -95,12 +95,12 @@ def _prepare(
 ) -> ObservedRun:
     stage, motion = runs.stages[name], runs.motions[name]
     if at != slice(None):
-        first = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
-        whole = slice(first, at.stop)
-        stage = stage.part(whole) if isinstance(stage, Poses) else stage
-        led = np.arange(at.stop - first) >= at.start - first
-        motion = motion.part(whole)
-        motion = replace(motion, usable=motion.usable & led)
+        begin = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
+        span = slice(begin, at.stop)
+        stage = stage.part(span) if isinstance(stage, Poses) else stage
+        after_lead = np.arange(at.stop - begin) >= at.start - begin
+        motion = motion.part(span)
+        motion = replace(motion, usable=motion.usable & after_lead)
     return prepare_run(stage, motion, settings, catalogue, free, kept)
 
 
@@ -109,26 +109,26 @@ def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
     squares = np.array([part.squares for part in parts])
     size = np.sqrt(np.maximum(np.einsum("pkk->k", squares), np.finfo(float).tiny))
     squares /= size[:, None] * size
-    known, chosen, left = MIN_INFORMATION_SHARE * np.eye(len(size)), set[int](), most
-    while fits := [k for k, p in enumerate(parts) if k not in chosen and p.lasts <= left]:
-        best = fits[int(np.argmax(np.linalg.slogdet(known + squares[fits])[1]))]
-        chosen.add(best)
-        known, left = known + squares[best], left - parts[best].lasts
-    return [parts[k] for k in sorted(chosen)]
+    information, selected, seconds = MIN_INFORMATION_SHARE * np.eye(len(size)), set[int](), most
+    while fits := [k for k, p in enumerate(parts) if k not in selected and p.lasts <= seconds]:
+        k_best = fits[int(np.argmax(np.linalg.slogdet(information + squares[fits])[1]))]
+        selected.add(k_best)
+        information, seconds = information + squares[k_best], seconds - parts[k_best].lasts
+    return [parts[k] for k in sorted(selected)]
 
 
 def _divide(motion: Motion) -> Iterator[_Part]:
     """A run in equal parts, each as close to `PART_SECONDS` as can be."""
-    whole = motion.end - motion.time[0]
-    ends = np.linspace(motion.time[0], motion.end, max(1, round(whole / PART_SECONDS)) + 1)
+    duration = motion.end - motion.time[0]
+    ends = np.linspace(motion.time[0], motion.end, max(1, round(duration / PART_SECONDS)) + 1)
     places = np.searchsorted(motion.time, ends)
     places[-1] = len(motion.time)
     step = max(1, round(SAMPLED / float(np.median(np.diff(motion.time)))))
     for a, b in pairwise(places.tolist()):
         at = slice(a, b, step)
-        some = _list_acting(motion, at)[motion.usable[at]]
-        lasts = len(motion.time[a:b]) / len(motion.time) * whole
-        yield _Part(motion.run.id, slice(a, b), float(lasts), some.T @ some)
+        columns = _list_acting(motion, at)[motion.usable[at]]
+        lasts = len(motion.time[a:b]) / len(motion.time) * duration
+        yield _Part(motion.run.id, slice(a, b), float(lasts), columns.T @ columns)
 
 
 def _list_acting(motion: Motion, at: slice) -> Array:
@@ -136,6 +136,6 @@ def _list_acting(motion: Motion, at: slice) -> Array:
     nu, time, eta, log = motion.state_nu[at], motion.time[at], motion.eta[at], motion.commands
     commanded = log.held_at(time) if len(log.time) else np.zeros((len(time), 0))
     down = unrotate(eta[:, 3:], np.array([0.0, 0.0, 1.0]))
-    since = (time - motion.time[0])[:, None]
-    columns = [nu, np.abs(nu) * nu, motion.nu_dot[at], down, eta[:, :3], since, commanded]
+    elapsed = (time - motion.time[0])[:, None]
+    columns = [nu, np.abs(nu) * nu, motion.nu_dot[at], down, eta[:, :3], elapsed, commanded]
     return np.nan_to_num(np.hstack(columns))

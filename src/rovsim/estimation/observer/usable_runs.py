@@ -42,8 +42,8 @@ class UsableRuns:
     @property
     def moved(self) -> tuple[str, ...]:
         """Axes that were measured and moved: only about these something can be said."""
-        silent = (*self.still, *self.unmeasured, *self.locked_axes)
-        return tuple(axis for axis in AXES if axis not in silent)
+        unexcited = (*self.still, *self.unmeasured, *self.locked_axes)
+        return tuple(axis for axis in AXES if axis not in unexcited)
 
     def where_no_water_wanders(self) -> "UsableRuns":
         """The same runs, in which no wandering current is looked for."""
@@ -56,9 +56,9 @@ def select_usable(
     """Select the train runs that have a usable stretch; for `lost` see `UsableRuns`."""
     runs = tuple(run for run in train if len(run.segments))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
-    free, measured, moved = _find_axes(runs)
-    still, unmeasured, locked = measured & free & ~moved, free & ~measured, ~free
-    return UsableRuns(runs, _name(still), _name(unmeasured), _name(locked), seconds, lost or {})
+    free, measured, excited = _find_axes(runs)
+    at_rest, unmeasured, locked = measured & free & ~excited, free & ~measured, ~free
+    return UsableRuns(runs, _name(at_rest), _name(unmeasured), _name(locked), seconds, lost or {})
 
 
 def _name(axes: Array) -> tuple[str, ...]:
@@ -75,9 +75,9 @@ class _Axes(NamedTuple):
 
 def _find_axes(runs: Sequence[ObservedRun]) -> _Axes:
     """What the axes do in these runs."""
-    free, measured, moved = (np.zeros(len(AXES), bool) for _ in range(3))
+    free, measured, excited = (np.zeros(len(AXES), bool) for _ in range(3))
     for run in runs:
         free |= run.free_axes
         measured |= find_measured(run.motion.measured)
-        moved |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
-    return _Axes(free, measured, moved)
+        excited |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
+    return _Axes(free, measured, excited)

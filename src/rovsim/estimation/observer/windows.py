@@ -41,12 +41,13 @@ class WindowErrors:
 def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> WindowErrors:
     """Errors of models in windows of 2 s."""
     step()
-    able = [m for m in models if m.possible]
-    parts = [Windows(run).compare(able) for run in runs]
+    possible = [m for m in models if m.possible]
+    parts = [Windows(run).compare(possible) for run in runs]
     rmse = np.full((len(models), 6), np.nan)
-    known = sum(part.shape[1] * run.axes for part, run in zip(parts, runs, strict=True))
+    counts = sum(part.shape[1] * run.axes for part, run in zip(parts, runs, strict=True))
     rmse[[m.possible for m in models]] = [
-        rms(np.concatenate([p[k] for p in parts]), np.maximum(known, 1)) for k in range(len(able))
+        rms(np.concatenate([p[k] for p in parts]), np.maximum(counts, 1))
+        for k in range(len(possible))
     ]
     spread = measured_spread(run.motion for run in runs)
     return WindowErrors(rmse, [normalize(spread, row) for row in rmse])
@@ -78,8 +79,8 @@ class Windows:
     @property
     def compared(self) -> Array:
         """Samples or bins (n,) at which velocities are compared: not the sample it starts from."""
-        every = np.arange(len(self.run.motion.time))
-        parts = [every[predicted(self.run.motion, span)] for span in self.spans]
+        samples = np.arange(len(self.run.motion.time))
+        parts = [samples[predicted(self.run.motion, span)] for span in self.spans]
         return np.concatenate([np.empty(0, int), *parts])
 
     def compare(
@@ -95,11 +96,11 @@ class Windows:
         if starts is None:
             begin = [undo_mocap_view(m, self.run.motion).state[self.first] for m in models]
         else:
-            each = zip(models, starts, strict=True)
-            begin = [m.mocap_view.inverse.states(state) for m, state in each]
+            pairs = zip(models, starts, strict=True)
+            begin = [m.mocap_view.inverse.states(state) for m, state in pairs]
         paths = self._simulate(models, np.array(begin), pushes)
-        each = zip(models, paths, strict=True)
-        nu = [self._report(m, of_model) for m, of_model in each]
+        pairs = zip(models, paths, strict=True)
+        nu = [self._report(m, of_model) for m, of_model in pairs]
         # all models at once: a window is short, and there are many
         by_window = [np.stack(of_models) for of_models in zip(*nu, strict=True)]
         return self._subtract_measured(len(models), by_window)
@@ -114,11 +115,11 @@ class Windows:
         return [
             view.report(
                 path,
-                np.diff(grid[first:][: len(path)]) if binned else grid[1] - grid[0],
+                np.diff(grid[start:][: len(path)]) if binned else grid[1] - grid[0],
                 begins[:, i],
                 straight=binned,
             )[:, 7:]
-            for i, (first, path) in enumerate(zip(self._steps, paths, strict=True))
+            for i, (start, path) in enumerate(zip(self._steps, paths, strict=True))
         ]
 
     def _simulate(
@@ -129,9 +130,11 @@ class Windows:
         drives = run.replay_drives.of(models)
         if pushes is not None:
             drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
-        first = self._steps
-        steps = np.array([run.at[b] for _, b in self.spans], np.int64) - first
-        begins = Starts(begin, first, steps, find_fluid_memory(models, run, run.grid, first))
+        begin_steps = self._steps
+        steps = np.array([run.at[b] for _, b in self.spans], np.int64) - begin_steps
+        begins = Starts(
+            begin, begin_steps, steps, find_fluid_memory(models, run, run.grid, begin_steps)
+        )
         batch, time = batch_of(models, run), run.since_start(run.grid)
         begins = propagate_unmeasured_velocities(
             batch, drives, begins, time, find_measured(run.motion.measured)
@@ -145,18 +148,20 @@ class Windows:
 
     def _subtract_measured(self, count: int, nu: Sequence[Array]) -> Array:
         """Differences (m, n, 6) of velocities (m, steps + 1, 6) of each window."""
-        each = zip(self.spans, nu, strict=True)
+        pairs = zip(self.spans, nu, strict=True)
         motion = self.run.motion
-        parts = [self._at_readings(s, v) - motion.nu[predicted(motion, s)] for s, v in each]
-        found = np.concatenate([np.empty((count, 0, 6)), *parts], axis=1)
-        return np.where(self.run.axes, found, 0.0)
+        parts = [self._at_readings(s, v) - motion.nu[predicted(motion, s)] for s, v in pairs]
+        errors = np.concatenate([np.empty((count, 0, 6)), *parts], axis=1)
+        return np.where(self.run.axes, errors, 0.0)
 
     def _at_readings(self, span: tuple[int, int], nu: Array) -> Array:
         """Velocities (m, k, 6) at the samples, or their means over the bins, of one window."""
         a, b = span
-        first, at = self.run.at[a], self.run.at[a : b + 1]
+        begin, at = self.run.at[a], self.run.at[a : b + 1]
         if not self.run.motion.binned:
-            return nu[:, at[1:] - first]
-        way = cumulative_simpson(nu, dx=self.run.grid[1] - self.run.grid[0], axis=1, initial=0.0)
-        went = np.diff(way[:, at - first], axis=1)
-        return np.asarray(went / np.diff(self.run.grid[at])[:, None])
+            return nu[:, at[1:] - begin]
+        distance = cumulative_simpson(
+            nu, dx=self.run.grid[1] - self.run.grid[0], axis=1, initial=0.0
+        )
+        increments = np.diff(distance[:, at - begin], axis=1)
+        return np.asarray(increments / np.diff(self.run.grid[at])[:, None])
