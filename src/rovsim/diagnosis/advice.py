@@ -65,17 +65,17 @@ def advise(
     if not diagnosis.enough:
         return _begin_again(diagnosis)
     parts = _doubt_units(diagnosis)
-    smoothed = any(isinstance(one.term.effect, PoseFilter) for one in diagnosis.selected)
-    if smoothed and any(leads(one) for one in diagnosis.selected):
+    smoothed = any(isinstance(s.term.effect, PoseFilter) for s in diagnosis.selected)
+    if smoothed and any(leads(s) for s in diagnosis.selected):
         parts.append(LOOKS_AHEAD)
     if groups:
         names = " and ".join(groups[0])
         parts.append(
             f"{names} cannot be told apart with these runs. {_revealed(groups[0], catalogue)}"
         )
-        both = ",".join(groups[0][:2])
+        pair = ",".join(groups[0][:2])
         parts.append(
-            f"`rovsim design campaign=DIR 'between=[{both}]'` plans such a flight, for a vehicle "
+            f"`rovsim design campaign=DIR 'between=[{pair}]'` plans such a flight, for a vehicle "
             "that can stay in one place."
         )
     if joint:
@@ -84,11 +84,11 @@ def advise(
         parts.append(FIX_SCALE)
     parts += _show_more(diagnosis)
     if diagnosis.structures:
-        first = diagnosis.structures[0]
+        structure = diagnosis.structures[0]
         parts.append(
-            f"Record some time without commands, then move slowly in {first.axis} alone. If the "
-            f"remainder ({first.what}) is there without commands too, it comes from outside; if "
-            "only with motion, from the vehicle."
+            f"Record some time without commands, then move slowly in {structure.axis} alone. If "
+            f"the remainder ({structure.what}) is there without commands too, it comes from "
+            "outside; if only with motion, from the vehicle."
         )
     return " ".join(parts) or _confirm(diagnosis)
 
@@ -107,24 +107,24 @@ def _begin_again(diagnosis: TrainDiagnosis) -> str:
 
 def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     """Say what to check first, if a fitted value is absurdly far from the vehicle file."""
-    absurd = list_absurd(diagnosis.base, [one.term for one in diagnosis.selected])
+    absurd = list_absurd(diagnosis.base, [s.term for s in diagnosis.selected])
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
 def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
     """Say which axes to move, what to command and what to measure, where nobody did."""
     parts = []
-    if still := diagnosis.usable.still:
+    if at_rest := diagnosis.usable.still:
         parts.append(
-            f"Move {', '.join(still)} in a train run: nothing can be said about what acts there."
+            f"Move {', '.join(at_rest)} in a train run: nothing can be said about what acts there."
         )
     if idle := diagnosis.not_commanded:
         parts.append(f"Command {', '.join(idle)} in a train run, alone for some seconds each time.")
     axes = diagnosis.usable.unmeasured
     return parts + [
         f"Record {channel}: without it nothing can be said about what acts in {', '.join(missing)}."
-        for told, channel in CHANNELS
-        if (missing := [axis for axis in axes if axis in told])
+        for group, channel in CHANNELS
+        if (missing := [axis for axis in axes if axis in group])
     ]
 
 
@@ -136,19 +136,19 @@ def _revealed(names: Sequence[str], catalogue: Catalogue) -> str:
 def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequence[str]) -> str:
     """Say how to tell values apart: by what reveals the effect to which most of them belong."""
     owners = [name.split(".")[0] for group in joint for name in group]
-    most = max(dict.fromkeys(owners), key=owners.count)
-    group = next(g for g in joint if any(name.startswith(f"{most}.") for name in g))
+    commonest = max(dict.fromkeys(owners), key=owners.count)
+    group = next(g for g in joint if any(name.startswith(f"{commonest}.") for name in g))
     names = ", ".join(with_thruster_names(group, thrusters))
-    return f"To know {names} one by one: {_how(catalogue[most], group)}"
+    return f"To know {names} one by one: {_how(catalogue[commonest], group)}"
 
 
 def _confirm(diagnosis: TrainDiagnosis) -> str:
     """Say what would make the least important accepted effect surer, or that nothing is needed."""
     if not diagnosis.selected:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
-    weakest = min(diagnosis.selected, key=lambda one: one.error_reduction)
-    asked = [f"{weakest.term.id}.{name}" for name in weakest.term.free]
-    return f"To be surer of {weakest.term.id}: {_how(type(weakest.term.effect), asked)}"
+    weakest = min(diagnosis.selected, key=lambda s: s.error_reduction)
+    parameters = [f"{weakest.term.id}.{name}" for name in weakest.term.free]
+    return f"To be surer of {weakest.term.id}: {_how(type(weakest.term.effect), parameters)}"
 
 
 def _how(effect: type[Effect], parameters: Sequence[str]) -> str:

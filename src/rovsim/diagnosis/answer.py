@@ -58,8 +58,8 @@ class SettledAnswer:
 
         An accepted effect may then only stand in for part of that physics.
         """
-        single = all(one.moment for one in self.structures)
-        return self.refused or not (self.fit.is_finite and single)
+        momentary = all(s.moment for s in self.structures)
+        return self.refused or not (self.fit.is_finite and momentary)
 
     @cached_property
     def replayed(self) -> Model:
@@ -88,37 +88,41 @@ def settle_noticed(
     answer = settle(noticed, usable, holdout)
     if not answer.leaves_physics:
         return answer
-    every = drop_unsure(search_unnoticed(selection, seed))
-    if every.best is noticed.best:
+    unfiltered = drop_unsure(search_unnoticed(selection, seed))
+    if unfiltered.best is noticed.best:
         return answer
-    more = settle(every, usable, holdout)
-    return more if more.complete else answer
+    alternative = settle(unfiltered, usable, holdout)
+    return alternative if alternative.complete else answer
 
 
 def settle(
     selection: SearchResult, usable: UsableRuns, holdout: HoldoutValidation
 ) -> SettledAnswer:
     """Validate a selection on the held-out stretches, and fit what passes to all train runs."""
-    selection, whole = holdout.validate(selection)
+    selection, unchanged = holdout.validate(selection)
     settled = _settle_values(selection, usable)
-    fewer = holdout.keep_earning(selection) if settled.leaves_physics else selection
-    if fewer.best is not selection.best:
-        settled = _settle_values(fewer, usable)
-    return replace(settled, refused=not whole and settled.complete)
+    pruned = holdout.keep_earning(selection) if settled.leaves_physics else selection
+    if pruned.best is not selection.best:
+        settled = _settle_values(pruned, usable)
+    return replace(settled, refused=not unchanged and settled.complete)
 
 
 def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer:
     """Fit a selection to all train runs, without effects that are not worth their penalty there."""
     fit, bank = polish_selection(selection, usable.runs)
-    worth_it = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
-    if worth_it is not fit:
-        fewer = selection.fit(worth_it.hypothesis)
-        if fewer.is_finite:
-            return _settle_values(replace(selection, best=fewer), usable)
+    pruned_fit = selection.prune(selection.workspace.on_runs(bank, fit.noise), fit)
+    if pruned_fit is not fit:
+        pruned = selection.fit(pruned_fit.hypothesis)
+        if pruned.is_finite:
+            return _settle_values(replace(selection, best=pruned), usable)
     score = selection.workspace.score(fit)
-    whole = fit_whole_file(fit.hypothesis, bank, fit.noise)
-    left = find_structure(fit if whole is None else whole, bank) if fit.is_finite else []
-    return SettledAnswer(selection, fit, bank, score, left, whole_file_fit=whole)
+    whole_file_fit = fit_whole_file(fit.hypothesis, bank, fit.noise)
+    structures = (
+        find_structure(fit if whole_file_fit is None else whole_file_fit, bank)
+        if fit.is_finite
+        else []
+    )
+    return SettledAnswer(selection, fit, bank, score, structures, whole_file_fit=whole_file_fit)
 
 
 def choose_answer(
@@ -131,11 +135,11 @@ def choose_answer(
     stretches best. If that does not decide, they replay every run, each time at the values that
     replay the other runs best.
     """
-    better = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
-    if better is None:
-        better = holdout.prefers_between_runs(one.fit, other.fit)
-    if better is not None:
-        return one if better else other
+    prefers_one = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
+    if prefers_one is None:
+        prefers_one = holdout.prefers_between_runs(one.fit, other.fit)
+    if prefers_one is not None:
+        return one if prefers_one else other
     return one if not other.complete and one.score >= other.score else other
 
 
@@ -166,25 +170,25 @@ def finish(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> FinalAnswer:
     """
     if answer.leaves_physics and len(answer.fit.hypothesis.x):
         answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
-    whole, selected = answer.whole_file_fit, answer.fit.hypothesis
-    if answer.leaves_physics or whole is None:
+    whole_file_fit, selected = answer.whole_file_fit, answer.fit.hypothesis
+    if answer.leaves_physics or whole_file_fit is None:
         return FinalAnswer(answer, *include_rest(answer.fit, runs))
-    if is_right_elsewhere(whole, selected):
+    if is_right_elsewhere(whole_file_fit, selected):
         return FinalAnswer(answer, *include_scale(answer.fit, runs))
-    final, scale = settle_whole_file(whole, selected, answer.bank)
+    final, scale = settle_whole_file(whole_file_fit, selected, answer.bank)
     return FinalAnswer(replace(answer, fit=final), final, scale)
 
 
 def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
     """Fit to replays, without effects whose values may then as well be those of their absence."""
-    again = fit_to_replays(fit, bank)
-    while len(again.hypothesis.terms) > 1:
-        doubtful = find_doubtful(again)
+    refit = fit_to_replays(fit, bank)
+    while len(refit.hypothesis.terms) > 1:
+        doubtful = find_doubtful(refit)
         if doubtful is None:
             break
-        fewer = bank.linearise(again.hypothesis.without(doubtful))
-        again = fit_to_replays(judge(fewer, bank, fit.noise), bank)
-    return again
+        linearised = bank.linearise(refit.hypothesis.without(doubtful))
+        refit = fit_to_replays(judge(linearised, bank, fit.noise), bank)
+    return refit
 
 
 def polish_selection(

@@ -57,22 +57,22 @@ def add_effects(
         BadInput: the diagnosis has no values for an effect, an effect is named twice, the base has
             it at these values already, or no model can have the values.
     """
-    known = catalogue if effects is None else dict.fromkeys(effects)
-    chosen = choose_effects(diagnosis, known)
-    fitted = diagnosis.fitted | {one.effect: one for one in chosen}
-    names = [one.effect for one in chosen] if effects is None else list(effects)
-    _check_names(names, fitted, source)
+    available = catalogue if effects is None else dict.fromkeys(effects)
+    selected = choose_effects(diagnosis, available)
+    by_name = diagnosis.fitted | {e.effect: e for e in selected}
+    names = [e.effect for e in selected] if effects is None else list(effects)
+    _check_names(names, by_name, source)
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
-    entries = list_entries([fitted[name] for name in names], source)
-    there = catalogue.on(vehicle)
-    effects_there = build_effects(entries, there)
-    _refuse_again(effects_there, base, to)
-    model = extend(base, effects_there)
-    model = add_uncertainty(model, names, base, diagnosis, source, there)
-    together = {one.effect for one in chosen}
-    one_by_one = len(names) > 1 and not together.issuperset(names)
-    return Added(model, names, was_diagnosed(base, diagnosis), one_by_one)
+    entries = list_entries([by_name[name] for name in names], source)
+    on_vehicle = catalogue.on(vehicle)
+    new_effects = build_effects(entries, on_vehicle)
+    _refuse_again(new_effects, base, to)
+    model = extend(base, new_effects)
+    model = add_uncertainty(model, names, base, diagnosis, source, on_vehicle)
+    joint_names = {e.effect for e in selected}
+    separately = len(names) > 1 and not joint_names.issuperset(names)
+    return Added(model, names, was_diagnosed(base, diagnosis), separately)
 
 
 def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) -> None:
@@ -91,9 +91,9 @@ def _check_names(names: Sequence[str], fitted: Collection[str], source: Path) ->
 
 def _refuse_again(effects: Sequence[Effect], base: Model, to: str) -> None:
     """Refuse an effect that the base has at exactly these values: it would act twice."""
-    there = [(one.id, one.given()) for one in base.added if one.given()]
+    present = [(e.id, e.given()) for e in base.added if e.given()]
     for effect in effects:
-        if (effect.id, effect.given()) in there:
+        if (effect.id, effect.given()) in present:
             raise BadInput(
                 f"has {effect.id} at these values already",
                 where=to,
@@ -128,21 +128,21 @@ def add_uncertainty(
         source: its file, for messages.
         catalogue: the effects that the vehicle can have.
     """
-    posterior, whole = diagnosis.posterior, sorted(one.effect for one in diagnosis.selected)
-    if posterior is None or sorted(names) != whole or not was_diagnosed(base, diagnosis):
+    posterior, diagnosed = diagnosis.posterior, sorted(item.effect for item in diagnosis.selected)
+    if posterior is None or sorted(names) != diagnosed or not was_diagnosed(base, diagnosis):
         return model
-    instead = [
+    alternatives = [
         {
-            "probability": one.probability,
-            "effects": [entry.plain() for entry in list_entries(one.effects, source)],
-            "correlation": one.correlation,
+            "probability": item.probability,
+            "effects": [entry.plain() for entry in list_entries(item.effects, source)],
+            "correlation": item.correlation,
         }
-        for one in posterior.instead
+        for item in posterior.instead
     ]
     content = {
         "noise": diagnosis.noise,
         "correlation": posterior.correlation,
-        "instead": instead,
+        "instead": alternatives,
     }
     entry = checked(UncertaintyEntry, content, source)
     return with_uncertainty(model, entry, catalogue, source)
@@ -162,12 +162,12 @@ def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEnt
         checked(
             EffectEntry,
             {
-                "effect": one.effect,
-                "parameters": {k: v.model_dump() for k, v in one.parameters.items()},
+                "effect": e.effect,
+                "parameters": {k: v.model_dump() for k, v in e.parameters.items()},
             },
             source,
         )
-        for one in fitted
+        for e in fitted
     ]
 
 

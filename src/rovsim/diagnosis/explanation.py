@@ -92,7 +92,7 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
     base, usable = problem.base, problem.usable
     stage("observing")
     smoothing = find_smoothing(base, usable.runs) if problem.cameras_may_smooth else None
-    chosen, apart = keep_apart(usable.runs)
+    training, reserved = keep_apart(usable.runs)
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
         stage("searching")
@@ -101,9 +101,9 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
         )
 
-    starts = _make_starts(problem, smoothing, chosen)
+    starts = _make_starts(problem, smoothing, training)
     start, selection, smoothing = search_with_consistent_filter(starts, search_from)
-    holdout = HoldoutValidation(apart, usable.runs, selection.best.noise.drift is not None)
+    holdout = HoldoutValidation(reserved, usable.runs, selection.best.noise.drift is not None)
     answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
         return explain(replace(problem, cameras_may_smooth=False), stage)
@@ -122,8 +122,8 @@ def _unmask(answer: SettledAnswer) -> SettledAnswer:
     """Add to what an answer leaves any law that its accepted effects may only stand in for."""
     if answer.leaves_physics or answer.whole_file_fit is not None:
         return answer
-    masked = find_masked_laws(answer.selection)
-    return replace(answer, structures=(*masked, *answer.structures))
+    structures = find_masked_laws(answer.selection)
+    return replace(answer, structures=(*structures, *answer.structures))
 
 
 def _make_starts(
@@ -163,17 +163,17 @@ def _observe(
     these filters keep the base close to the measurement. The search then uses filters that suit the
     noise that is left when all candidates may act at once.
     """
-    first = FilterBank.design(runs, base, FIRST_NOISE)
-    noise, _ = first.fit_noise(first.innovations(base), FIRST_NOISE)
-    close = first.redesign(base, noise)
+    rough_bank = FilterBank.design(runs, base, FIRST_NOISE)
+    noise, _ = rough_bank.fit_noise(rough_bank.innovations(base), FIRST_NOISE)
+    bank = rough_bank.redesign(base, noise)
     listed = list_candidates(runs, problem.catalogue, base.vehicle)
-    candidates = [one for one in listed if (base + one.start).possible]
+    candidates = [c for c in listed if (base + c.start).possible]
     while True:
-        sensitivities = linearise_candidates(close, Hypothesis(base), candidates)
+        sensitivities = linearise_candidates(bank, Hypothesis(base), candidates)
         require_finite(sensitivities.base)
         noise = fit_remaining_noise(sensitivities, Hypothesis(base), noise)
-        if not noise.drift or close.paths:
+        if not noise.drift or bank.paths:
             break
-        close = close.redesign(base, noise)  # forces differ where the water moves
-    workspace = SearchWorkspace(WhiteColumns(close, sensitivities, noise), problem.settings)
+        bank = bank.redesign(base, noise)  # forces differ where the water moves
+    workspace = SearchWorkspace(WhiteColumns(bank, sensitivities, noise), problem.settings)
     return workspace.with_noise(Hypothesis(base), noise)

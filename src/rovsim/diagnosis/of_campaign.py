@@ -78,9 +78,9 @@ def diagnose_campaign(
         failing: is told under which conditions the base fails, as soon as these are known.
     """
     stage("reading")
-    searched, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
-    where = list_conditions(searched)
-    failing(where)
+    searched_models, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
+    conditions = list_conditions(searched_models)
+    failing(conditions)
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
@@ -88,11 +88,13 @@ def diagnose_campaign(
         base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
     )
     stage("scoring")
-    shares = [finding.share() for one in searched for finding in one.explanation.findings]
-    ladder, away = _climb(diagnosis, runs, settings, catalogue)
-    context = CampaignContext(shares, ladder, train.looked_at, standstills, away)
-    told = report(diagnosis, context, catalogue)
-    return Diagnosed(told, where, diagnosis.proposed.source if diagnosis.proposed else None)
+    shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
+    ladder, diverged_runs = _climb(diagnosis, runs, settings, catalogue)
+    context = CampaignContext(shares, ladder, train.looked_at, standstills, diverged_runs)
+    document = report(diagnosis, context, catalogue)
+    return Diagnosed(
+        document, conditions, diagnosis.proposed.source if diagnosis.proposed else None
+    )
 
 
 def _look(
@@ -126,14 +128,14 @@ def _climb(
     Returns:
         The ladder, and ids of the test runs in which the base diverges.
     """
-    models, how = _list_models(diagnosis), settings.only(WINDOW)
+    models, window_settings = _list_models(diagnosis), settings.only(WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]
         for model, score in zip(models, scores, strict=True):
             step()
-            replayed = replay(model, motion, how, open_loop=False)
-            score.add(motion, subtract(motion, replayed.horizons[HORIZON]))
+            prediction = replay(model, motion, window_settings, open_loop=False)
+            score.add(motion, subtract(motion, prediction.horizons[HORIZON]))
     steps = [score.step for score in scores]
     floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
     return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away

@@ -87,8 +87,8 @@ def diagnose_train_runs(
                 problem = DiagnosisProblem(base, usable, settings, catalogue, seed)
                 return _summarise(explain(problem, stage))
             except ModelLost as diverged:
-                runs, lost = diverged.leave_out(usable.runs)
-                usable = select_usable(runs, {**usable.lost, **lost})
+                runs, lost_from = diverged.leave_out(usable.runs)
+                usable = select_usable(runs, {**usable.lost, **lost_from})
         return TrainDiagnosis(base, usable)
 
 
@@ -100,20 +100,20 @@ def _summarise(explained: Explanation) -> TrainDiagnosis:
     """
     problem, smoothing = explained.problem, explained.smoothing
     base, usable = problem.base, problem.usable
-    answer, wider, scale = finish(explained.answer, usable.runs)
+    answer, wide_fit, scale = finish(explained.answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
     law = _propose(answer, explained, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals
-    terms = name_terms(wider, rivals)
-    named = [*camera, *(doubt_lead(terms) if camera else terms)]
-    stand_ins = find_stand_ins(named, law.beside) if law else set()
-    named = doubt_names(named, stand_ins)
+    terms = name_terms(wide_fit, rivals)
+    effects = [*camera, *(doubt_lead(terms) if camera else terms)]
+    stand_ins = find_stand_ins(effects, law.beside) if law else set()
+    effects = doubt_names(effects, stand_ins)
     proposed = law if law and law.complete else None
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
-            named.append(name_drift(drift, answer.leaves_physics))
-    selected = rank_selected(base, named, usable.runs)
+            effects.append(name_drift(drift, answer.leaves_physics))
+    selected = rank_selected(base, effects, usable.runs)
     if answer.structures and not proposed:
         selected = doubt_small(selected, answer.structures[0].share)
     start = explained.start
@@ -121,7 +121,7 @@ def _summarise(explained: Explanation) -> TrainDiagnosis:
         base,
         usable,
         answer.fit,
-        _correlate(wider),
+        _correlate(wide_fit),
         selected,
         ranking=rank_alone(start.workspace, start.base_fit, answer.fit),
         rivals=rivals,
@@ -151,9 +151,9 @@ def _propose(
     def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
         return polish_selection(replace(answer.selection, best=with_law), runs)
 
-    whole = answer.fit.hypothesis.model
-    best = Catalogued(whole, answer.replayed if holdout.runs else whole)
-    return propose_law(answer.selection, best, base, holdout, runs, polish, camera)
+    model = answer.fit.hypothesis.model
+    catalogued = Catalogued(model, answer.replayed if holdout.runs else model)
+    return propose_law(answer.selection, catalogued, base, holdout, runs, polish, camera)
 
 
 def _trace(answer: SettledAnswer) -> ForceInTime | None:

@@ -76,18 +76,18 @@ def report(diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catal
         context: what else is reported.
         catalogue: says what reveals each effect.
     """
-    alike = group_indistinguishable(diagnosis.rivals)
+    groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
     return Diagnosis(
         verdict=diagnosis.verdict,
-        selected=tuple(_fitted(one, one.std) for one in diagnosis.selected),
-        ranking=tuple(_fitted(one, {}) for one in _listed(diagnosis)),
-        indistinguishable=tuple(map(tuple, alike)),
+        selected=tuple(_fitted(s, s.std) for s in diagnosis.selected),
+        ranking=tuple(_fitted(s, {}) for s in _listed(diagnosis)),
+        indistinguishable=tuple(map(tuple, groups)),
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
         where=tuple(context.where),
         unexplained=describe_structures(diagnosis),
-        next_experiment=advise(diagnosis, alike, joint, catalogue),
+        next_experiment=advise(diagnosis, groups, joint, catalogue),
         error=_errors(context.ladder, len(diagnosis.selected)),
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,
@@ -152,8 +152,8 @@ def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
 
 def _listed(diagnosis: TrainDiagnosis) -> list[Ranked]:
     """List the first effects of the ranking, and the selected ones wherever they stand in it."""
-    named = {one.term.id for one in diagnosis.selected}
-    return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in named]
+    selected_ids = {s.term.id for s in diagnosis.selected}
+    return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in selected_ids]
 
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
@@ -163,10 +163,10 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     """
     pairs = [(r.effect, r.instead_of) for r in rivals if r.deviance_difference < MIN_LR_APART]
     names = sorted({name for pair in pairs for name in pair})
-    near = np.zeros((len(names), len(names)), bool)
-    for one, other in pairs:
-        near[names.index(one), names.index(other)] = True
-    _, label = connected_components(near, directed=False)
+    adjacency = np.zeros((len(names), len(names)), bool)
+    for a, b in pairs:
+        adjacency[names.index(a), names.index(b)] = True
+    _, label = connected_components(adjacency, directed=False)
     groups = [[n for n, k in zip(names, label, strict=True) if k == g] for g in np.unique(label)]
     return sorted(groups)
 
@@ -190,11 +190,12 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
 
 def _hint(structures: Sequence[Structure]) -> str:
     """Say on which axes something is left, and what it depends on; the most surprising first."""
-    first = structures[0]
-    also = {s.axis: s.what for s in reversed(structures) if s.axis != first.axis}  # the first each
-    hint = f"{first.axis.capitalize()}: the remainder shows {first.what}."
-    if also:
-        hint += f" Also {'; '.join(f'{axis}: {also[axis]}' for axis in reversed(also))}."
+    strongest = structures[0]
+    # the first of each other axis
+    by_axis = {s.axis: s.what for s in reversed(structures) if s.axis != strongest.axis}
+    hint = f"{strongest.axis.capitalize()}: the remainder shows {strongest.what}."
+    if by_axis:
+        hint += f" Also {'; '.join(f'{axis}: {by_axis[axis]}' for axis in reversed(by_axis))}."
     return hint
 
 
@@ -202,21 +203,21 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
     """Report how the values are correlated, and which rivals may act instead, by their odds."""
     if diagnosis.fit is None:
         return None
-    near = [
+    close_rivals = [
         (r, r.fit)
         for r in diagnosis.rivals
         if r.deviance_difference < MIN_LR_APART and r.fit is not None
     ]
-    _, *share = share_odds([0.0, *(-r.deviance_difference for r, _ in near)])
+    _, *odds = share_odds([0.0, *(-r.deviance_difference for r, _ in close_rivals)])
     return Posterior(
         correlation=diagnosis.correlation or Correlation(),
         instead=tuple(
             Possibility(
-                probability=float(f"{own:.6g}"),
+                probability=float(f"{probability:.6g}"),
                 effects=_list_effects(fit),
                 correlation=correlate(fit.covariance, fit.hypothesis.parameter_names),
             )
-            for own, (_, fit) in zip(share, near, strict=True)
+            for probability, (_, fit) in zip(odds, close_rivals, strict=True)
         ),
     )
 
@@ -224,10 +225,10 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
 def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
     """List all effects of a fit that are not part of the vehicle itself."""
     h = fit.hypothesis
-    known: list[tuple[Term, dict[str, float]]] = [(Term(one, ()), {}) for one in h.base.added]
-    known += [(term, find_std(fit, i)) for i, term in enumerate(h.terms)]
+    pairs: list[tuple[Term, dict[str, float]]] = [(Term(effect, ()), {}) for effect in h.base.added]
+    pairs += [(term, find_std(fit, i)) for i, term in enumerate(h.terms)]
     return tuple(
-        FittedEffect(effect=term.id, parameters=describe_values(term, std)) for term, std in known
+        FittedEffect(effect=term.id, parameters=describe_values(term, std)) for term, std in pairs
     )
 
 

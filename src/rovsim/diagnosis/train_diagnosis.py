@@ -81,7 +81,7 @@ class TrainDiagnosis:
 
     def models(self) -> list[Model]:
         """The base, then models with one selected effect more each."""
-        found = [self.base]
-        for one in self.selected:
-            found.append((found[-1] + one.term.effect).called(f"+{one.term.id}"))
-        return found
+        models = [self.base]
+        for s in self.selected:
+            models.append((models[-1] + s.term.effect).called(f"+{s.term.id}"))
+        return models

@@ -26,8 +26,8 @@ def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
     logs = [run.motion.commands for run in usable.runs if len(run.motion.commands.time)]
     if not logs:
         return ()
-    told = np.max([np.max(np.abs(log.value), axis=0) for log in logs], axis=0)
-    resting = told <= RESTING
+    amplitude = np.max([np.max(np.abs(log.value), axis=0) for log in logs], axis=0)
+    resting = amplitude <= RESTING
     if logs[0].kind == "thruster":
         return _named(vehicle.command_columns, resting & ~np.array(vehicle.angles, bool))
     silent = np.isin(AXES, usable.still)
@@ -43,4 +43,4 @@ def _pushed(vehicle: Vehicle, kind: str) -> Array:
 
 def _named(names: Sequence[str], which: Array) -> tuple[str, ...]:
     """Names whose place in a mask (n,) is set."""
-    return tuple(name for name, yes in zip(names, which, strict=True) if yes)
+    return tuple(name for name, flag in zip(names, which, strict=True) if flag)

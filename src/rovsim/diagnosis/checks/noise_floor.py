@@ -57,15 +57,15 @@ def simulate_noise_floor(
         know how the noise of these passes the filter.
     """
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
-    squares, count, windows, measured = np.zeros(6), 0, 0, Moments.nothing()
+    squares, count, windows, moments = np.zeros(6), 0, 0, Moments.nothing()
     for run in runs:
         if run.motion.measured is not None:
             return None
         errors = perfect.errors(run)
         squares, count = squares + np.square(errors).sum(axis=0), count + len(errors)
         windows += len(Windows(run).spans)
-        measured += Moments.of(run.motion)
-    return NoiseFloor(normalize(measured.std, root_mean(squares, count)), windows)
+        moments += Moments.of(run.motion)
+    return NoiseFloor(normalize(moments.std, root_mean(squares, count)), windows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,28 +86,28 @@ class _PerfectModel:
 
     def errors(self, run: ObservedRun) -> Array:
         """Velocity errors (n, 6) in the windows of one run, of all draws, m/s and rad/s."""
-        windows, measured = Windows(run), run.motion.state
+        windows, measured_state = Windows(run), run.motion.state
         draws = self.noise.draws(run, self.random)
         pushes = self._push(draws, run)
-        again = draws.resample_measurement_noise(
+        noisy = draws.resample_measurement_noise(
             run.motion, self.model.mocap_view, self.signals, DRAWS
         )
-        reported = [motion.state for motion in again]
-        truth = np.tile(measured[windows.first], (DRAWS, 1, 1))
+        reported = [motion.state for motion in noisy]
+        truth = np.tile(measured_state[windows.first], (DRAWS, 1, 1))
         starts = np.array([state[windows.first] for state in reported])
         models = [self.model] * DRAWS
-        happened = windows.compare(models, truth, pushes)
+        actual = windows.compare(models, truth, pushes)
         predicted = windows.compare(models, starts)
         at = windows.compared
-        read = np.array([state[at, 7:] - measured[at, 7:] for state in reported])
-        return (predicted - happened - read).reshape(-1, 6)
+        reading_errors = np.array([state[at, 7:] - measured_state[at, 7:] for state in reported])
+        return (predicted - actual - reading_errors).reshape(-1, 6)
 
     def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Draw the disturbance of k integration steps: a wrench (draws, k, 6), N and N m."""
-        pushed = draws.draw_disturbance(np.diff(run.grid), DRAWS)
+        disturbance = draws.draw_disturbance(np.diff(run.grid), DRAWS)
         if self.noise.drift:
-            pushed += self._drift(run, self.noise.drift.rate)
-        return np.asarray(pushed @ self.model.M.T)
+            disturbance += self._drift(run, self.noise.drift.rate)
+        return np.asarray(disturbance @ self.model.M.T)
 
     def _drift(self, run: ObservedRun, rate: float) -> Array:
         """Draw a wandering current: its accelerations (draws, k, 6), m/s2 and rad/s2.
@@ -117,8 +117,8 @@ class _PerfectModel:
         """
         push = push_by_current(self.model, run, np.zeros((len(run.time), 2)))
         at, steps = run.grid[:-1] - run.edges[0], np.diff(run.grid)
-        here = np.stack([[np.interp(at, run.time, a) for a in own.T] for own in push])  # (2, 6, k)
-        began = run.motion.commands.before
+        response = np.stack([[np.interp(at, run.time, a) for a in p.T] for p in push])  # (2, 6, k)
+        lead = run.motion.commands.before
         kicks = self.random.normal(size=(DRAWS, 2, len(steps)))
-        kicks *= rate * np.sqrt(np.append(began, steps[:-1]))
-        return np.asarray(np.einsum("dck,cik->dki", np.cumsum(kicks, axis=2), here))
+        kicks *= rate * np.sqrt(np.append(lead, steps[:-1]))
+        return np.asarray(np.einsum("dck,cik->dki", np.cumsum(kicks, axis=2), response))

@@ -46,21 +46,24 @@ def list_not_observable(
     workspace = selection.workspace
     runs = workspace.bank.runs
     blocks, base = workspace.sensitivities.blocks, workspace.sensitivities.base_model
-    larger = max(1.0, vehicle.rigid_body.mass / REFERENCE_MASS)
-    shown = find_shown(workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, larger)
+    mass_ratio = max(1.0, vehicle.rigid_body.mass / REFERENCE_MASS)
+    observable = find_shown(
+        workspace.columns.sizes(Hypothesis(base)), blocks, workspace.penalty, mass_ratio
+    )
     if selection.best.hypothesis.model.thrust_path.autopilots:
         driven = [block for block in blocks if block.candidate.effect.requires == "thrusters"]
         sizes = workspace.columns.sizes(selection.best.hypothesis)
-        shown |= find_shown(sizes, driven, workspace.penalty, larger)
-    silent = {name for name, yes in shown.items() if not yes}
-    silent |= _find_unlogged(runs, catalogue, vehicle)
+        observable |= find_shown(sizes, driven, workspace.penalty, mass_ratio)
+    unobservable = {name for name, flag in observable.items() if not flag}
+    unobservable |= _find_unlogged(runs, catalogue, vehicle)
     if not workspace.bank.shows_drift(workspace.noise):
-        silent |= {
+        unobservable |= {
             name for name, effect in catalogue.items() if issubclass(effect, StochasticCurrent)
         }
-    silent -= {term.id for term in selection.best.hypothesis.terms}
-    silent -= {rival.effect for rival in selection.named_rivals}  # tried instead of an accepted one
-    return tuple(name for name in catalogue.on(vehicle) if name in silent)
+    unobservable -= {term.id for term in selection.best.hypothesis.terms}
+    # those tried instead of an accepted one
+    unobservable -= {rival.effect for rival in selection.named_rivals}
+    return tuple(name for name in catalogue.on(vehicle) if name in unobservable)
 
 
 def find_shown(
@@ -76,13 +79,15 @@ def find_shown(
         penalty: of a parameter, in twice the log likelihood.
         larger: how many times heavier the vehicle is than the one that the scales are meant for.
     """
-    needed = np.sqrt(penalty) + DETECTION_STDS
-    shown: dict[str, bool] = {}
+    threshold = np.sqrt(penalty) + DETECTION_STDS
+    observable: dict[str, bool] = {}
     for block in blocks:
         name = block.candidate.effect.id
-        told = any(sizes[k] * more > needed for k, more in _list_telling(block, larger))
-        shown[name] = shown.get(name, False) or told
-    return shown
+        detectable = any(
+            sizes[k] * factor > threshold for k, factor in _list_telling(block, larger)
+        )
+        observable[name] = observable.get(name, False) or detectable
+    return observable
 
 
 def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, float]]:
@@ -93,14 +98,14 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
     """
     candidate = block.candidate
     if block.secant is not None:
-        given = candidate.start.given()
-        wide = any(p.size(given[p.name]) > USUAL * p.scale for p in candidate.thresholds)
-        return [] if wide else [(block.secant, 1.0)]
+        values = candidate.start.given()
+        too_large = any(p.size(values[p.name]) > USUAL * p.scale for p in candidate.thresholds)
+        return [] if too_large else [(block.secant, 1.0)]
     units = {p.name: p.unit for p in candidate.effect.parameters}
-    each = zip(candidate.sloped, block.derivatives, strict=True)
+    pairs = zip(candidate.sloped, block.derivatives, strict=True)
     return [
         (column, larger if units[name].startswith(OF_SIZE) else 1.0)
-        for name, column in each
+        for name, column in pairs
         if name in (candidate.effect.telling or (name,))
     ]
 
@@ -108,9 +113,9 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:
     """Find the ids of effects that act on a kind of commands that nobody logged."""
     means = list_means(runs, vehicle)
-    needed = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
+    requirements = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
     return {
         name
         for name, effect in catalogue.on(vehicle).items()
-        if effect.requires in needed and effect.requires not in means
+        if effect.requires in requirements and effect.requires not in means
     }

@@ -80,8 +80,8 @@ class _Moving(NamedTuple):
         Infinite where there are no blocks.
         """
         fits = [x for x in BLOCKS if x <= lasts and np.sum(self.length == x) >= MIN_BLOCKS]
-        own = self.blocks[self.length == max(fits, default=BLOCKS[0])]
-        return np.percentile(np.abs(own), USUAL, axis=0) if len(own) else np.full(6, np.inf)
+        blocks = self.blocks[self.length == max(fits, default=BLOCKS[0])]
+        return np.percentile(np.abs(blocks), USUAL, axis=0) if len(blocks) else np.full(6, np.inf)
 
     def followed(self, axis: int, size: float) -> bool:
         """Whether vehicles follow the model where it accelerates by about `size` on an axis."""
@@ -98,27 +98,29 @@ def find_standstills(runs: Iterable[tuple[Motion, Samples]]) -> tuple[Standstill
             held in memory at a time.
     """
     rests: dict[str, tuple[list[_Rest], Spans]] = {}
-    each: list[_Moving] = []
+    moving_parts: list[_Moving] = []
     for motion, samples in runs:
-        measured = find_measured(motion.measured)
-        still = (np.abs(samples.nu) < STILL)[:, measured].all(axis=1)
-        own = list(_list_rests(motion, samples, still))
-        rests[motion.run.id] = own, _list_spans(motion)
-        each.append(_find_moving(motion, samples, ~still))
-    if not each:
+        axes = find_measured(motion.measured)
+        at_rest = (np.abs(samples.nu) < STILL)[:, axes].all(axis=1)
+        run_rests = list(_list_rests(motion, samples, at_rest))
+        rests[motion.run.id] = run_rests, _list_spans(motion)
+        moving_parts.append(_find_moving(motion, samples, ~at_rest))
+    if not moving_parts:
         return ()
-    moving = _Moving(*(np.concatenate(arrays) for arrays in zip(*each, strict=True)))
-    found = (_judge(run, own, spans, moving) for run, (own, spans) in rests.items())
-    return tuple(one for one in found if one is not None)
+    moving = _Moving(*(np.concatenate(arrays) for arrays in zip(*moving_parts, strict=True)))
+    candidates = (
+        _judge(run, run_rests, spans, moving) for run, (run_rests, spans) in rests.items()
+    )
+    return tuple(s for s in candidates if s is not None)
 
 
 def _list_rests(motion: Motion, samples: Samples, still: Array) -> Iterator[_Rest]:
     """Yield the stretches of a mask of still samples (n,) that last long enough."""
-    measured, time = find_measured(motion.measured), motion.time[samples.index]
+    axes, time = find_measured(motion.measured), motion.time[samples.index]
     for a, b in find_stretches(still):
         begin, end = float(time[a]), float(time[b - 1])
         if end - begin >= SHORTEST:
-            yield _Rest(begin, end, samples.a_res[a:b].mean(axis=0) * measured)
+            yield _Rest(begin, end, samples.a_res[a:b].mean(axis=0) * axes)
 
 
 def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
@@ -127,11 +129,11 @@ def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
     step = np.diff(time, append=time[-1:])
     step = np.minimum(step, np.median(step)) if len(step) else step  # not across gaps
     parts = [
-        (samples.a_res[part].mean(axis=0), length)
+        (samples.a_res[index].mean(axis=0), length)
         for a, b in find_stretches(which)
         for length in BLOCKS
         if length == BLOCKS[0] or time[b - 1] - time[a] >= length
-        for part in np.array_split(np.arange(a, b), max(1, int((time[b - 1] - time[a]) / length)))
+        for index in np.array_split(np.arange(a, b), max(1, int((time[b - 1] - time[a]) / length)))
     ]
     blocks = np.array([block for block, _ in parts]).reshape(-1, len(AXES))
     length = np.array([length for _, length in parts])
@@ -156,21 +158,21 @@ def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> S
     for rest in rests:
         if (axis := _find_axis(rest, moving)) is None:
             continue
-        gained, last = float(abs(rest.missed[axis]) * (rest.end - rest.begin)), candidates[-1:]
-        for before, _, more in last:
-            if rest.begin - before.end < max(before.end - before.begin, rest.end - rest.begin):
-                rest, gained = replace(rest, begin=before.begin), gained + more
+        gain, previous = float(abs(rest.missed[axis]) * (rest.end - rest.begin)), candidates[-1:]
+        for earlier, _, earlier_gain in previous:
+            if rest.begin - earlier.end < max(earlier.end - earlier.begin, rest.end - rest.begin):
+                rest, gain = replace(rest, begin=earlier.begin), gain + earlier_gain
                 candidates.pop()
-        candidates.append((rest, axis, gained))
+        candidates.append((rest, axis, gain))
     if not candidates:
         return None
-    rest, axis, gained = max(candidates, key=lambda one: one[0].end - one[0].begin)
+    rest, axis, gain = max(candidates, key=lambda c: c[0].end - c[0].begin)
     return Standstill(
         run=run,
         from_s=round(rest.begin, 2),
         to_s=round(rest.end, 2),
         axis=AXES[axis],
-        gained=float(f"{gained:.3g}"),
+        gained=float(f"{gain:.3g}"),
         use=tuple(_without(spans, rest.begin, rest.end)),
     )
 
@@ -180,22 +182,22 @@ def _find_axis(rest: _Rest, moving: _Moving) -> int | None:
 
     The model must gain speed there, and vehicles must follow it elsewhere.
     """
-    missed, lasts = np.abs(rest.missed), rest.end - rest.begin
-    usual = np.maximum(moving.usual(lasts), TINY)
-    beyond = np.where(missed * lasts > GAINED, missed / usual, 0.0)
-    axis = int(np.argmax(beyond))
-    told = beyond[axis] > BEYOND and moving.followed(axis, float(missed[axis]))
-    return axis if told else None
+    error, duration = np.abs(rest.missed), rest.end - rest.begin
+    typical = np.maximum(moving.usual(duration), TINY)
+    ratio = np.where(error * duration > GAINED, error / typical, 0.0)
+    axis = int(np.argmax(ratio))
+    significant = ratio[axis] > BEYOND and moving.followed(axis, float(error[axis]))
+    return axis if significant else None
 
 
 def _list_spans(motion: Motion) -> Spans:
     """Begin and end of each stretch of a run that can be used, s; short gaps are ignored."""
     spans: Spans = []
     for a, b in motion.segments():
-        first, last = float(motion.time[a]), float(motion.time[b - 1])
-        if spans and first - spans[-1][1] < SHORTEST:
-            first = spans.pop()[0]
-        spans.append((first, last))
+        begin, end = float(motion.time[a]), float(motion.time[b - 1])
+        if spans and begin - spans[-1][1] < SHORTEST:
+            begin = spans.pop()[0]
+        spans.append((begin, end))
     return spans
 
 

@@ -33,7 +33,10 @@ def list_absurd(base: Model, terms: Sequence[Term]) -> list[str]:
         For each value, `effect.parameter` and how large it is.
     """
     return [
-        one for term in terms for told in (_tell_gain, _tell_stated) for one in told(base, term)
+        text
+        for term in terms
+        for describe in (_tell_gain, _tell_stated)
+        for text in describe(base, term)
     ]
 
 
@@ -47,13 +50,13 @@ def _tell_gain(base: Model, term: Term) -> Iterator[str]:
 
 def _tell_stated(base: Model, term: Term) -> Iterator[str]:
     """Yield the values of a term that are absurdly far above what the file states."""
-    stated = base.body.stated.get(term.id, np.zeros(len(term.effect.parameters)))
-    for parameter, own in zip(term.effect.parameters, stated.tolist(), strict=True):
-        total = own + term.effect[parameter.name]
-        if own > 0.0 and total > _highest(base, term, parameter):
+    values = base.body.stated.get(term.id, np.zeros(len(term.effect.parameters)))
+    for parameter, nominal in zip(term.effect.parameters, values.tolist(), strict=True):
+        total = nominal + term.effect[parameter.name]
+        if nominal > 0.0 and total > _highest(base, term, parameter):
             yield (
-                f"{term.id}.{parameter.name} comes to {total:.3g}, {total / own:.0f} times what "
-                "the vehicle file states"
+                f"{term.id}.{parameter.name} comes to {total:.3g}, {total / nominal:.0f} times "
+                "what the vehicle file states"
             )
 
 

@@ -37,17 +37,17 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
         fit: of a hypothesis with the law; its noise says how large the disturbance is.
         runs: at whose readings the law is evaluated.
     """
-    bare, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
-    each = np.concatenate([_push(bare, parts, run) for run in runs], axis=1)
-    whole = np.sqrt(np.mean(each.sum(axis=0) ** 2, axis=0))
-    sizes = np.sqrt(np.mean(np.sum((each @ bare.M.T) ** 2, axis=2), axis=1))
-    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(whole / fit.noise.disturbance_std))])
+    model, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
+    accelerations = np.concatenate([_push(model, parts, run) for run in runs], axis=1)
+    rms = np.sqrt(np.mean(accelerations.sum(axis=0) ** 2, axis=0))
+    sizes = np.sqrt(np.mean(np.sum((accelerations @ model.M.T) ** 2, axis=2), axis=1))
+    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(rms / fit.noise.disturbance_std))])
 
 
 def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
     """Whether a fit leaves structure on an axis: more than `margin` times what chance allows."""
-    left = find_structure(fit, bank)
-    return any(one.axis == axis and one.times_limit > margin for one in left)
+    structures = find_structure(fit, bank)
+    return any(s.axis == axis and s.times_limit > margin for s in structures)
 
 
 def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
@@ -62,7 +62,7 @@ def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
         Body accelerations (k, n, 6), m/s2 and rad/s2.
     """
     state = undo_mocap_view(model, run.motion).state[run.innovation_samples]
-    known = np.isfinite(state).all(axis=1)
-    index, states = run.innovation_samples[known], state[None, known]
-    there = [accelerate(model + effect, run, index, states)[0] for effect in effects]
-    return np.stack(there) - accelerate(model, run, index, states)
+    finite = np.isfinite(state).all(axis=1)
+    index, states = run.innovation_samples[finite], state[None, finite]
+    accelerations = [accelerate(model + effect, run, index, states)[0] for effect in effects]
+    return np.stack(accelerations) - accelerate(model, run, index, states)

@@ -41,9 +41,9 @@ def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedVal
     Returns:
         Values by the names of the parameters.
     """
-    given = term.effect.given()
+    values = term.effect.given()
     units = {p.name: p.unit for p in term.effect.parameters}
-    names = [p.name for p in term.effect.parameters if p.name in given or p.name in std]
+    names = [p.name for p in term.effect.parameters if p.name in values or p.name in std]
     return {
         name: FittedValue(
             value=rounded(term.effect[name]),
@@ -56,7 +56,7 @@ def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedVal
 
 def describe_force(force: ForceInTime) -> Disturbance:
     """Describe a force in time, with a row about every `LINE` s for each run."""
-    each = zip(force.runs, force.time, force.place, force.force, strict=True)
+    rows = zip(force.runs, force.time, force.place, force.force, strict=True)
     return Disturbance(
         axes=force.axes,
         rms=ByAxis.of(_round_all(force.rms)),
@@ -72,7 +72,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
             )
             for p in force.pushes
         ),
-        runs=tuple(_describe_run(*one) for one in each),
+        runs=tuple(_describe_run(*row) for row in rows),
     )
 
 
@@ -87,26 +87,26 @@ def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
 
 def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:
     """Describe the force along one run: times (n,), places (n, 3) and wrenches (n, 6)."""
-    every = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
+    stride = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
     return ForceOfRun(
         run=run,
-        time_s=tuple(np.round(time[::every], 2).tolist()),
-        place_m=tuple(map(_triple, place[::every])),
-        force=tuple(map(tuple, _round_all(force[::every]).tolist())),
+        time_s=tuple(np.round(time[::stride], 2).tolist()),
+        place_m=tuple(map(_triple, place[::stride])),
+        force=tuple(map(tuple, _round_all(force[::stride]).tolist())),
     )
 
 
 def _round_all(values: Array) -> Array:
     """Round all values to the fourth significant digit of the largest."""
-    most = float(np.max(np.abs(values), initial=1e-12))
-    return np.asarray(np.round(values, 3 - int(np.floor(np.log10(max(most, 1e-12))))))
+    largest = float(np.max(np.abs(values), initial=1e-12))
+    return np.asarray(np.round(values, 3 - int(np.floor(np.log10(max(largest, 1e-12))))))
 
 
 def describe_law(law: ProposedLaw) -> ProposedEquation:
     """Describe a proposed law, the effects beside it, and the laws tried in its place."""
     beside = [
-        FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
-        for one in law.beside
+        FittedEffect(effect=item.term.id, parameters=describe_values(item.term, item.std))
+        for item in law.beside
     ]
     return ProposedEquation(
         axis=law.axis,

@@ -79,9 +79,9 @@ def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> 
         bank: the runs that it was fitted to, with their filters.
         structures: what was found in the innovations, and on which axes.
     """
-    residuals = {one.axis: one for one in split_by_axis(fit, bank)}
-    named = {one.axis for one in structures}
-    axes = tuple(a for a in AXES if a in residuals and a in named)
+    residuals = {x.axis: x for x in split_by_axis(fit, bank)}
+    with_structure = {x.axis for x in structures}
+    axes = tuple(a for a in AXES if a in residuals and a in with_structure)
     if not axes:
         return None
     M, correlation_time = fit.hypothesis.model.M, fit.noise.correlation_time
@@ -90,9 +90,9 @@ def trace_force(fit: Fit, bank: FilterBank, structures: Sequence[Structure]) -> 
         a = np.zeros((len(run.time), 6))
         for i, axis in enumerate(AXES):
             if axis in residuals:
-                own = residuals[axis]
-                std, lasts = own.disturbance_std, float(correlation_time[i])
-                a[:, i] = smooth(own.white[k], own.filters[k], run, std, lasts)
+                residual = residuals[axis]
+                std, lasts = residual.disturbance_std, float(correlation_time[i])
+                a[:, i] = smooth(residual.white[k], residual.filters[k], run, std, lasts)
         forces.append(a @ M.T)
     return _gather(bank.runs, forces, axes, residuals)
 
@@ -112,8 +112,8 @@ def smooth(white: Array, f: AxisFilter, run: ObservedRun, std: float, lasts: flo
     """
     e, out = np.zeros(len(run.time)), np.zeros(len(run.time))
     e[run.settled] = white
-    for first, last in run.innovation_segments:
-        out[first:last] = smooth_stretch(e[first:last], f, run.period, std, lasts)
+    for begin, end in run.innovation_segments:
+        out[begin:end] = smooth_stretch(e[begin:end], f, run.period, std, lasts)
     return out
 
 
@@ -153,8 +153,8 @@ def _gather(
         axes: on which the force is more than noise.
         residuals: what the fit left on each axis, by the name of the axis.
     """
-    whole = np.concatenate(forces)
-    rms = np.sqrt(np.mean(whole**2, axis=0))
+    total = np.concatenate(forces)
+    rms = np.sqrt(np.mean(total**2, axis=0))
     index = [AXES.index(a) for a in axes]
     places = [run.motion.state[run.innovation_samples, :3] * run.motion.site.axes for run in runs]
     strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))

@@ -37,7 +37,7 @@ def write_effect(
         base=base,
         names=", ".join(sorted((base, "Parameter"))),
         equation=form.equation,
-        title="".join(part.capitalize() for part in name.split("_")),
+        title="".join(word.capitalize() for word in name.split("_")),
         parameters="\n".join(_parameter(n) for n in numbers),
         starts=f"    starts = ({dict(start)},)\n" if start else "",
         method=indent(method.strip("\n"), "    "),
@@ -51,10 +51,10 @@ def round_start(numbers: Sequence[Number]) -> dict[str, float]:
 
 def _parameter(n: Number) -> str:
     """The line of the file that declares one parameter."""
-    more = "" if n.low is None else f", low={n.low:g}"
-    more += "" if n.high is None else f", high={n.high:g}"
-    more += "" if n.default is None else f", default={n.default:.6g}"
-    return f'        Parameter("{n.name}", "{n.unit}", r"{n.symbol}"{more}, scale={n.scale:g}),'
+    bounds = "" if n.low is None else f", low={n.low:g}"
+    bounds += "" if n.high is None else f", high={n.high:g}"
+    bounds += "" if n.default is None else f", default={n.default:.6g}"
+    return f'        Parameter("{n.name}", "{n.unit}", r"{n.symbol}"{bounds}, scale={n.scale:g}),'
 
 
 FILE = '''\

@@ -32,8 +32,8 @@ class FittedLaw:
     def beats(self, others: Iterable["FittedLaw"]) -> "FittedLaw":
         """The same law, with other laws added to its rivals."""
         ranked = sorted(
-            others, key=lambda one: one.score
+            others, key=lambda law: law.score
         )  # the likeliest of an equation comes last
-        differences = {one.form.equation: self.score - one.score for one in ranked}
+        differences = {law.form.equation: self.score - law.score for law in ranked}
         differences.pop(self.form.equation, None)  # the same law, fitted from another start
         return replace(self, rivals=(*self.rivals, *differences.items()))

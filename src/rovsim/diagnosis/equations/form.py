@@ -127,6 +127,6 @@ def split_law(h: Hypothesis) -> tuple[Hypothesis, Term | None]:
 
 def get_law(h: Hypothesis) -> Term:
     """The law of a hypothesis that must have one."""
-    found = split_law(h)[1]
-    assert found is not None
-    return found
+    law = split_law(h)[1]
+    assert law is not None
+    return law

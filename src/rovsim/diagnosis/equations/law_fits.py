@@ -65,8 +65,8 @@ class LawFits:
             score: to compare with.
         """
         start = form.follow(h)
-        fitted = self.selection.fit_unless_worse(start, current, score + self._extra_penalty(start))
-        return None if fitted is None else self._score_law(form, fitted)
+        fit = self.selection.fit_unless_worse(start, current, score + self._extra_penalty(start))
+        return None if fit is None else self._score_law(form, fit)
 
     def fit_each(
         self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit, score: float = -np.inf
@@ -75,12 +75,12 @@ class LawFits:
 
         Laws that stay far behind the others, or far below `score`, are left out.
         """
-        fitted: dict[Key, FittedLaw] = {}
+        fits: dict[Key, FittedLaw] = {}
         for key, (form, h) in laws.items():
-            best = max((score, *(one.score for one in fitted.values())))
-            judged = self.fit_unless_worse(form, h, current, best)
-            fitted |= {key: judged} if judged else {}
-        return dict(sorted(fitted.items(), key=lambda one: -one[1].score))
+            best_score = max((score, *(x.score for x in fits.values())))
+            law = self.fit_unless_worse(form, h, current, best_score)
+            fits |= {key: law} if law else {}
+        return dict(sorted(fits.items(), key=lambda x: -x[1].score))
 
     def _score_law(self, form: Form, fitted: Fit) -> FittedLaw:
         score = self.workspace.score(fitted) - self._extra_penalty(fitted.hypothesis)
@@ -111,10 +111,10 @@ class LawFits:
         behind the accepted effects, so that none could take their place.
         """
         selected = self.workspace.score(self.selection.best)
-        best, *others = self.fit_each(laws, beside, selected).values() or (None,)
-        if best is None or not self.is_worth(best, beside, self.workspace.score(beside)):
+        likeliest, *rivals = self.fit_each(laws, beside, selected).values() or (None,)
+        if likeliest is None or not self.is_worth(likeliest, beside, self.workspace.score(beside)):
             return None
-        return best.beats(others)
+        return likeliest.beats(rivals)
 
     def project(
         self, fit: Fit, candidates: Sequence[Any], middle: Array, wrenches: Wrenches = push

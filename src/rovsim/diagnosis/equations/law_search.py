@@ -42,13 +42,17 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     starts = [fit.hypothesis]
     if fit.hypothesis.terms:
         starts.append(replace(fit.hypothesis, terms=()))
-    each = [(start, select_terms(fits, start)) for start in starts]
-    laws = [own for _, own in each] + [_fit_thrust_law(fits, *one) for one in each]
+    by_start = [(start, select_terms(fits, start)) for start in starts]
+    laws = [body_law for _, body_law in by_start] + [
+        _fit_thrust_law(fits, *candidate) for candidate in by_start
+    ]
     laws += [law for start in starts for law in _fit_memory_laws(fits, start)]
     grown = [law for law in laws if law is not None]
-    if all(_is_surely_half(fits, one) for one in _keep_close(grown)):
+    if all(_is_surely_half(fits, candidate) for candidate in _keep_close(grown)):
         return None  # so nothing needs to be known of the effects that a law makes unnecessary
-    finished = sorted((_finish(fits, one) for one in grown), key=lambda one: -one.score)
+    finished = sorted(
+        (_finish(fits, candidate) for candidate in grown), key=lambda candidate: -candidate.score
+    )
     if not finished or finished[0].score <= selection.workspace.score(fit):
         return None
     return finished[0].beats(finished[1:])
@@ -67,11 +71,11 @@ def _fit_memory_laws(fits: LawFits, start: Hypothesis) -> Iterator[FittedLaw | N
     means = list_means(fits.runs, start.base.vehicle)
     for kind in (k for k in FORMS if k.effect.requires in means):
         beside = tuple(term for term in start.terms if term.id not in kind.imitates)
-        bare = fits.selection.fit(replace(start, terms=beside))
-        if not bare.is_finite:
+        without_law = fits.selection.fit(replace(start, terms=beside))
+        if not without_law.is_finite:
             continue
-        laws = [(form, bare.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
-        yield fits.find_likeliest(dict(enumerate(laws)), bare)
+        laws = [(form, without_law.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
+        yield fits.find_likeliest(dict(enumerate(laws)), without_law)
 
 
 def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
@@ -83,20 +87,20 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
         return None
     columns = fits.project(fit, terms, middle_of(fits.runs), push_thrust)
     explained = find_alone(columns.gram) - fits.penalty
-    least = max(fits.chance, 0.0 if grown is None else NEAR * (grown.score - score))
+    threshold = max(fits.chance, 0.0 if grown is None else NEAR * (grown.score - score))
     order = np.argsort(-explained, kind="stable")[:THRUST_LAWS_TRIED]
     laws = {
         int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))
         for k in order
-        if explained[k] > least
+        if explained[k] > threshold
     }
     return fits.find_likeliest(laws, fit)
 
 
 def _keep_close(grown: Sequence[FittedLaw]) -> list[FittedLaw]:
     """Laws that may be the likeliest once they are simplified."""
-    most = max((one.score for one in grown), default=0.0)
-    return [one for one in grown if one.score > most - HOPELESS_LR]
+    best_score = max((law.score for law in grown), default=0.0)
+    return [law for law in grown if law.score > best_score - HOPELESS_LR]
 
 
 def _is_surely_half(fits: LawFits, grown: FittedLaw) -> bool:
@@ -110,22 +114,22 @@ def _finish(fits: LawFits, grown: FittedLaw) -> FittedLaw:
     current = grown
     while True:
         h, form = current.fit.hypothesis, current.form
-        fewer = [(form, h.without(i)) for i in _list_idle(fits, current.fit)]
-        less = (*fewer, *form.simplify(h))
-        tried = [fits.fit_unless_worse(*one, current.fit, current.score) for one in less]
-        best = max(filter(None, tried), key=lambda one: one.score, default=None)
-        if best is None or best.score < current.score:
+        without_term = [(form, h.without(i)) for i in _list_idle(fits, current.fit)]
+        shorter = (*without_term, *form.simplify(h))
+        laws = [fits.fit_unless_worse(*x, current.fit, current.score) for x in shorter]
+        best_law = max(filter(None, laws), key=lambda x: x.score, default=None)
+        if best_law is None or best_law.score < current.score:
             return current
         # a law with a term less has no rivals yet: those of the longer law competed with that term
-        current = replace(best, rivals=current.rivals if best.form is form else ())
+        current = replace(best_law, rivals=current.rivals if best_law.form is form else ())
 
 
 def _list_idle(fits: LawFits, fit: Fit) -> list[int]:
     """Effects of the catalogue (by number) that may be unnecessary, judged to first order."""
     h, idle = fit.hypothesis, []
-    for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-        most = HOPELESS_LR + 2.0 * fits.workspace.penalty * len(own)
-        stays = own and term.vanishes and fit.distance(own) > most
-        if term.effect.listed and not stays:
+    for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
+        threshold = HOPELESS_LR + 2.0 * fits.workspace.penalty * len(columns)
+        significant = columns and term.vanishes and fit.distance(columns) > threshold
+        if term.effect.listed and not significant:
             idle.append(i)
     return idle

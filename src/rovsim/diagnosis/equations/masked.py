@@ -48,9 +48,9 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     order = np.argsort(-find_alone(columns.gram), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
     score = workspace.score(fit)
-    for judged in fit_products(fits, fit, (), kinds, columns).values():
-        if fits.is_worth(judged, fit, score):
-            return [replace(suspect, times_limit=(judged.score - score) / max(fits.chance, 1.0))]
+    for law in fit_products(fits, fit, (), kinds, columns).values():
+        if fits.is_worth(law, fit, score):
+            return [replace(suspect, times_limit=(law.score - score) / max(fits.chance, 1.0))]
     return []
 
 
@@ -61,15 +61,15 @@ def _find_suspect(selection: SearchResult) -> Structure | None:
     """
     bank = selection.workspace.bank
     tables = [tabulate(run) for run in bank.runs]
-    near = [
+    structures = [
         Structure(
             residual.axis,
-            one.name,
-            min(1.0, (one.size / residual.disturbance_std) ** 2),
-            one.statistic,
+            dependence.name,
+            min(1.0, (dependence.size / residual.disturbance_std) ** 2),
+            dependence.statistic,
         )
         for residual in split_by_axis(selection.best, bank)
-        for one in list_dependences(residual, tables)
-        if one.statistic > (FAINT if one.taken > RESEMBLES else SUSPECT)
+        for dependence in list_dependences(residual, tables)
+        if dependence.statistic > (FAINT if dependence.taken > RESEMBLES else SUSPECT)
     ]
-    return max(near, key=lambda one: one.times_limit, default=None)
+    return max(structures, key=lambda dependence: dependence.times_limit, default=None)

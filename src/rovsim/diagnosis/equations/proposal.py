@@ -115,21 +115,21 @@ def propose_law(
     """
     if not installed("equations"):
         return None
-    judged = search_laws(selection)
-    if judged is None or not _holds(judged, selection, best, holdout):
+    law = search_laws(selection)
+    if law is None or not _holds(law, selection, best, holdout):
         return None
-    fit, bank = polish(judged.fit)
+    fit, bank = polish(law.fit)
     if not fit.is_finite:
         return None
-    action = find_action(judged.form, fit, runs)
+    action = find_action(law.form, fit, runs)
     complete = not leaves_structure(action.axis, fit, bank)
-    bare = split_law(fit.hypothesis)[0].model
-    errors = score_windows([base, bare, fit.hypothesis.model], runs).normalised
-    start, before, after = (or_nan(e) for e in errors)
-    beside = (*camera, *(one for one in name_terms(fit, ()) if one.term.effect.listed))
-    share = (before - after) / start
+    without_law = split_law(fit.hypothesis)[0].model
+    errors = score_windows([base, without_law, fit.hypothesis.model], runs).normalised
+    error_base, error_without, error_with = (or_nan(e) for e in errors)
+    beside = (*camera, *(n for n in name_terms(fit, ()) if n.term.effect.listed))
+    share = (error_without - error_with) / error_base
     return ProposedLaw(
-        judged.form, fit, share, action.sizes, action.axis, judged.rivals, beside, complete
+        law.form, fit, share, action.sizes, action.axis, law.rivals, beside, complete
     )
 
 
@@ -137,8 +137,8 @@ def _holds(
     judged: FittedLaw, selection: SearchResult, best: Catalogued, holdout: HoldoutValidation
 ) -> bool:
     """Whether a law helps on blocks of time it was not fitted to, and in replays of all runs."""
-    rest: Hypothesis = split_law(judged.fit.hypothesis)[0]
-    if cross_validate(judged.fit, selection.fit(rest), selection.workspace.bank) <= 0.0:
+    without_law: Hypothesis = split_law(judged.fit.hypothesis)[0]
+    if cross_validate(judged.fit, selection.fit(without_law), selection.workspace.bank) <= 0.0:
         return False
     law = judged.fit.hypothesis.model
     return holdout.improves(law, best.on_all_runs, MIN_ERROR_REDUCTION) and holdout.keeps(

@@ -44,7 +44,9 @@ def find_spectrum(forces: Sequence[Array], period: float) -> Spectrum:
         period: between two samples of a wrench, s.
     """
     length = min(round(SEGMENT / period), max(len(f) for f in forces))
-    long = [f for f in forces if len(f) >= length]
-    found = [welch(f, 1.0 / period, nperseg=length, axis=0) for f in long]
-    density = np.average([power for _, power in found], axis=0, weights=[len(f) for f in long])
-    return Spectrum(found[0][0], density)
+    segments = [f for f in forces if len(f) >= length]
+    spectra = [welch(f, 1.0 / period, nperseg=length, axis=0) for f in segments]
+    density = np.average(
+        [power for _, power in spectra], axis=0, weights=[len(f) for f in segments]
+    )
+    return Spectrum(spectra[0][0], density)

@@ -68,7 +68,7 @@ class WithMemory(Form):
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """Write an effect with the fitted parameters, and the method of the law's effect class."""
         (base,) = self.effect.__bases__
-        method = next(one for one in vars(self.effect).values() if callable(one))
+        method = next(member for member in vars(self.effect).values() if callable(member))
         return write_effect(
             name,
             self,
@@ -83,8 +83,8 @@ class WithMemory(Form):
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
         """List the laws without one of the parameters in `names`, as long as another is left."""
         return [
-            (type(self)(_all_but(gone, self.names)), drop_number(h, gone))
-            for gone in (self.names if len(self.names) > 1 else ())
+            (type(self)(_all_but(name, self.names)), drop_number(h, name))
+            for name in (self.names if len(self.names) > 1 else ())
         ]
 
     def _symbol(self, name: str) -> str:
@@ -108,9 +108,9 @@ class Wake(WithMemory):
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
         """Start with a wake of all axes that move, from several time constants."""
         axes = tuple(moving)
-        some = {p.name: p.scale for p in WakeByAxis.parameters if p.name in axes}
+        scales = {p.name: p.scale for p in WakeByAxis.parameters if p.name in axes}
         return [
-            (cls(axes), Term(WakeByAxis(**some | start), (*axes, "time_constant")))
+            (cls(axes), Term(WakeByAxis(**scales | start), (*axes, "time_constant")))
             for start in WakeByAxis.starts
         ]
 
@@ -122,10 +122,10 @@ class Wake(WithMemory):
     @property
     def equation(self) -> str:
         """The law in LaTeX."""
-        each = [AXES.index(axis) for axis in self.names]
+        indices = [AXES.index(axis) for axis in self.names]
         pushes = [
             rf"{FORCE[i]} = -{self._symbol(AXES[i])}\,({VELOCITY[i]} - m_{VELOCITY[i]})"
-            for i in each
+            for i in indices
         ]
         return r",\quad ".join((*pushes, r"T \dot m = \nu_r - m"))
 
@@ -137,8 +137,8 @@ class Wake(WithMemory):
     def divide(self, law: Term) -> list[Effect]:
         """Return the wake of each axis by itself."""
         return [
-            law.effect.with_values(dict.fromkeys(_all_but(own, self.names), 0.0))
-            for own in self.names
+            law.effect.with_values(dict.fromkeys(_all_but(name, self.names), 0.0))
+            for name in self.names
         ]
 
     def _symbol(self, name: str) -> str:
@@ -184,9 +184,9 @@ class Play(WithMemory):
 
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
     """Return a hypothesis whose law has one parameter less: it is zero, and no longer free."""
-    rest, law = split_law(h)[0], get_law(h)
-    fewer = Term(law.effect.with_values({gone: 0.0}), _all_but(gone, law.free))
-    return replace(rest, terms=(*rest.terms, fewer))
+    without_law, law = split_law(h)[0], get_law(h)
+    reduced = Term(law.effect.with_values({gone: 0.0}), _all_but(gone, law.free))
+    return replace(without_law, terms=(*without_law.terms, reduced))
 
 
 def _all_but(gone: str, names: Sequence[str]) -> tuple[str, ...]:

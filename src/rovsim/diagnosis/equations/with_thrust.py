@@ -63,12 +63,12 @@ class ThrustTerm:
     @property
     def factors(self) -> tuple[Variable, ...]:
         """The factors of the term, without its coefficient."""
-        first, *others = (THRUST[j] for j in self.thrusts)
+        primary, *secondary = (THRUST[j] for j in self.thrusts)
         if self.unsigned:
-            code, latex = f"abs({first.code})", f"|{first.latex}|"
-            first = replace(first, code=code, latex=latex, odd=False)
+            code, latex = f"abs({primary.code})", f"|{primary.latex}|"
+            primary = replace(primary, code=code, latex=latex, odd=False)
         moving = [VARIABLES[self.factor]] if NONE < self.factor < OTHER else []
-        return (first, *others, *moving)
+        return (primary, *secondary, *moving)
 
     @property
     def odd(self) -> bool:
@@ -199,8 +199,8 @@ class WithThrust(Form):
     @property
     def parts(self) -> tuple[Part, ...]:
         """A single term."""
-        own = (VELOCITY[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
-        return (Part(AXES[self.term.on], ("thrust", *own)),)
+        velocity = (VELOCITY[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
+        return (Part(AXES[self.term.on], ("thrust", *velocity)),)
 
     @property
     def equation(self) -> str:
@@ -211,9 +211,9 @@ class WithThrust(Form):
     @property
     def meaning(self) -> str:
         """The law in a sentence."""
-        what = "moment" if self.term.on >= 3 else "force"
-        with_what = " and ".join(factor.meaning for factor in self.term.factors)
-        return f"A {AXES[self.term.on]} {what} that varies with {with_what}."
+        kind = "moment" if self.term.on >= 3 else "force"
+        factors = " and ".join(factor.meaning for factor in self.term.factors)
+        return f"A {AXES[self.term.on]} {kind} that varies with {factors}."
 
     @property
     def unit(self) -> str:

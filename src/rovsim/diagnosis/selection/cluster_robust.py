@@ -40,9 +40,9 @@ def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
         blocks = number_blocks(workspace.bank.runs, seconds)
         rows = workspace.bank.whiten(fit.linearised.rows, fit.noise)
         as_blocks_see = replace(fit, covariance=estimate_covariance(rows, blocks))
-        most = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
-        for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-            judged = term.vanishes and 0 < len(own) <= most
-            if judged and as_blocks_see.distance(own) < workspace.penalty * term.choices:
+        limit = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
+        for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
+            few_enough = term.vanishes and 0 < len(columns) <= limit
+            if few_enough and as_blocks_see.distance(columns) < workspace.penalty * term.choices:
                 unsure.add(i)
     return sorted(unsure)

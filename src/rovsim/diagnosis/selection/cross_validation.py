@@ -19,13 +19,13 @@ def drop_idle(selection: SearchResult) -> SearchResult:
     """Remove effects that do not help on held-out blocks, or that no user would notice."""
     workspace, fit = selection.workspace, selection.best
     while fit.hypothesis.terms:
-        fewer = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
-        smaller = [workspace.fit(one) for one in fewer]
-        noticed = workspace.find_relevant(fit, [one.model for one in fewer])
+        reduced = [fit.hypothesis.without(i) for i in range(len(fit.hypothesis.terms))]
+        fits = [workspace.fit(h) for h in reduced]
+        noticed = workspace.find_relevant(fit, [h.model for h in reduced])
         idle = [
-            one
-            for one, seen, rest in zip(fewer, noticed, smaller, strict=True)
-            if not seen or cross_validate(fit, rest, workspace.bank) <= 0.0
+            h
+            for h, relevant, smaller_fit in zip(reduced, noticed, fits, strict=True)
+            if not relevant or cross_validate(fit, smaller_fit, workspace.bank) <= 0.0
         ]
         if not idle:
             break
@@ -40,7 +40,7 @@ def cross_validate(fit: Fit, smaller: Fit, bank: FilterBank) -> float:
     to first order.
     """
     fold = number_blocks(bank.runs) % FOLDS
-    costs = [_sum_held_out(one, bank, fit.noise, fold) for one in (smaller, fit)]
+    costs = [_sum_held_out(f, bank, fit.noise, fold) for f in (smaller, fit)]
     return costs[0] - costs[1]
 
 

@@ -101,15 +101,15 @@ def absorb_delay(
         filter cannot.
     """
     fit, workspace = selection.best, selection.workspace
-    unlagged = _without_short_lag(fit.hypothesis, smoothing)
-    if unlagged:
-        again, finer = _absorb(selection, _with_delay(selection, unlagged), base, smoothing)
-        if again and workspace.score(again) > workspace.score(fit) - HOPELESS_LR:
-            return replace(selection, best=prune(workspace, again)), finer
+    without_lag = _without_short_lag(fit.hypothesis, smoothing)
+    if without_lag:
+        refit, finer = _absorb(selection, _with_delay(selection, without_lag), base, smoothing)
+        if refit and workspace.score(refit) > workspace.score(fit) - HOPELESS_LR:
+            return replace(selection, best=prune(workspace, refit)), finer
     if not has_delay(fit.hypothesis):
         fit = _with_delay(selection, fit.hypothesis)
-    again, finer = _absorb(selection, fit, base, smoothing)
-    return (replace(selection, best=prune(workspace, again)) if again else selection), finer
+    refit, finer = _absorb(selection, fit, base, smoothing)
+    return (replace(selection, best=prune(workspace, refit)) if refit else selection), finer
 
 
 def has_delay(h: Hypothesis) -> bool:
@@ -119,8 +119,8 @@ def has_delay(h: Hypothesis) -> bool:
 
 def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
     """Fit the hypothesis with an `input_delay` in place of any that it has."""
-    others = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
-    return selection.fit(others.with_term(Term(InputDelay(), ("delay",))))
+    without_delay = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
+    return selection.fit(without_delay.with_term(Term(InputDelay(), ("delay",))))
 
 
 def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None:
@@ -150,11 +150,11 @@ def _absorb(
     finer = _refine(smoothing, delay, std)
     if finer is None:
         return None, smoothing
-    rest = Hypothesis(with_camera_filter(base, finer), h.without(k).terms)
-    again = selection.workspace.fit(rest)
-    if not again.is_finite:  # undoing so slow a filter amplifies the noise without bound
+    hypothesis = Hypothesis(with_camera_filter(base, finer), h.without(k).terms)
+    refit = selection.workspace.fit(hypothesis)
+    if not refit.is_finite:  # undoing so slow a filter amplifies the noise without bound
         return None, smoothing
-    return again, finer
+    return refit, finer
 
 
 def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
@@ -167,12 +167,12 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
         delay: to be added, s.
         std: standard deviation of that delay, s.
     """
-    late = _delay(smoothing.cutoff) + smoothing.latency + delay
-    beyond = late - _delay(smoothing.noise_cutoff)
-    least, most = BETWEEN_FRAMES
-    if least * smoothing.frame < beyond < most * smoothing.frame:
-        return replace(smoothing, cutoff=smoothing.noise_cutoff, latency=beyond)
-    cutoff = 1.0 / (np.pi * late) if late > 0.0 else np.inf
+    total_delay = _delay(smoothing.cutoff) + smoothing.latency + delay
+    latency = total_delay - _delay(smoothing.noise_cutoff)
+    low, high = BETWEEN_FRAMES
+    if low * smoothing.frame < latency < high * smoothing.frame:
+        return replace(smoothing, cutoff=smoothing.noise_cutoff, latency=latency)
+    cutoff = 1.0 / (np.pi * total_delay) if total_delay > 0.0 else np.inf
     if not smoothing.lowest <= cutoff <= smoothing.highest:
         return None
     return replace(smoothing, cutoff=cutoff, std=np.pi * cutoff**2 * std, latency=0.0)

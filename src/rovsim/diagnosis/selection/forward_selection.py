@@ -47,29 +47,30 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         current: the fit so far.
         threshold: least gain of the score, see `SearchWorkspace.chance_limit`.
     """
-    left, file = list_promising(workspace, current), LooseFile(workspace)
+    proposals, file = list_promising(workspace, current), LooseFile(workspace)
     loose = has_loose_file(current.hypothesis)
     for _ in range(ROUNDS):
-        level = sum(p.net_decrease > NEARLY_BEST_SHARE * left[0].net_decrease for p in left)
-        trying = keep_close(left, max(workspace.settings.trials, level))
-        left = [p for p in left if p not in trying]
-        starts = (
-            place_thresholds(workspace, current.hypothesis.with_term(p.term), p.term)
-            for p in trying
+        level = sum(
+            p.net_decrease > NEARLY_BEST_SHARE * proposals[0].net_decrease for p in proposals
         )
-        tried = [(workspace.fit(start), p.term.id) for start, p in zip(starts, trying, strict=True)]
-        for best, name in sorted(tried, key=lambda one: workspace.score(one[0]), reverse=True):
-            if not _beats_chance(workspace, best, current, threshold):
+        batch = keep_close(proposals, max(workspace.settings.trials, level))
+        proposals = [p for p in proposals if p not in batch]
+        starts = (
+            place_thresholds(workspace, current.hypothesis.with_term(p.term), p.term) for p in batch
+        )
+        fits = [(workspace.fit(start), p.term.id) for start, p in zip(starts, batch, strict=True)]
+        for trial, name in sorted(fits, key=lambda pair: workspace.score(pair[0]), reverse=True):
+            if not _beats_chance(workspace, trial, current, threshold):
                 break
-            if loose and file.explains(best, name):
+            if loose and file.explains(trial, name):
                 continue
-            if workspace.find_relevant(best, [current.hypothesis.model])[0]:
-                return prune(workspace, best)
-    more = add_file_effects(workspace, current) if loose else current
-    if not _beats_chance(workspace, more, current, threshold):
+            if workspace.find_relevant(trial, [current.hypothesis.model])[0]:
+                return prune(workspace, trial)
+    with_file = add_file_effects(workspace, current) if loose else current
+    if not _beats_chance(workspace, with_file, current, threshold):
         return None
-    noticed = workspace.find_relevant(more, [current.hypothesis.model])[0]
-    return prune(workspace, more) if noticed else None
+    relevant = workspace.find_relevant(with_file, [current.hypothesis.model])[0]
+    return prune(workspace, with_file) if relevant else None
 
 
 def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: float) -> bool:
@@ -94,22 +95,25 @@ def try_swaps(
         The likeliest fit, and the effects that could stand in the place of each of its terms.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
-    rests = workspace.remove_each(current)
-    for term, rest in zip(current.hypothesis.terms, rests, strict=True):
-        for p in find_swaps(workspace, term, rest, trials):
+    removals = workspace.remove_each(current)
+    for term, removed in zip(current.hypothesis.terms, removals, strict=True):
+        for p in find_swaps(workspace, term, removed, trials):
             trial = None
-            worse = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
-            if worse < 0.0 or measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
-                start, worse = rest.hypothesis.with_term(p.term), HOPELESS_LR
+            deficit = removed.ss_increase - workspace.penalty * term.choices - p.net_decrease
+            if (
+                deficit < 0.0
+                or measure_explained(workspace, p) > PROMISING_SHARE * removed.ss_increase
+            ):
+                start, deficit = removed.hypothesis.with_term(p.term), HOPELESS_LR
                 start = place_thresholds(workspace, start, p.term)
                 trial = workspace.fit_unless_worse(start, current, workspace.score(current))
             if trial is not None:
-                worse = workspace.score(current) - workspace.score(trial)
-                if worse < -swap and not (loose and file.explains(trial, p.term.id)):
+                deficit = workspace.score(current) - workspace.score(trial)
+                if deficit < -swap and not (loose and file.explains(trial, p.term.id)):
                     return try_swaps(workspace, prune(workspace, trial), trials, swap)
-                weight = file.weigh(Contender(current, term), Contender(trial, p.term), worse)
-                worse = max(0.0, weight)  # likelier, but not beside a loose file: undecided
-            rivals.append(Rival(p.term.id, term.id, worse, trial))
+                weight = file.weigh(Contender(current, term), Contender(trial, p.term), deficit)
+                deficit = max(0.0, weight)  # likelier, but not beside a loose file: undecided
+            rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals
 
 
@@ -139,9 +143,9 @@ def _fit_if_likelier(workspace: SearchWorkspace, start: Hypothesis, current: Fit
 def move_thresholds(workspace: SearchWorkspace, current: Fit) -> Fit:
     """Place each threshold anew beside the effects accepted since, where that is likelier."""
     for term in current.hypothesis.terms:
-        moved = place_thresholds(workspace, current.hypothesis, term)
-        if moved is not current.hypothesis:
-            current = _fit_if_likelier(workspace, moved, current) or current
+        h = place_thresholds(workspace, current.hypothesis, term)
+        if h is not current.hypothesis:
+            current = _fit_if_likelier(workspace, h, current) or current
     return current
 
 
@@ -156,8 +160,8 @@ def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
         shape = tuple(p.name for p in term.effect.parameters if p.shape and p.name not in term.free)
         if shape:
             trial = workspace.fit(h.replaced(i, replace(term, free=(*term.free, *shape))))
-            own = trial.hypothesis.columns[i][-len(shape) :]
-            determined = trial.is_finite and (trial.std[own] < DETERMINED).all()
+            columns = trial.hypothesis.columns[i][-len(shape) :]
+            determined = trial.is_finite and (trial.std[columns] < DETERMINED).all()
             if determined and workspace.score(trial) > workspace.score(current) - MIN_LR_OF_SWAP:
                 return free_shape(workspace, prune(workspace, trial))
     return current
@@ -180,10 +184,10 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace = workspace.relinearise_if_changed(current)
     current, _ = try_swaps(workspace, current, 1)
     current = change_mode(workspace, current)
-    judged = judge_beside_file(workspace, prefer_file(workspace, current))
-    current = free_shape(workspace, fix_gain(workspace, judged.fit))
+    verdict = judge_beside_file(workspace, prefer_file(workspace, current))
+    current = free_shape(workspace, fix_gain(workspace, verdict.fit))
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
-    return SearchResult(workspace, current, keep_likeliest([*rivals, *judged.rivals]))
+    return SearchResult(workspace, current, keep_likeliest([*rivals, *verdict.rivals]))
 
 
 def _add_and_swap(
@@ -191,15 +195,15 @@ def _add_and_swap(
 ) -> tuple[SearchWorkspace, Fit]:
     """Add effects, and swap after each addition, until no addition beats chance."""
     while len(current.hypothesis.terms) < workspace.settings.most_effects:
-        more = add_best(workspace, current, workspace.chance_limit(current, seed))
-        if more is None:
+        extended = add_best(workspace, current, workspace.chance_limit(current, seed))
+        if extended is None:
             break
-        gained = workspace.score(more) - workspace.score(current)
-        workspace = workspace.update_after(more)
-        workspace, again = prefer_steady(workspace, workspace.fit(more.hypothesis))
-        again = free_shape(workspace, move_thresholds(workspace, again))
-        swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gained)
-        current, _ = try_swaps(workspace, again, 1, swap)  # the likeliest other name
+        gain = workspace.score(extended) - workspace.score(current)
+        workspace = workspace.update_after(extended)
+        workspace, polished = prefer_steady(workspace, workspace.fit(extended.hypothesis))
+        polished = free_shape(workspace, move_thresholds(workspace, polished))
+        swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain)
+        current, _ = try_swaps(workspace, polished, 1, swap)  # the likeliest other name
     return workspace, current
 
 

@@ -50,16 +50,16 @@ def keep_apart(runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], list[Obs
 
     The last fifth of each run is held out, unless the run is shorter than a minute.
     """
-    chosen, holdout = [], []
+    training, holdout = [], []
     for run in runs:
         time = run.motion.time
         end = time[0] + (1.0 - HOLDOUT_SHARE) * (time[-1] - time[0])
         if time[-1] - time[0] < MIN_RUN_SECONDS - 1.0:
-            chosen.append(run)
+            training.append(run)
             continue
-        chosen.append(run.limited(time <= end))
+        training.append(run.limited(time <= end))
         holdout.append(run.limited(time > end))
-    return chosen, [run for run in holdout if Windows(run).spans]
+    return training, [run for run in holdout if Windows(run).spans]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,10 +91,10 @@ class HoldoutValidation:
         fit = selection.best
         while self.runs and fit.hypothesis.terms:
             weakest = self._find_harmful(selection, fit)
-            fewer = selection.fit(weakest) if weakest else None
-            if fewer is None or not fewer.is_finite:
+            reduced = selection.fit(weakest) if weakest else None
+            if reduced is None or not reduced.is_finite:
                 break
-            fit = fewer
+            fit = reduced
         if self.refuses(fit.hypothesis.model, fit.hypothesis.base):
             base = replace(fit.hypothesis, terms=())
             fit = selection.fit(base)
@@ -109,8 +109,8 @@ class HoldoutValidation:
 
     def improves(self, more: Model, less: Model, share: float) -> bool:
         """Whether the error of `more` on all runs is less than that of `less` by that share."""
-        one, other = replace(self, runs=self.whole_runs)._errors([more, less])
-        return ratio(one, other) < 1.0 - share
+        e_more, e_less = replace(self, runs=self.whole_runs)._errors([more, less])
+        return ratio(e_more, e_less) < 1.0 - share
 
     def keeps(self, more: Model, less: Model) -> bool:
         """Whether `more` errs no more than `less` on the held-out stretches.
@@ -120,8 +120,8 @@ class HoldoutValidation:
         """
         if not self.runs:
             return True
-        one, other = self._errors([more, less])
-        return ratio(one, other) <= 1.0
+        e_more, e_less = self._errors([more, less])
+        return ratio(e_more, e_less) <= 1.0
 
     def prefers(self, one: Model, other: Model) -> bool | None:
         """Whether the first model surely replays better, or the second; None where neither does."""
@@ -153,33 +153,33 @@ class HoldoutValidation:
         Any other effect may merely stand in for part of that physics. The file effects are first
         judged together, then each by itself.
         """
-        for split, least in ((_group, WORSE_SHARE), (_list_file_effects, SLIGHT_SHARE)):
-            selection = self._drop_idle(selection, split, least)
+        for split, margin in ((_group, WORSE_SHARE), (_list_file_effects, SLIGHT_SHARE)):
+            selection = self._drop_idle(selection, split, margin)
         return selection
 
     def _drop_idle(self, selection: SearchResult, split: Split, least: float) -> SearchResult:
         """Remove groups of terms one by one, unless the error is surely larger by that share."""
-        kept = selection.best
-        while self.runs and (groups := split(kept.hypothesis)):
-            fewer, errors = self._do_without(selection, kept, groups)
+        best = selection.best
+        while self.runs and (groups := split(best.hypothesis)):
+            reduced, errors = self._do_without(selection, best, groups)
             idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
             if not idle:
                 break
             idle.sort(key=lambda k: ratio(errors[1 + k], errors[0]))
-            left = (selection.fit(fewer[k]) for k in idle)
-            without = next((fit for fit in left if fit.is_finite), None)
-            if without is None:
+            refits = (selection.fit(reduced[k]) for k in idle)
+            refit = next((fit for fit in refits if fit.is_finite), None)
+            if refit is None:
                 break
-            kept = without
-        return replace(selection, best=kept)
+            best = refit
+        return replace(selection, best=best)
 
     def _find_harmful(self, selection: SearchResult, fit: Fit) -> Hypothesis | None:
         """The hypothesis without the most harmful effect; None where no effect surely does harm."""
-        fewer, errors = self._do_without(selection, fit, [(t,) for t in fit.hypothesis.terms])
-        tried = len(errors) - 1
-        improvements = [find_sure_improvement(errors[0], one, tried) for one in errors[1:]]
-        best = int(np.argmax(improvements))
-        return fewer[best] if improvements[best] > 0.0 else None
+        reduced, errors = self._do_without(selection, fit, [(t,) for t in fit.hypothesis.terms])
+        count = len(errors) - 1
+        improvements = [find_sure_improvement(errors[0], e, count) for e in errors[1:]]
+        k_best = int(np.argmax(improvements))
+        return reduced[k_best] if improvements[k_best] > 0.0 else None
 
     def _do_without(
         self, selection: SearchResult, fit: Fit, groups: Sequence[Sequence[Term]]
@@ -192,12 +192,12 @@ class HoldoutValidation:
             The hypotheses without each group, and the errors (1 + g, w) in each of w windows, of
             which the first row is that of the fit itself.
         """
-        h, fewer = fit.hypothesis, selection.workspace.drop(fit, groups)
-        errors = self._errors([h.model, *(one.model for one in fewer)])
-        for k, one in enumerate(fewer):
+        h, reduced = fit.hypothesis, selection.workspace.drop(fit, groups)
+        errors = self._errors([h.model, *(trial.model for trial in reduced)])
+        for k, trial in enumerate(reduced):
             if ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:
-                fewer[k] = selection.fit(one).hypothesis
-        return fewer, self._errors([h.model, *(one.model for one in fewer)])
+                reduced[k] = selection.fit(trial).hypothesis
+        return reduced, self._errors([h.model, *(trial.model for trial in reduced)])
 
     def _errors(self, models: Sequence[Model]) -> Array:
         """Mean squared velocity error (m, w) of m models in each of w windows.

@@ -40,27 +40,29 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         moved: axes that were measured and moved.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
-    tried = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
-    tried.sort(key=lambda one: one[0].score(one[1]), reverse=True)
-    best, best_fit = tried[0]
-    best_fit = prune_together(best, best_fit)
-    named = {term.id for term in best_fit.hypothesis.terms}
+    results = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
+    results.sort(key=lambda pair: pair[0].score(pair[1]), reverse=True)
+    best_workspace, best_fit = results[0]
+    best_fit = prune_together(best_workspace, best_fit)
+    names = {term.id for term in best_fit.hypothesis.terms}
     rivals = tuple(
-        Rival(term.id, own.id, best.score(best_fit) - other.score(fit), fit)
-        for other, fit in tried[1:]
-        for own in best_fit.hypothesis.terms
+        Rival(
+            term.id, best_term.id, best_workspace.score(best_fit) - other_workspace.score(fit), fit
+        )
+        for other_workspace, fit in results[1:]
+        for best_term in best_fit.hypothesis.terms
         for term in fit.hypothesis.terms
-        if own.id in ACTUATION and term.id in ACTUATION and term.id not in named
+        if best_term.id in ACTUATION and term.id in ACTUATION and term.id not in names
     )
-    return SearchResult(best, best_fit, rivals, REACH)
+    return SearchResult(best_workspace, best_fit, rivals, REACH)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
-    common = free_terms(base, moved, ALWAYS)
-    starts = [(*common, *free_terms(base, moved, [ThrusterGain]))]
+    common_terms = free_terms(base, moved, ALWAYS)
+    starts = [(*common_terms, *free_terms(base, moved, [ThrusterGain]))]
     if kind == "demand":
         loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
-        starts.append((*common, loops))
+        starts.append((*common_terms, loops))
     return [Hypothesis(base, terms) for terms in starts]
 
 
@@ -82,28 +84,28 @@ def prune_together(workspace: SearchWorkspace, fit: Fit) -> Fit:
     """
     while True:
         weak = _find_weak(fit, workspace.penalty)
-        for fewer in (weak, weak & mark_gain(fit.hypothesis)):
-            smaller = _do_without(workspace, fit, fewer)
-            if smaller is not None:
+        for mask in (weak, weak & mark_gain(fit.hypothesis)):
+            pruned = _do_without(workspace, fit, mask)
+            if pruned is not None:
                 break
         else:
             return fit
-        fit = smaller
+        fit = pruned
 
 
 def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None:
     """The fit without the free parameters of a mask (k,); None where they are needed."""
     if not weak.any():
         return None
-    smaller = workspace.fit(drop_parameters(fit.hypothesis, weak), REACH)
-    return smaller if workspace.score(smaller) >= workspace.score(fit) else None
+    pruned = workspace.fit(drop_parameters(fit.hypothesis, weak), REACH)
+    return pruned if workspace.score(pruned) >= workspace.score(fit) else None
 
 
 def _find_weak(fit: Fit, penalty: float) -> Array:
     """Mask (k,) of free parameters that are not worth their penalty; of a loop all or none."""
     h = fit.hypothesis
     weak = fit.z_scores**2 < penalty
-    for term, own in zip(h.terms, h.columns, strict=True):
+    for term, columns in zip(h.terms, h.columns, strict=True):
         if not term.vanishes:
-            weak[own] = weak[own].all()
+            weak[columns] = weak[columns].all()
     return np.asarray(weak & ~h.shapes)

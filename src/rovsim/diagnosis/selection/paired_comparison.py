@@ -26,9 +26,9 @@ def find_less_lost(one: Array, other: Array) -> bool | None:
 
     Such windows make the mean error large, while nothing is sure by their spread.
     """
-    stays, other_stays = (bool(np.isfinite(error).all()) for error in (one, other))
-    if not (stays and other_stays):
-        return stays if stays != other_stays else None
+    finite, other_finite = (bool(np.isfinite(error).all()) for error in (one, other))
+    if not (finite and other_finite):
+        return finite if finite != other_finite else None
     if surely_costs(other, one, WORSE_SHARE):
         return True
     return False if surely_costs(one, other, WORSE_SHARE) else None
@@ -55,8 +55,8 @@ def surely_costs(error: Array, usual: Array, least: float) -> bool:
     An error that is more than twice as large always counts. It may come from a few windows in which
     a model fails; these make the mean large, while nothing is sure by their spread.
     """
-    more = ratio(error, usual) - 1.0
-    return more > LOST_SHARE or (more > least and _is_surely_less(usual, error))
+    increase = ratio(error, usual) - 1.0
+    return increase > LOST_SHARE or (increase > least and _is_surely_less(usual, error))
 
 
 def ratio(error: Array, other: Array) -> float:
@@ -67,8 +67,8 @@ def ratio(error: Array, other: Array) -> float:
 
 def _is_surely_less(one: Array, other: Array, certain: float = CERTAIN_STANDARD_ERRORS) -> bool:
     """Whether an error (w,) is less than another by `certain` standard errors of the difference."""
-    less = other - one
-    return bool(np.mean(less) > certain * np.std(less) / np.sqrt(len(less)))
+    difference = other - one
+    return bool(np.mean(difference) > certain * np.std(difference) / np.sqrt(len(difference)))
 
 
 def _find_limit(windows: int, tried: int) -> float:

@@ -45,11 +45,15 @@ def find_swaps(
         rest: the hypothesis without it.
         trials: how many effects are wanted, at least.
     """
-    others = [p for p in rest.others if p.term.id != term.id]
-    trials = max(trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in others))
-    worth = keep_close([p for p in others if p.net_decrease > 0.0], trials)
-    least = PROMISING_SHARE * rest.ss_increase
-    return worth or [p for p in others[:trials] if measure_explained(workspace, p) > least]
+    proposals = [p for p in rest.others if p.term.id != term.id]
+    trials = max(
+        trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in proposals)
+    )
+    promising = keep_close([p for p in proposals if p.net_decrease > 0.0], trials)
+    threshold = PROMISING_SHARE * rest.ss_increase
+    return promising or [
+        p for p in proposals[:trials] if measure_explained(workspace, p) > threshold
+    ]
 
 
 def measure_explained(workspace: SearchWorkspace, proposal: Proposal) -> float:

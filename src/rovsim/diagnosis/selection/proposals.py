@@ -35,36 +35,36 @@ def rank_proposals(G: Array, blocks: Sequence[CandidateColumns], penalty: float)
         blocks: which columns belong to which candidate.
         penalty: of each parameter.
     """
-    best: dict[str, Proposal] = {}
+    by_id: dict[str, Proposal] = {}
     for block in blocks:
         reduction = _predict_reduction(G, block, penalty)
         term = _step(block.candidate, reduction)
-        worth = reduction.ss_decrease - penalty * term.choices
-        known = best.get(term.id)
-        if known is None or worth > known.net_decrease:
-            best[term.id] = Proposal(term, worth)
-    return sorted(best.values(), key=lambda one: -one.net_decrease)
+        net_decrease = reduction.ss_decrease - penalty * term.choices
+        previous = by_id.get(term.id)
+        if previous is None or net_decrease > previous.net_decrease:
+            by_id[term.id] = Proposal(term, net_decrease)
+    return sorted(by_id.values(), key=lambda p: -p.net_decrease)
 
 
 def _step(candidate: Candidate, reduction: Reduction) -> Term:
     """The term after a first-order step of the chosen parameters; thresholds do not move."""
-    moved = dict(zip((candidate.sloped[j] for j in reduction.chosen), reduction.x, strict=True))
-    kept = [p.name for p in candidate.thresholds]
-    term = candidate.term([name for name in candidate.free if name in moved or name in kept])
-    return term.at(term.x + [moved.get(name, 0.0) for name in term.free])
+    steps = dict(zip((candidate.sloped[j] for j in reduction.chosen), reduction.x, strict=True))
+    thresholds = [p.name for p in candidate.thresholds]
+    term = candidate.term([name for name in candidate.free if name in steps or name in thresholds])
+    return term.at(term.x + [steps.get(name, 0.0) for name in term.free])
 
 
 def _predict_reduction(G: Array, block: CandidateColumns, penalty: float) -> Reduction:
-    own = [1 + j for j in block.derivatives]
-    if block.secant is not None and not own:
+    index = [1 + j for j in block.derivatives]
+    if block.secant is not None and not index:
         s = 1 + block.secant
         return Reduction(float(-2.0 * G[0, s] - G[s, s]), (), np.empty(0))
-    H, b = G[np.ix_(own, own)], G[own, 0]
+    H, b = G[np.ix_(index, index)], G[index, 0]
     if block.secant is None:
         return select_columns(H, b, penalty)
     s = 1 + block.secant
     low, high = block.candidate.term(block.candidate.sloped).reach(TRUSTED)
-    return solve_bounded(H, b + G[own, s], 2.0 * G[0, s] + G[s, s], low, high)
+    return solve_bounded(H, b + G[index, s], 2.0 * G[0, s] + G[s, s], low, high)
 
 
 def draw_chance_decreases(
@@ -83,25 +83,25 @@ def draw_chance_decreases(
     values, vectors = np.linalg.eigh(G / np.outer(scale, scale))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     z = np.random.default_rng(seed).normal(size=(draws, len(G))) @ root.T * scale
-    best = np.full(draws, -np.inf)
+    largest = np.full(draws, -np.inf)
     for block in blocks:
-        best = np.maximum(best, _chance_decreases(G, z, block, penalty))
-    return best
+        largest = np.maximum(largest, _chance_decreases(G, z, block, penalty))
+    return largest
 
 
 def _chance_decreases(G: Array, z: Array, block: CandidateColumns, penalty: float) -> Array:
     """Net decrease (draws,) by one candidate; z (draws, c) are products of noise and columns."""
-    own, s = list(block.derivatives), block.secant
+    columns, s = list(block.derivatives), block.secant
     if s is None:  # the best of its columns alone
         return (
-            np.max((z[:, own] / np.sqrt(np.maximum(np.diag(G), 1e-300))[own]) ** 2, axis=1)
+            np.max((z[:, columns] / np.sqrt(np.maximum(np.diag(G), 1e-300))[columns]) ** 2, axis=1)
             - penalty
         )
-    if not own:
+    if not columns:
         return -2.0 * z[:, s] - G[s, s] - penalty
-    b = z[:, own] + G[own, s]
-    x = np.linalg.lstsq(G[np.ix_(own, own)], b.T, rcond=1e-9)[0]
-    return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - G[s, s] - penalty * len(own)
+    b = z[:, columns] + G[columns, s]
+    x = np.linalg.lstsq(G[np.ix_(columns, columns)], b.T, rcond=1e-9)[0]
+    return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - G[s, s] - penalty * len(columns)
 
 
 def _sizes(G: Array) -> Array:

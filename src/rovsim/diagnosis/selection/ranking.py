@@ -70,17 +70,19 @@ def rank_selected(
         named: the effects.
         runs: on which the error is measured, in windows of 2 s.
     """
-    left, selected, model = list(named), [], base
-    start = now = _score([base], runs)[0]
-    while left:
-        tried = [model + one.term.effect for one in left]
-        after = _score(tried, runs)
-        best = int(np.argmin(np.nan_to_num(after, nan=np.inf)))
-        own = left.pop(best)
+    remaining, selected, model = list(named), [], base
+    base_error = error = _score([base], runs)[0]
+    while remaining:
+        models = [model + n.term.effect for n in remaining]
+        errors = _score(models, runs)
+        k_best = int(np.argmin(np.nan_to_num(errors, nan=np.inf)))
+        best = remaining.pop(k_best)
         selected.append(
-            Selected(own.term, own.std, own.probability, float((now - after[best]) / start))
+            Selected(
+                best.term, best.std, best.probability, float((error - errors[k_best]) / base_error)
+            )
         )
-        model, now = tried[best], after[best]
+        model, error = models[k_best], errors[k_best]
     return selected
 
 
@@ -108,7 +110,7 @@ def doubt_lead(named: Sequence[Named]) -> list[Named]:
 
     Their filter may use later frames as well, and such a filter was not among the rivals.
     """
-    return [replace(one, probability=None) if leads(one) else one for one in named]
+    return [replace(n, probability=None) if leads(n) else n for n in named]
 
 
 def find_stand_ins(named: Sequence[Named], beside: Sequence[Named]) -> set[str]:
@@ -118,11 +120,9 @@ def find_stand_ins(named: Sequence[Named], beside: Sequence[Named]) -> set[str]:
         named: the accepted effects, fitted without the law.
         beside: the effects that are fitted together with the law.
     """
-    acting = {one.term.id: one.term for one in beside}
+    acting = {n.term.id: n.term for n in beside}
     return {
-        one.term.id
-        for one in named
-        if one.term.id not in acting or _differs(one.term, acting[one.term.id])
+        n.term.id for n in named if n.term.id not in acting or _differs(n.term, acting[n.term.id])
     }
 
 
@@ -131,16 +131,16 @@ def _differs(own: Term, other: Term) -> bool:
     if not (own.free and own.vanishes):
         return False
     names = [p for p in own.effect.parameters if p.name in own.free]
-    usual, values, others = (
+    neutral, values, others = (
         np.array([effect[p.name] / p.scale for p in names])
         for effect in (own.effect.neutral(), own.effect, other.effect)
     )
-    return bool(np.linalg.norm(others - values) > CHANGED_SHARE * np.linalg.norm(values - usual))
+    return bool(np.linalg.norm(others - values) > CHANGED_SHARE * np.linalg.norm(values - neutral))
 
 
 def doubt_names(named: Sequence[Named], doubted: Collection[str]) -> list[Named]:
     """The same, without a probability for the effects that are doubted."""
-    return [replace(one, probability=None) if one.term.id in doubted else one for one in named]
+    return [replace(n, probability=None) if n.term.id in doubted else n for n in named]
 
 
 def doubt_small(selected: Sequence[Selected], fraction: float | None) -> list[Selected]:
@@ -153,10 +153,8 @@ def doubt_small(selected: Sequence[Selected], fraction: float | None) -> list[Se
         selected: the accepted effects.
         fraction: share of the remaining disturbance's power that follows the largest structure.
     """
-    left = bound_unexplained(fraction, [one.error_reduction for one in selected])
-    return [
-        replace(one, probability=None) if one.error_reduction < left else one for one in selected
-    ]
+    bound = bound_unexplained(fraction, [s.error_reduction for s in selected])
+    return [replace(s, probability=None) if s.error_reduction < bound else s for s in selected]
 
 
 def name_drift(drift: DriftFit, leaves_physics: bool) -> Named:
@@ -188,8 +186,8 @@ def find_std(fit: Fit, i: int) -> dict[str, float]:
 def _share_of_odds(fit: Fit, i: int, rivals: Sequence[Rival]) -> float | None:
     """Probability of the i-th effect among all that were tried in its place; None if none was."""
     name = fit.hypothesis.terms[i].id
-    tried = [-r.deviance_difference for r in rivals if r.instead_of == name]
-    return float(share_odds([0.0, *tried])[0]) if tried else None
+    log_odds = [-r.deviance_difference for r in rivals if r.instead_of == name]
+    return float(share_odds([0.0, *log_odds])[0]) if log_odds else None
 
 
 def rank_alone(workspace: SearchWorkspace, base_fit: Fit, fit: Fit) -> list[Ranked]:
@@ -203,19 +201,19 @@ def rank_alone(workspace: SearchWorkspace, base_fit: Fit, fit: Fit) -> list[Rank
         base_fit: the base without any effect.
         fit: of the base with all accepted effects.
     """
-    named, alone = {term.id for term in fit.hypothesis.terms}, workspace.propose(base_fit)
-    starts = [(p, base_fit.hypothesis.with_term(p.term)) for p in alone]
-    fits = [workspace.fit(h) for p, h in starts if p.term.id in named or workspace.has_fitted(h)]
+    ids, proposals = ({term.id for term in fit.hypothesis.terms}, workspace.propose(base_fit))
+    starts = [(p, base_fit.hypothesis.with_term(p.term)) for p in proposals]
+    fits = [workspace.fit(h) for p, h in starts if p.term.id in ids or workspace.has_fitted(h)]
     fits.sort(key=workspace.score, reverse=True)
-    terms = [one.hypothesis.terms[0] for one in fits]
-    terms += [p.term for p in alone if p.term.id not in {term.id for term in terms}]
-    likelier = [workspace.score(one) - workspace.score(base_fit) for one in fits]
-    _, *share = share_odds([0.0, *likelier])
+    terms = [f.hypothesis.terms[0] for f in fits]
+    terms += [p.term for p in proposals if p.term.id not in {term.id for term in terms}]
+    gains = [workspace.score(f) - workspace.score(base_fit) for f in fits]
+    _, *share = share_odds([0.0, *gains])
     base = base_fit.hypothesis.base
     models = [base, *(base + term.effect for term in terms)]
     error = _score(models, workspace.bank.runs)
-    sure = [*share, *np.zeros(len(terms) - len(fits))]
+    probabilities = [*share, *np.zeros(len(terms) - len(fits))]
     return [
         Ranked(term, float(max(0.0, 1.0 - e / error[0])), float(p))
-        for term, e, p in zip(terms, error[1:], sure, strict=True)
+        for term, e, p in zip(terms, error[1:], probabilities, strict=True)
     ]

@@ -35,12 +35,12 @@ class Rival:
 
 def keep_likeliest(rivals: Iterable[Rival]) -> tuple[Rival, ...]:
     """Of rivals with the same effect in the same place, keep the likeliest."""
-    best: dict[tuple[str, str], Rival] = {}
-    for one in rivals:
-        known = best.setdefault((one.instead_of, one.effect), one)
-        if one.deviance_difference < known.deviance_difference:
-            best[one.instead_of, one.effect] = one
-    return tuple(best.values())
+    by_pair: dict[tuple[str, str], Rival] = {}
+    for rival in rivals:
+        previous = by_pair.setdefault((rival.instead_of, rival.effect), rival)
+        if rival.deviance_difference < previous.deviance_difference:
+            by_pair[rival.instead_of, rival.effect] = rival
+    return tuple(by_pair.values())
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,5 +82,5 @@ class SearchResult:
     @property
     def named_rivals(self) -> list[Rival]:
         """The rivals of effects that are still in the model."""
-        named = {term.id for term in self.best.hypothesis.terms}
-        return [rival for rival in self.rivals if rival.instead_of in named]
+        ids = {term.id for term in self.best.hypothesis.terms}
+        return [rival for rival in self.rivals if rival.instead_of in ids]

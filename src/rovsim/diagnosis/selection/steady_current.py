@@ -22,11 +22,11 @@ def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorks
     h = current.hypothesis
     if not workspace.noise.drift or Current.id in (term.id for term in h.terms):
         return workspace, current
-    calm = workspace.with_noise(h, replace(workspace.noise, drift=None))
-    steady = calm.fit(h.with_term(Term(Current(), Current.telling)))
-    if not calm.score(steady) > workspace.score(current):
+    without_drift = workspace.with_noise(h, replace(workspace.noise, drift=None))
+    steady_fit = without_drift.fit(h.with_term(Term(Current(), Current.telling)))
+    if not without_drift.score(steady_fit) > workspace.score(current):
         return workspace, current
-    fresh = calm.update_after(steady)
-    if fresh.noise.drift:
+    updated = without_drift.update_after(steady_fit)
+    if updated.noise.drift:
         return workspace, current
-    return fresh, prune(fresh, fresh.fit(steady.hypothesis))
+    return updated, prune(updated, updated.fit(steady_fit.hypothesis))

@@ -18,28 +18,28 @@ def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> H
 
     The values of a grid are tried, then values about the best one. All other parameters stay.
     """
-    each = zip(h.terms, h.columns, strict=True)
-    own = [
+    pairs = zip(h.terms, h.columns, strict=True)
+    parameters = [
         (p, k)
-        for one, at in each
-        if one.id == term.id
-        for p, k in zip(one.parameters, at, strict=True)
+        for t, columns in pairs
+        if t.id == term.id
+        for p, k in zip(t.parameters, columns, strict=True)
     ]
-    for parameter, column in own:
+    for parameter, column in parameters:
         if parameter.tried:
             h = _choose(workspace, h, column, np.array(parameter.tried) / parameter.scale)
-            about = ABOUT * parameter.resolution / parameter.scale
-            h = _choose(workspace, h, column, h.x[column] + about)
+            nearby = ABOUT * parameter.resolution / parameter.scale
+            h = _choose(workspace, h, column, h.x[column] + nearby)
     return h
 
 
 def _choose(workspace: SearchWorkspace, h: Hypothesis, column: int, values: Array) -> Hypothesis:
     """The hypothesis with the best of some scaled values of one parameter, its own among them."""
-    tried = [h]
+    trials = [h]
     for value in values:
         x = h.x
         x[column] = value
-        tried.append(h.at(x))
-    e = workspace.bank.evaluate([one.model for one in tried])
+        trials.append(h.at(x))
+    e = workspace.bank.evaluate([t.model for t in trials])
     squares = np.sum(workspace.bank.whiten(e, workspace.noise) ** 2, axis=(1, 2))
-    return tried[int(np.argmin(np.nan_to_num(squares, nan=np.inf)))]
+    return trials[int(np.argmin(np.nan_to_num(squares, nan=np.inf)))]

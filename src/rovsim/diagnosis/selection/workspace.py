@@ -85,12 +85,14 @@ class SearchWorkspace:
         Making the columns takes longest. They are only made anew when the number of accepted
         effects has doubled since. The workspace stays as it is where the model would diverge.
         """
-        at, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
-        fresh = self.relinearise_if_changed(current) if len(at.terms) >= 2 * len(beside) else self
-        known = fresh.columns.beside(at)
-        if not known.finite:
+        h, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
+        workspace = (
+            self.relinearise_if_changed(current) if len(h.terms) >= 2 * len(beside) else self
+        )
+        sensitivities = workspace.columns.beside(h)
+        if not sensitivities.finite:
             return self
-        return fresh.with_noise(at, fit_remaining_noise(known, at, self.noise, rounds=1))
+        return workspace.with_noise(h, fit_remaining_noise(sensitivities, h, self.noise, rounds=1))
 
     def relinearise_if_changed(self, current: Fit) -> "SearchWorkspace":
         """A workspace whose candidates are linearised with the accepted effects in place.
@@ -116,9 +118,9 @@ class SearchWorkspace:
         if not bank.coupled:
             return SearchWorkspace(self.columns.under(bank, noise), self.settings)
         base = Hypothesis(self.sensitivities.base_model)
-        fresh = linearise_candidates(bank, base, self.sensitivities.candidates)
-        noise = fit_remaining_noise(fresh, at, noise, rounds=1)
-        return SearchWorkspace(WhiteColumns(bank, fresh, noise), self.settings)
+        sensitivities = linearise_candidates(bank, base, self.sensitivities.candidates)
+        noise = fit_remaining_noise(sensitivities, at, noise, rounds=1)
+        return SearchWorkspace(WhiteColumns(bank, sensitivities, noise), self.settings)
 
     def on_runs(self, bank: FilterBank, noise: Noise) -> "SearchWorkspace":
         """A workspace that fits to other runs, with the same candidates and the same penalty.
@@ -154,14 +156,14 @@ class SearchWorkspace:
             score: to compare with.
             reach: see `fit`.
         """
-        key, least = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
-        if key not in self._fitted and least < self._given_up.get(key, np.inf):
-            first = self.bank.linearise(start, current.linearised)
-            fitted = fit_or_give_up(first, self.bank, self.noise, least, reach)
-            if fitted is None:
-                self._given_up[key] = least
+        key, threshold = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
+        if key not in self._fitted and threshold < self._given_up.get(key, np.inf):
+            linearised = self.bank.linearise(start, current.linearised)
+            result = fit_or_give_up(linearised, self.bank, self.noise, threshold, reach)
+            if result is None:
+                self._given_up[key] = threshold
             else:
-                self._fitted[key] = fitted
+                self._fitted[key] = result
         return self._fitted.get(key)
 
     def has_fitted(self, start: Hypothesis) -> bool:
@@ -191,16 +193,16 @@ class SearchWorkspace:
         return self._removed[key]
 
     def _remove_each(self, current: Fit) -> list[Removed]:
-        removed, left = [], float(self.columns.gram(current.linearised)[0, 0])
-        for seen in self._without(current, [(term,) for term in current.hypothesis.terms]):
-            G = self.columns.gram(seen)
-            removed.append(Removed(seen.hypothesis, G, float(G[0, 0]) - left, self._rank(G)))
+        removed, rss = [], float(self.columns.gram(current.linearised)[0, 0])
+        for linearised in self._without(current, [(term,) for term in current.hypothesis.terms]):
+            G = self.columns.gram(linearised)
+            removed.append(Removed(linearised.hypothesis, G, float(G[0, 0]) - rss, self._rank(G)))
         return removed
 
     def gram_without(self, current: Fit, term: Term) -> Array:
         """The Gram matrix of the current hypothesis without one of its terms."""
-        if known := self._removed.get(current.hypothesis.key):
-            return known[current.hypothesis.terms.index(term)].gram
+        if removals := self._removed.get(current.hypothesis.key):
+            return removals[current.hypothesis.terms.index(term)].gram
         return self.columns.gram(self._without(current, [(term,)])[0])
 
     def drop(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Hypothesis]:
@@ -208,7 +210,7 @@ class SearchWorkspace:
 
         Where the model without the group diverges, the other terms keep their values.
         """
-        return [self._step(seen) for seen in self._without(current, groups)]
+        return [self._step(linearised) for linearised in self._without(current, groups)]
 
     def _step(self, seen: Linearised) -> Hypothesis:
         """The hypothesis at the values for which a Gauss-Newton step predicts the least errors."""
@@ -220,14 +222,16 @@ class SearchWorkspace:
     def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
         """Without each group of terms in turn: innovations anew, derivatives of the current fit."""
         h, J = current.hypothesis, current.linearised.J
-        rests = [replace(h, terms=tuple(t for t in h.terms if t not in own)) for own in groups]
-        e = self.bank.evaluate([one.model for one in rests])
+        hypotheses = [
+            replace(h, terms=tuple(t for t in h.terms if t not in group)) for group in groups
+        ]
+        e = self.bank.evaluate([r.model for r in hypotheses])
         linearised = []
-        for k, (rest, own) in enumerate(zip(rests, groups, strict=True)):
-            each = zip(h.terms, h.columns, strict=True)
-            gone = [j for term, columns in each if term in own for j in columns]
-            left = [np.delete(of_run, gone, axis=0) for of_run in J]
-            linearised.append(Linearised(rest, [of_run[k] for of_run in e], left))
+        for k, (hypothesis, group) in enumerate(zip(hypotheses, groups, strict=True)):
+            pairs = zip(h.terms, h.columns, strict=True)
+            positions = [j for term, columns in pairs if term in group for j in columns]
+            J_reduced = [np.delete(of_run, positions, axis=0) for of_run in J]
+            linearised.append(Linearised(hypothesis, [of_run[k] for of_run in e], J_reduced))
         return linearised
 
     def _rank(self, G: Array) -> list[Proposal]:
@@ -241,11 +245,7 @@ class SearchWorkspace:
         if all(p.fitted for p in term.effect.parameters):
             return []
         starts = [block.candidate.term() for block in self.sensitivities.blocks]
-        return [
-            one
-            for one in starts
-            if one.id == term.id and one.free and set(one.free) == set(term.free)
-        ]
+        return [t for t in starts if t.id == term.id and t.free and set(t.free) == set(term.free)]
 
     def propose(self, current: Fit) -> list[Proposal]:
         """All candidates as additions to the current fit, judged to first order, the best first.
@@ -278,7 +278,7 @@ class SearchWorkspace:
         `settings.relevant` is the share by which it has to be larger than that of `fit`.
         """
         rmse = score_windows([fit.hypothesis.model, *without], self.bank.runs).rmse
-        measured = rmse[0] > 0.0
+        axes = rmse[0] > 0.0
         # a model that cannot exist is infinitely worse
-        ratio = np.nan_to_num(rmse[1:, measured] / rmse[0, measured], nan=np.inf)
+        ratio = np.nan_to_num(rmse[1:, axes] / rmse[0, axes], nan=np.inf)
         return np.max(ratio, axis=1, initial=0.0) - 1.0 > self.settings.relevant

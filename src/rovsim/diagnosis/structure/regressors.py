@@ -56,8 +56,8 @@ def tabulate(run: ObservedRun) -> dict[str, Array]:
         table[f"heading ({name})"] = x
     # a flow or a force that differs from place to place, seen in the axes of a body that turns
     for heading, side in product(("north", "east"), repeat=2):
-        along = table[f"place along {side}"] * table[f"heading ({heading})"]
-        table[f"place along {side} times heading ({heading})"] = along
+        column = table[f"place along {side}"] * table[f"heading ({heading})"]
+        table[f"place along {side} times heading ({heading})"] = column
     return table
 
 
@@ -110,8 +110,8 @@ def find_dependence(
         tables: values (n_run,) of all functions, of each run.
     """
     limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
-    for one in list_dependences(residual, tables):
-        yield from residual.weigh(one.name, size=one.size, statistic=one.statistic, limit=limit)
+    for d in list_dependences(residual, tables):
+        yield from residual.weigh(d.name, size=d.size, statistic=d.statistic, limit=limit)
 
 
 def list_dependences(
@@ -122,31 +122,33 @@ def list_dependences(
     Functions that the fitted parameters explain already are left out. For the arguments see
     `find_dependence`.
     """
-    target, fitted = np.concatenate(residual.white), residual.fitted
-    basis = np.linalg.qr(fitted.T)[0] if len(fitted) else np.empty((len(target), 0))
+    target, derivatives = np.concatenate(residual.white), residual.fitted
+    basis = np.linalg.qr(derivatives.T)[0] if len(derivatives) else np.empty((len(target), 0))
     blocks = number_blocks(residual.runs) if residual.of_channels else None
     for name in tables[0]:
         pushes = [table[name] for table in tables]
         size = np.sqrt(np.mean(np.concatenate(pushes) ** 2))
         column = residual.respond(pushes)
-        own = column - basis @ (basis.T @ column)
-        power, whole = float(own @ own), float(column @ column)
-        if power < INDEPENDENT * whole or size == 0.0:
+        independent = column - basis @ (basis.T @ column)
+        power, total_power = float(independent @ independent), float(column @ column)
+        if power < INDEPENDENT * total_power or size == 0.0:
             continue
-        factor = float(own @ target) / power
+        factor = float(independent @ target) / power
         # only the part counts that no fitted parameter could have explained
-        part = abs(factor) * size * np.sqrt(power / whole)
+        independent_size = abs(factor) * size * np.sqrt(power / total_power)
         statistic = factor**2 * power
         if blocks is not None:
             # errors that last longer than the noise model says follow many functions by chance
-            statistic /= find_inflation(own * (target - factor * own), power, blocks)
-        yield Dependence(name, statistic, part, 1.0 - power / whole)
+            statistic /= find_inflation(
+                independent * (target - factor * independent), power, blocks
+            )
+        yield Dependence(name, statistic, independent_size, 1.0 - power / total_power)
 
 
 def _lag(v: Array, run: ObservedRun, memory: float) -> Array:
     """Filter a velocity (n,) by a first-order lag of `memory` s, from zero in each stretch."""
     lag, out = LowPass((memory,)), np.empty_like(v)
-    for first, last in run.innovation_segments:
-        stretch = v[first:last, None]
-        out[first:last] = lag.smooth(stretch, run.period, first=np.zeros((1, 1)))[:, 0]
+    for begin, end in run.innovation_segments:
+        stretch = v[begin:end, None]
+        out[begin:end] = lag.smooth(stretch, run.period, first=np.zeros((1, 1)))[:, 0]
     return out

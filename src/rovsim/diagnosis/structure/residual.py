@@ -90,8 +90,8 @@ class AxisResidual:
         Returns:
             The response (n,) in the whitened settled innovations of all runs, one after the other.
         """
-        each = zip(pushes, self.filters, self.runs, strict=True)
-        return np.concatenate([respond(push, f, run) for push, f, run in each])
+        inputs = zip(pushes, self.filters, self.runs, strict=True)
+        return np.concatenate([respond(push, f, run) for push, f, run in inputs])
 
     def weigh(
         self, what: str, *, size: float, statistic: float, limit: float, moment: bool = False
@@ -124,8 +124,8 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
     """
     b, a = f.response
     out = np.empty(len(run.time))
-    for first, last in run.innovation_segments:
-        out[first:last] = lfilter(b, a, push[first:last])
+    for begin, end in run.innovation_segments:
+        out[begin:end] = lfilter(b, a, push[begin:end])
     return out[run.settled]
 
 
@@ -138,18 +138,18 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     white = _split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
     run_filters = bank.design_filters(fit.noise)
     model = fit.hypothesis.model
-    unknown = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
-    pairs = list(zip(bank.runs, unknown, strict=True))
-    off = [find_jumps(run, model, lost) for run, lost in pairs]
-    unlogged = tuple(mark_unlogged(run, lost)[run.settled] for run, lost in pairs)
+    lost_commands = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
+    pairs = list(zip(bank.runs, lost_commands, strict=True))
+    jumps = [find_jumps(run, model, gaps) for run, gaps in pairs]
+    unlogged = tuple(mark_unlogged(run, gaps)[run.settled] for run, gaps in pairs)
     undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.innovation_mask[:, i].all() for run in bank.runs):
             continue
-        filters = tuple(one.filters[i] for one in run_filters)
-        each = zip(white, filters, bank.runs, unknown, off, strict=True)
-        cleared = tuple(_clear(own[i], f, run, lost, by[:, i]) for own, f, run, lost, by in each)
+        filters = tuple(r.filters[i] for r in run_filters)
+        inputs = zip(white, filters, bank.runs, lost_commands, jumps, strict=True)
+        cleared = tuple(_clear(w[i], f, run, gaps, jump[:, i]) for w, f, run, gaps, jump in inputs)
         std = float(fit.noise.disturbance_std[i])
         residuals.append(
             AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
@@ -176,10 +176,10 @@ def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -
     """
     columns = []
     for (begin, end), by in zip(lost, off, strict=True):
-        during = respond(run.overlapping(begin, end).astype(float), f, run)
+        response = respond(run.overlapping(begin, end).astype(float), f, run)
         share = min(1.0, (end - begin) / run.period)
-        if by * share * np.sqrt(during @ during) > NOTICED:
-            columns += [during, respond(run.overlapping(end, end + SPIN).astype(float), f, run)]
+        if by * share * np.sqrt(response @ response) > NOTICED:
+            columns += [response, respond(run.overlapping(end, end + SPIN).astype(float), f, run)]
     if not columns:
         return w
     rows = np.stack(columns)

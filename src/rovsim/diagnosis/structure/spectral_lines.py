@@ -63,10 +63,10 @@ class Periodogram:
         Noise that is correlated for longer than its model says raises all low frequencies alike,
         and is no line. The level is that of white noise at least, as less is chance.
         """
-        first = self.usable[0] if len(self.usable) else 0
+        k = self.usable[0] if len(self.usable) else 0
         level = np.ones_like(self.total)
         white = chi2.median(2 * len(self.power))
-        level[first:] = median_filter(self.total[first:], NEIGHBOURS) / white
+        level[k:] = median_filter(self.total[k:], NEIGHBOURS) / white
         return np.asarray(self.total / np.maximum(1.0, level))
 
 
@@ -95,13 +95,13 @@ def _judge_comb(
         comb: multiples of the fundamental, the fundamental (1) first.
         growth: words that say how the amplitude grows.
     """
-    within = spectrum.usable[spectrum.usable * comb[-1] < len(spectrum.frequency)]
-    beyond_noise = sum(spectrum.beyond_noise[m * within] for m in comb)
-    best = int(np.argmax(beyond_noise))
-    k = within[best]
-    looks = len(spectrum.usable) * len(COMBS) * len(ENVELOPES) * len(AXES)
-    limit = chi2.isf(FALSE_ALARM / looks, 2 * len(comb) * len(residual.runs))
-    if beyond_noise[best] <= limit:
+    candidates = spectrum.usable[spectrum.usable * comb[-1] < len(spectrum.frequency)]
+    beyond_noise = sum(spectrum.beyond_noise[m * candidates] for m in comb)
+    k_best = int(np.argmax(beyond_noise))
+    k = candidates[k_best]
+    tests = len(spectrum.usable) * len(COMBS) * len(ENVELOPES) * len(AXES)
+    limit = chi2.isf(FALSE_ALARM / tests, 2 * len(comb) * len(residual.runs))
+    if beyond_noise[k_best] <= limit:
         return
     lines = [m * k for m in comb]
     overtones = ", with overtones" if len(comb) > 1 else ""
@@ -138,8 +138,8 @@ def _measure_power(residual: AxisResidual, envelope: Envelope) -> Periodogram:
     usable = np.flatnonzero((frequency >= 1.0 / longest) & (frequency <= HIGHEST))
     envelopes = [envelope(run) for run in residual.runs]
     times = [run.time[run.settled] for run in residual.runs]
-    each = zip(residual.white, envelopes, times, strict=True)
-    power = np.stack([fit_lines(w, e, t, count)[: len(frequency)] for w, e, t in each])
+    inputs = zip(residual.white, envelopes, times, strict=True)
+    power = np.stack([fit_lines(w, e, t, count)[: len(frequency)] for w, e, t in inputs])
     return Periodogram(power, frequency, usable, sum(float(np.sum(e**2)) for e in envelopes))
 
 
@@ -156,18 +156,22 @@ def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
         Chi-square (count // 2,) that lines explain; the frequency of line k is k / (count FINE) Hz.
     """
     at = np.round(time / FINE).astype(int)
-    seen, power = np.zeros((2, count))
-    np.add.at(seen, at, white * envelope)
+    weighted, power = np.zeros((2, count))
+    np.add.at(weighted, at, white * envelope)
     np.add.at(power, at, envelope**2)
-    line = np.fft.fft(seen)[: count // 2]
+    line = np.fft.fft(weighted)[: count // 2]
     # sums of products of sine and cosine follow from those at zero and at twice the frequency
-    double = np.fft.fft(power)[(2 * np.arange(count // 2)) % count]
+    power_spectrum = np.fft.fft(power)[(2 * np.arange(count // 2)) % count]
     total = np.sum(power)
-    cosine, sine, both = (total + double.real) / 2, (total - double.real) / 2, -double.imag / 2
+    cosine, sine, product = (
+        (total + power_spectrum.real) / 2,
+        (total - power_spectrum.real) / 2,
+        -power_spectrum.imag / 2,
+    )
     a, b = line.real, -line.imag
-    size = cosine * sine - both**2
-    found = a**2 * sine + b**2 * cosine - 2.0 * a * b * both
-    return np.divide(found, size, out=np.zeros_like(a), where=size > SINGULAR * total**2)
+    size = cosine * sine - product**2
+    numerator = a**2 * sine + b**2 * cosine - 2.0 * a * b * product
+    return np.divide(numerator, size, out=np.zeros_like(a), where=size > SINGULAR * total**2)
 
 
 def _even(run: ObservedRun) -> Array:
@@ -178,8 +182,8 @@ def _even(run: ObservedRun) -> Array:
 def _speed_squared(run: ObservedRun) -> Array:
     """Amplitude that grows with the speed squared, at the settled readings; mean square 1."""
     at = np.clip(run.innovation_samples[run.settled], 0, len(run.motion.time) - 1)
-    found = np.sum(np.nan_to_num(run.motion.state_nu[at, :3]) ** 2, axis=1)
-    return found / np.sqrt(np.mean(found**2))
+    squares = np.sum(np.nan_to_num(run.motion.state_nu[at, :3]) ** 2, axis=1)
+    return squares / np.sqrt(np.mean(squares**2))
 
 
 ENVELOPES: dict[str, Envelope] = {"": _even, ", growing with speed squared": _speed_squared}

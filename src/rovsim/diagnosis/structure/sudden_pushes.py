@@ -24,20 +24,22 @@ MOMENT = 4.0  # standard deviations of the disturbance
 
 def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
     """Test for more large innovations than a Gaussian disturbance has, where commands are known."""
-    few = max(1, round(SUDDEN / residual.runs[0].period))
-    every = zip(residual.white, residual.unlogged, strict=True)
-    known = [_add_neighbours(w, few)[_add_neighbours(lost, few) == 0] for w, lost in every]
-    sums = np.concatenate(known)
+    width = max(1, round(SUDDEN / residual.runs[0].period))
+    inputs = zip(residual.white, residual.unlogged, strict=True)
+    filtered = [
+        _add_neighbours(w, width)[_add_neighbours(unlogged, width) == 0] for w, unlogged in inputs
+    ]
+    sums = np.concatenate(filtered)
     if not len(sums):
         return
     # the median hardly changes with the few large innovations that are looked for
-    usual = STD_PER_MAD * float(np.median(np.abs(sums)))
-    count = int(np.sum(np.abs(sums) > RARE * usual))
+    std = STD_PER_MAD * float(np.median(np.abs(sums)))
+    count = int(np.sum(np.abs(sums) > RARE * std))
     limit = binom.isf(FALSE_ALARM / len(AXES), len(sums), 2.0 * norm.sf(RARE / UNEVEN))
     if count > limit:
-        seconds = len(sums) * few * residual.runs[0].period
-        what = f"sudden pushes, one in about {seconds / count:.2g} s"
-        yield Structure(residual.axis, what, 1.0, count / limit)
+        seconds = len(sums) * width * residual.runs[0].period
+        text = f"sudden pushes, one in about {seconds / count:.2g} s"
+        yield Structure(residual.axis, text, 1.0, count / limit)
 
 
 def _add_neighbours(w: Array, few: int) -> Array:
@@ -46,14 +48,14 @@ def _add_neighbours(w: Array, few: int) -> Array:
 
 def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
     """Test for a single short push, at any time at which it is known what the thrusters did."""
-    every = zip(residual.white, residual.filters, residual.runs, residual.undecided, strict=True)
-    for w, f, run, undecided in every:
+    inputs = zip(residual.white, residual.filters, residual.runs, residual.undecided, strict=True)
+    for w, f, run, undecided in inputs:
         for duration in KICKS:
-            few = max(1, round(duration / run.period))
-            template = _kick(few, f, run)
+            count = max(1, round(duration / run.period))
+            template = _kick(count, f, run)
             if len(template) < len(w):
-                known = np.convolve(undecided, np.ones(few), "full")[few - 1 :] == 0.0
-                yield from _judge_kick(residual, w, template, duration, run, known)
+                decided = np.convolve(undecided, np.ones(count), "full")[count - 1 :] == 0.0
+                yield from _judge_kick(residual, w, template, duration, run, decided)
 
 
 def _kick(few: int, f: AxisFilter, run: ObservedRun) -> Array:

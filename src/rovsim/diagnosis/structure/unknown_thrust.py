@@ -31,10 +31,10 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
         return np.empty((0, 2))
     change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
     change[steps < LONG_STEP * np.median(steps)] = 0.0
-    lost = change > max(0.0, np.quantile(change, 1.0 - FEW))
-    before = commands.before
-    at = path.effective_time(commands.time - run.edges[0] + before) - before
-    return np.column_stack([at[:-1][lost], at[1:][lost]])
+    jumps = change > max(0.0, np.quantile(change, 1.0 - FEW))
+    lead = commands.before
+    at = path.effective_time(commands.time - run.edges[0] + lead) - lead
+    return np.column_stack([at[:-1][jumps], at[1:][jumps]])
 
 
 def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
@@ -44,11 +44,11 @@ def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
     after it.
     """
     a = run.drives.of([model])[0].wrench @ model.body.M_inv.T
-    since = run.edges - run.edges[0]
-    before = np.maximum(np.searchsorted(since, lost[:, 0]) - 2, 0)
-    after = np.searchsorted(since, lost[:, 1] + SPIN)
-    each = zip(before, after, strict=True)
-    return np.array([np.max(np.abs(a[i : j + 1] - a[i]), axis=0) for i, j in each]).reshape(-1, 6)
+    elapsed = run.edges - run.edges[0]
+    begin = np.maximum(np.searchsorted(elapsed, lost[:, 0]) - 2, 0)
+    end = np.searchsorted(elapsed, lost[:, 1] + SPIN)
+    spans = zip(begin, end, strict=True)
+    return np.array([np.max(np.abs(a[i : j + 1] - a[i]), axis=0) for i, j in spans]).reshape(-1, 6)
 
 
 def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
@@ -68,10 +68,10 @@ def mark_unlogged(run: ObservedRun, lost: Array) -> Array:
 
 def _mark(run: ObservedRun, times: Array) -> Array:
     """Mask (n,) of innovations that overlap any of the times (g, 2)."""
-    found = np.zeros(len(run.time), bool)
+    mask = np.zeros(len(run.time), bool)
     for begin, end in times:
-        found |= run.overlapping(begin, end)
-    return found
+        mask |= run.overlapping(begin, end)
+    return mask
 
 
 def find_different(run: ObservedRun, one: Model, other: Model) -> Array:
@@ -84,11 +84,11 @@ def find_different(run: ObservedRun, one: Model, other: Model) -> Array:
 
 def _list_either_side(h: Hypothesis) -> list[tuple[Model, Model]]:
     """For each threshold two models, with its value half a resolution lower and higher."""
-    found = []
+    pairs = []
     for term, columns in zip(h.terms, h.columns, strict=True):
         for parameter, column in zip(term.parameters, columns, strict=True):
             if parameter.tried:
                 half = np.zeros(len(h.x))
                 half[column] = 0.5 * parameter.resolution / parameter.scale
-                found.append((h.at(h.x - half).model, h.at(h.x + half).model))
-    return found
+                pairs.append((h.at(h.x - half).model, h.at(h.x + half).model))
+    return pairs

@@ -54,10 +54,10 @@ def include_scale(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonSca
         return fit, None
     if GAIN_NAME in fit.hypothesis.parameter_names:
         return fit, describe_fitted_scale(fit)
-    variance, along = _free_gain(fit, runs)
-    both = fit.covariance + variance * np.outer(along, along)
-    fit = replace(fit, covariance=both)
-    return fit, describe_scale(fit, variance, along)
+    variance, direction = _free_gain(fit, runs)
+    covariance = fit.covariance + variance * np.outer(direction, direction)
+    fit = replace(fit, covariance=covariance)
+    return fit, describe_scale(fit, variance, direction)
 
 
 def describe_fitted_scale(fit: Fit) -> CommonScale | None:
@@ -69,11 +69,11 @@ def describe_fitted_scale(fit: Fit) -> CommonScale | None:
 
 def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     """Free the gain: its variance, and how the k parameters follow it (k,), all scaled."""
-    opened = free_nuisance(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
-    if opened is None:
+    nuisance = free_nuisance(fit, fit.hypothesis.with_term(Term(ThrusterGain(), ONE_GAIN)), runs)
+    if nuisance is None:
         return 0.0, np.zeros(len(fit.std))
-    told = max(float(opened.information[0, 0]), 0.0)
-    return 1.0 / (told + (GAIN_SCALE / GAIN) ** 2), opened.along[:, 0]
+    information = max(float(nuisance.information[0, 0]), 0.0)
+    return 1.0 / (information + (GAIN_SCALE / GAIN) ** 2), nuisance.along[:, 0]
 
 
 def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | None:
@@ -86,16 +86,12 @@ def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | Non
     """
     names, std = fit.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(fit.covariance), 1e-300)
-    moved = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
-    return CommonScale(float(std), tuple(moved)) if std > UNKNOWN and moved else None
+    affected = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
+    return CommonScale(float(std), tuple(affected)) if std > UNKNOWN and affected else None
 
 
 def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:
     """Whether inertia and drag were fitted, under commands whose force was not measured."""
-    named = {term.id for term in h.terms}
+    ids = {term.id for term in h.terms}
     logged = {run.motion.commands.kind for run in runs}
-    return (
-        bool(named & set(INERTIA))
-        and bool(named & {one.id for one in DRAG})
-        and "wrench" not in logged
-    )
+    return bool(ids & set(INERTIA)) and bool(ids & {d.id for d in DRAG}) and "wrench" not in logged

@@ -52,18 +52,18 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
         selected: the accepted effects, at their fitted values.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
-    each = [(type(t.effect), p) for t in h.terms for p in t.parameters]
-    share = np.array([share_of_file(h.base, *one) for one in each])
-    asked, of = new & (share > 0.0), int(np.sum(share > 0.0))
-    if not asked.any() or whole.distance(asked) > chi2.isf(FALSE_ALARM, asked.sum()):
+    pairs = [(type(t.effect), p) for t in h.terms for p in t.parameters]
+    share = np.array([share_of_file(h.base, *one) for one in pairs])
+    tested, count = new & (share > 0.0), int(np.sum(share > 0.0))
+    if not tested.any() or whole.distance(tested) > chi2.isf(FALSE_ALARM, tested.sum()):
         return False
-    known, usual, one = know_file(selected, h).std[asked], share[asked], np.eye(asked.sum())
-    in_all = solve(whole.covariance[np.ix_(asked, asked)], one)
-    pull = in_all @ (h.x - h.absence)[asked]
-    told = in_all - np.diag(known**-2.0)  # by the runs: the fit knew the file as well
-    likelier = np.linalg.slogdet(one + usual[:, None] * told * usual)[1]
-    likelier -= pull @ solve(told + np.diag(usual**-2.0), pull)
-    return bool(likelier - 2.0 * np.log((of + 1) * comb(of, asked.sum())) > MIN_LR_APART)
+    prior_std, spread, one = know_file(selected, h).std[tested], share[tested], np.eye(tested.sum())
+    information = solve(whole.covariance[np.ix_(tested, tested)], one)
+    pull = information @ (h.x - h.absence)[tested]
+    by_runs = information - np.diag(prior_std**-2.0)  # by the runs: the fit knew the file as well
+    lr = np.linalg.slogdet(one + spread[:, None] * by_runs * spread)[1]
+    lr -= pull @ solve(by_runs + np.diag(spread**-2.0), pull)
+    return bool(lr - 2.0 * np.log((count + 1) * comb(count, tested.sum())) > MIN_LR_APART)
 
 
 def settle_whole_file(
@@ -80,23 +80,29 @@ def settle_whole_file(
         The final fit, and the common scale; None where that is known.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
-    untold = new & (whole.std > TOLD * know_file(selected, h).std)
+    undetermined = new & (whole.std > TOLD * know_file(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
-    named = {term.id for term in selected.terms} | _name_gain(whole)
-    sure = {one for one in set(owner) - named if _is_sure(whole, (owner == one) & ~untold)}
-    gone = untold | ~np.isin(owner, list(named))
-    while left := sorted(sure - named):
-        tried = [_leave_out(whole, gone & ((owner != one) | untold)) for one in left]
-        all_of_it, without, *more = _measure([h, _leave_out(whole, gone), *tried], bank)
-        if without <= (1.0 + MISSED) * all_of_it:
+    ids = {term.id for term in selected.terms} | _name_gain(whole)
+    significant = {
+        name for name in set(owner) - ids if _is_sure(whole, (owner == name) & ~undetermined)
+    }
+    dropped = undetermined | ~np.isin(owner, list(ids))
+    while candidates := sorted(significant - ids):
+        trials = [
+            _leave_out(whole, dropped & ((owner != name) | undetermined)) for name in candidates
+        ]
+        error_all, error_reduced, *errors_extended = _measure(
+            [h, _leave_out(whole, dropped), *trials], bank
+        )
+        if error_reduced <= (1.0 + MISSED) * error_all:
             break
-        named.add(left[int(np.argmin(more))])
-        gone = untold | ~np.isin(owner, list(named))
-    final = judge(bank.linearise(_leave_out(whole, gone)), bank, whole.noise)
-    final = replace(final, covariance=whole.covariance[np.ix_(~gone, ~gone)])
+        ids.add(candidates[int(np.argmin(errors_extended))])
+        dropped = undetermined | ~np.isin(owner, list(ids))
+    final = judge(bank.linearise(_leave_out(whole, dropped)), bank, whole.noise)
+    final = replace(final, covariance=whole.covariance[np.ix_(~dropped, ~dropped)])
     gain = _share_gains(h)
     variance = float(gain @ whole.covariance @ gain)
-    return final, describe_scale(final, variance, whole.covariance[~gone] @ gain / variance)
+    return final, describe_scale(final, variance, whole.covariance[~dropped] @ gain / variance)
 
 
 def _name_gain(whole: Fit) -> set[str]:
@@ -105,16 +111,16 @@ def _name_gain(whole: Fit) -> set[str]:
     Replays cannot decide this: all other values, wrong by its inverse, would compensate.
     """
     gain = mark_gain(whole.hypothesis)
-    sure = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM, 1)
-    return {ThrusterGain.id} if sure else set()
+    significant = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM, 1)
+    return {ThrusterGain.id} if significant else set()
 
 
 def _share_gains(h: Hypothesis) -> Array:
     """Weight of each of k parameters in the mean gain of the thrusters (k,)."""
     count = h.base.vehicle.thruster_count
-    own = [f"{ThrusterGain.id}.{name}" for name in name_gains(count)]
-    single = np.isin(h.parameter_names, own) / max(1, count)
-    return np.where(mark_gain(h), 1.0, single)
+    names = [f"{ThrusterGain.id}.{name}" for name in name_gains(count)]
+    gain_shares = np.isin(h.parameter_names, names) / max(1, count)
+    return np.where(mark_gain(h), 1.0, gain_shares)
 
 
 def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
@@ -124,9 +130,9 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
     """
     h, V = whole.hypothesis, whole.covariance
     step = np.where(gone, h.absence - h.x, 0.0)
-    given = gone | mark_gain(h)
-    follow = V[np.ix_(~given, given)] @ solve(V[np.ix_(given, given)], step[given])
-    step[~given] = follow
+    fixed = gone | mark_gain(h)
+    correction = V[np.ix_(~fixed, fixed)] @ solve(V[np.ix_(fixed, fixed)], step[fixed])
+    step[~fixed] = correction
     return drop_parameters(h.at(h.x + step), gone)
 
 
@@ -134,13 +140,13 @@ def _is_sure(whole: Fit, own: Array) -> bool:
     """Whether the parameters of a mask (k,) surely differ from the file, at the gain found."""
     h, V = whole.hypothesis, whole.covariance
     own = own & ~mark_gain(h)
-    across = V[np.ix_(own, mark_gain(h))]
-    beside = V[np.ix_(own, own)] - across @ across.T / V[np.ix_(mark_gain(h), mark_gain(h))]
-    off = (h.x - h.absence)[own]
-    return bool(off @ solve(beside, off) > chi2.isf(FALSE_ALARM, max(1, own.sum())))
+    cross = V[np.ix_(own, mark_gain(h))]
+    conditional = V[np.ix_(own, own)] - cross @ cross.T / V[np.ix_(mark_gain(h), mark_gain(h))]
+    offset = (h.x - h.absence)[own]
+    return bool(offset @ solve(conditional, offset) > chi2.isf(FALSE_ALARM, max(1, own.sum())))
 
 
 def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
     """Normalised errors of hypotheses in windows of 2 s; infinite where a model diverges."""
-    errors = score_windows([one.model for one in hypotheses], bank.runs).normalised
+    errors = score_windows([h.model for h in hypotheses], bank.runs).normalised
     return [np.inf if error is None else error for error in errors]

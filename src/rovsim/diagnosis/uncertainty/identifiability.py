@@ -19,8 +19,8 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
     names, std = fit.hypothesis.parameter_names, np.maximum(fit.std, 1e-12)
     unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
     correlation = fit.covariance / np.outer(std, std)
-    alike = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
-    _, label = connected_components(alike, directed=False)
+    joint = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
+    _, label = connected_components(joint, directed=False)
     groups = [[names[k] for k in unsure[label == g]] for g in range(label.max(initial=-1) + 1)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
 
@@ -32,10 +32,10 @@ def find_doubtful(fit: Fit) -> int | None:
     would seem sure.
     """
     h = fit.hypothesis
-    together = {name.split(".")[0] for group in group_joint_parameters(fit) for name in group}
+    joint_ids = {name.split(".")[0] for group in group_joint_parameters(fit) for name in group}
     chances = np.zeros(len(h.terms))
-    for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
-        if own and term.id not in together:
-            chances[i] = chi2.sf(fit.distance(own), len(own))
+    for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
+        if columns and term.id not in joint_ids:
+            chances[i] = chi2.sf(fit.distance(columns), len(columns))
     likeliest = int(np.argmax(chances))
     return likeliest if chances[likeliest] > DOUBT else None

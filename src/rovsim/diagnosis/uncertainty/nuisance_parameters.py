@@ -44,13 +44,13 @@ def free_nuisance(
         runs: that it was fitted to.
     """
     bank = FilterBank.design(runs, fit.hypothesis.model, fit.noise)
-    seen = bank.linearise(freed)
-    if not seen.finite:
+    linearised = bank.linearise(freed)
+    if not linearised.finite:
         return None
-    names, fitted = freed.parameter_names, fit.hypothesis.parameter_names
-    s = [names.index(name) for name in fitted]
-    n = [k for k, name in enumerate(names) if name not in fitted]
-    J, e = bank.whiten(seen.J, fit.noise), bank.whiten(seen.e, fit.noise)
+    names, selected_names = freed.parameter_names, fit.hypothesis.parameter_names
+    s = [names.index(name) for name in selected_names]
+    n = [k for k, name in enumerate(names) if name not in selected_names]
+    J, e = bank.whiten(linearised.J, fit.noise), bank.whiten(linearised.e, fit.noise)
     rows = as_rows(J)
     H, slope = gram(rows), rows @ e.ravel()
     along = -solve(H[np.ix_(s, s)], H[np.ix_(s, n)])

@@ -41,18 +41,18 @@ def include_rest(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[Fit, CommonScal
         The fit, and the common scale; None where that is known.
     """
     h = fit.hypothesis
-    freed = free_rest(h)
-    further = [name for name in freed.parameter_names if name not in h.parameter_names]
-    opened = free_nuisance(fit, freed, runs) if has_loose_file(h) and further else None
-    if opened is None:
+    with_file = free_rest(h)
+    new_names = [name for name in with_file.parameter_names if name not in h.parameter_names]
+    nuisance = free_nuisance(fit, with_file, runs) if has_loose_file(h) and new_names else None
+    if nuisance is None:
         return include_scale(fit, runs)
-    spread = list_spreads(h, freed)
-    rest = solve(opened.information + np.diag(spread**-2.0), np.eye(len(spread)))
-    drawn = rest @ opened.score
-    wider = opened.along @ (rest + np.outer(drawn, drawn)) @ opened.along.T
-    fit = replace(fit, covariance=fit.covariance + wider)
-    if GAIN_NAME not in further:
+    spread = list_spreads(h, with_file)
+    covariance = solve(nuisance.information + np.diag(spread**-2.0), np.eye(len(spread)))
+    estimate = covariance @ nuisance.score
+    added = nuisance.along @ (covariance + np.outer(estimate, estimate)) @ nuisance.along.T
+    fit = replace(fit, covariance=fit.covariance + added)
+    if GAIN_NAME not in new_names:
         return fit, describe_fitted_scale(fit)
-    gain = further.index(GAIN_NAME)
-    variance = float(rest[gain, gain])
-    return fit, describe_scale(fit, variance, opened.along @ rest[:, gain] / variance)
+    gain = new_names.index(GAIN_NAME)
+    variance = float(covariance[gain, gain])
+    return fit, describe_scale(fit, variance, nuisance.along @ covariance[:, gain] / variance)

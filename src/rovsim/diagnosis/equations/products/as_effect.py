@@ -80,7 +80,7 @@ def add_term(
         depends on them. A place or width that the law did not need before begins at that of the
         term, or else at the `middle` of the columns.
     """
-    rest, law = split_law(h)
+    without_law, law = split_law(h)
     terms = (*known, more)
     values = dict(law.effect.given()) if law else {}
     k, i = len(terms), columns.terms.index(more)
@@ -97,16 +97,16 @@ def add_term(
     if more.place is not None:
         place[:2] = more.place
     bounds = around.bounds
-    moved = list_moved(terms)
+    free_places = list_moved(terms)
     old = list_moved(known)
     for n, p, sign in zip("xyz", place, around.site.axes, strict=False):
-        if n in moved and n not in old:
+        if n in free_places and n not in old:
             values[n] = float(np.clip(p * sign, *bounds[n]))
-    if "width" in moved and "width" not in old:
+    if "width" in free_places and "width" not in old:
         values["width"] = float(place[3])
-    free = (*(f"c{j}" for j in range(1, k + 1)), *moved)
-    own = Term(Law(**values), free, {n: bounds[n] for n in moved if n in bounds})
-    return replace(rest, terms=(*rest.terms, own))
+    free = (*(f"c{j}" for j in range(1, k + 1)), *free_places)
+    law_term = Term(Law(**values), free, {n: bounds[n] for n in free_places if n in bounds})
+    return replace(without_law, terms=(*without_law.terms, law_term))
 
 
 def follow_drag(h: Hypothesis) -> Hypothesis:
@@ -115,12 +115,12 @@ def follow_drag(h: Hypothesis) -> Hypothesis:
     Moving water acts on the vehicle through its drag. When another effect changes that drag, the
     law has to follow.
     """
-    rest, law = split_law(h)[0], get_law(h)
-    linear, quadratic = drag_of(rest.model)
+    without_law, law = split_law(h)[0], get_law(h)
+    linear, quadratic = drag_of(without_law.model)
     values = {f"linear{i}": float(v) for i, v in enumerate(linear)}
     values |= {f"quadratic{i}": float(v) for i, v in enumerate(quadratic)}
-    follows = replace(law, effect=law.effect.with_values(values))
-    return replace(rest, terms=(*rest.terms, follows))
+    updated = replace(law, effect=law.effect.with_values(values))
+    return replace(without_law, terms=(*without_law.terms, updated))
 
 
 def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
@@ -131,27 +131,29 @@ def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
         terms: of that law.
         gone: index of the term that is removed.
     """
-    rest, law = split_law(h)[0], get_law(h)
-    kept = [k for k in range(len(terms)) if k != gone]
-    own = ("c", "size", "on")
-    values = {n: v for n, v in law.effect.given().items() if not n.startswith((*own, "factor"))}
-    for new, old in enumerate(kept, start=1):
-        values |= {f"{name}{new}": law.effect[f"{name}{old + 1}"] for name in own}
+    without_law, law = split_law(h)[0], get_law(h)
+    remaining = [k for k in range(len(terms)) if k != gone]
+    prefixes = ("c", "size", "on")
+    values = {
+        n: v for n, v in law.effect.given().items() if not n.startswith((*prefixes, "factor"))
+    }
+    for new, old in enumerate(remaining, start=1):
+        values |= {f"{name}{new}": law.effect[f"{name}{old + 1}"] for name in prefixes}
         for j in range(1, FACTORS + 1):
             values[f"factor{new}{j}"] = law.effect[f"factor{old + 1}{j}"]
-    moved = list_moved([terms[k] for k in kept])
-    free = (*(f"c{j}" for j in range(1, len(kept) + 1)), *moved)
-    bounds = {n: b for n, b in law.bounds.items() if n in moved}
-    return replace(rest, terms=(*rest.terms, Term(Law(**values), free, bounds)))
+    free_places = list_moved([terms[k] for k in remaining])
+    free = (*(f"c{j}" for j in range(1, len(remaining) + 1)), *free_places)
+    bounds = {n: b for n, b in law.bounds.items() if n in free_places}
+    return replace(without_law, terms=(*without_law.terms, Term(Law(**values), free, bounds)))
 
 
 def list_moved(terms: Sequence[LawTerm]) -> tuple[str, ...]:
     """List the names of the coordinates of a place, and its width, that some term depends on."""
-    used = {f for t in terms for f in t.factors}
-    flat = bool(used & {NEAR}) or any(t.on == SWIRL for t in terms)
+    factors = {f for t in terms for f in t.factors}
+    flat = bool(factors & {NEAR}) or any(t.on == SWIRL for t in terms)
     return (
-        *(("x",) if flat or NORTH in used else ()),
-        *(("y",) if flat or EAST in used else ()),
-        *(("z",) if DEEP in used else ()),
-        *(("width",) if NEAR in used else ()),
+        *(("x",) if flat or NORTH in factors else ()),
+        *(("y",) if flat or EAST in factors else ()),
+        *(("z",) if DEEP in factors else ()),
+        *(("width",) if NEAR in factors else ()),
     )

@@ -66,27 +66,27 @@ def project(
         The columns, without terms whose wrench is zero throughout.
     """
     model, noise = fit.hypothesis.model, fit.noise
-    white, fitted = bank.whiten(fit.linearised.e, noise), bank.whiten(fit.linearised.J, noise)
+    white, derivatives = bank.whiten(fit.linearised.e, noise), bank.whiten(fit.linearised.J, noise)
     block = number_blocks(bank.runs) % BLOCKS
     size = _measure_size(terms, model, bank.runs, middle, wrenches)
     acts = np.flatnonzero(size > 0.0)
-    kept = tuple(terms[int(k)] for k in acts)
-    rows = 1 + len(acts) + len(fitted)
+    acting_terms = tuple(terms[int(k)] for k in acts)
+    rows = 1 + len(acts) + len(derivatives)
     parts = {int(k): np.zeros((rows, rows)) for k in np.unique(block)}
-    first = 0
+    begin = 0
     for run, filters in zip(bank.runs, bank.design_filters(noise), strict=True):
         # the columns of one run at a time
-        pushes = wrenches(kept, run, model, middle) / size[acts, None, None]
+        pushes = wrenches(acting_terms, run, model, middle) / size[acts, None, None]
         columns = _respond(pushes, model, run, filters)
-        at = slice(first, first + columns.shape[2])
-        every = [white[:, None, at], columns, fitted[:, :, at].swapaxes(0, 1)]
-        whole = np.concatenate(every, axis=1, dtype=np.float32)
+        at = slice(begin, begin + columns.shape[2])
+        pieces = [white[:, None, at], columns, derivatives[:, :, at].swapaxes(0, 1)]
+        stacked = np.concatenate(pieces, axis=1, dtype=np.float32)
         for k in np.unique(block[at]):
-            own = whole[:, :, block[at] == k]
-            parts[int(k)] += sum(axis @ axis.T for axis in own)
-        first = at.stop
+            in_block = stacked[:, :, block[at] == k]
+            parts[int(k)] += sum(axis @ axis.T for axis in in_block)
+        begin = at.stop
     own_parts = _without(list(parts.values()), 1 + len(acts))
-    return Columns(kept, size[acts], tuple(own_parts), middle)
+    return Columns(acting_terms, size[acts], tuple(own_parts), middle)
 
 
 def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
@@ -104,16 +104,16 @@ def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters)
     """
     accelerations = pushes @ model.body.M_inv.T
     out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
-    whole = np.empty(pushes.shape[:2])
+    response = np.empty(pushes.shape[:2])
     for i in np.flatnonzero(run.axes):
-        own = accelerations[:, :, i]
-        acts = np.flatnonzero(np.abs(own).max(axis=1) > NEGLIGIBLE)
+        acceleration = accelerations[:, :, i]
+        acts = np.flatnonzero(np.abs(acceleration).max(axis=1) > NEGLIGIBLE)
         if not len(acts):
             continue
         b, a = filters.filters[i].response
-        for first, last in run.innovation_segments:
-            whole[acts, first:last] = lfilter(b, a, own[acts, first:last], axis=1)
-        out[i, acts] = whole[acts][:, run.settled]
+        for begin, end in run.innovation_segments:
+            response[acts, begin:end] = lfilter(b, a, acceleration[acts, begin:end], axis=1)
+        out[i, acts] = response[acts][:, run.settled]
     return out
 
 
@@ -127,8 +127,8 @@ def _measure_size(
     """RMS (c,) over all runs of the wrench of each term with a coefficient of 1, of all axes."""
     square, count = np.zeros(len(terms)), 0
     for run in runs:
-        own = wrenches(terms, run, model, middle)
-        square, count = square + np.sum(own**2, axis=(1, 2)), count + own.shape[1]
+        wrench = wrenches(terms, run, model, middle)
+        square, count = square + np.sum(wrench**2, axis=(1, 2)), count + wrench.shape[1]
     return np.asarray(np.sqrt(square / count))
 
 
@@ -142,13 +142,13 @@ def _without(parts: Sequence[Array], kept: int) -> list[Array]:
     Returns:
         A matrix (kept, kept) for each part.
     """
-    whole = np.asarray(sum(parts))
-    if len(whole) == kept:
+    G = np.asarray(sum(parts))
+    if len(G) == kept:
         return list(parts)
-    H = whole[kept:, kept:]
+    H = G[kept:, kept:]
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
-    along = -np.linalg.lstsq(
-        H / np.outer(scale, scale), whole[kept:, :kept] / scale[:, None], 1e-9
+    coefficients = -np.linalg.lstsq(
+        H / np.outer(scale, scale), G[kept:, :kept] / scale[:, None], 1e-9
     )[0]
-    T = np.vstack([np.eye(kept), along / scale[:, None]])
+    T = np.vstack([np.eye(kept), coefficients / scale[:, None]])
     return [T.T @ part @ T for part in parts]

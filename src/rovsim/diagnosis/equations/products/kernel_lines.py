@@ -28,16 +28,16 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
         terms: of the law.
         law: at its values, of which the drag coefficients are written into the lines.
     """
-    used = {k for t in terms for k in t.factors}
-    yield from _velocities(used, terms)
-    yield from _surroundings(used, terms)
+    factors = {k for t in terms for k in t.factors}
+    yield from _velocities(factors, terms)
+    yield from _surroundings(factors, terms)
     values: dict[str, list[str]] = {}
     for name, term in zip(names, terms, strict=True):
         text = " * ".join([f"p.{name}", *(VARIABLES[k].code for k in term.factors)])
         for head in TARGETS[term.on].heads:
             values.setdefault(head.code, []).append(text + head.inner_code)
-    for left, parts in values.items():
-        yield f"{left} = " + " + ".join(parts)
+    for symbol, parts in values.items():
+        yield f"{symbol} = " + " + ".join(parts)
     body = {f: f for f in FORCE if f in values}
     world = [v if v in values else "0.0" for v in WORLD_FORCES]
     if any(v != "0.0" for v in world):
@@ -58,10 +58,10 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
 
 def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
     """Yield lines that assign the velocities and the NED z axis in body axes, as far as needed."""
-    named = {k % SIZE for k in used if k < DOWN}
+    axes = {k % SIZE for k in used if k < DOWN}
     if used & {SPEED, DIRECTION} or any(TARGETS[t.on].is_water for t in terms):
-        named |= {0, 1, 2}
-    for i in sorted(named):
+        axes |= {0, 1, 2}
+    for i in sorted(axes):
         yield f"{IN_CODE[i]} = at.nu_r[{i}]"
     if used & {SPEED, DIRECTION}:
         yield "U = sqrt(u * u + v * v + w * w)"
@@ -98,7 +98,7 @@ def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:
     """
     yield "# drag in water that moves, less that in still water, with the model's coefficients"
     for j, (f, v) in enumerate(zip("xyz", IN_CODE[:3], strict=True)):
-        parts = [f"at.R[{i}][{j}] * {one}" for i, one in enumerate(flow) if one != "0.0"]
+        parts = [f"at.R[{i}][{j}] * {w}" for i, w in enumerate(flow) if w != "0.0"]
         a, b = (float(f"{law.effect[f'{kind}{j}']:.6g}") for kind in ("linear", "quadratic"))
         yield f"a = {v} - ({' + '.join(parts)})"
         yield f"drag_{f} = ({a:g} + {b:g} * abs({v})) * {v} - ({a:g} + {b:g} * abs(a)) * a"

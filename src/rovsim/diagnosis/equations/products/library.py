@@ -77,9 +77,9 @@ def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list
     if not all((run.axes | ~run.free_axes.astype(bool)).all() for run in runs):
         return terms
     n, e = known
-    wanted = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
-    places = list(dict.fromkeys(wanted))
-    return [*terms, *_along_world(), *(t for one in places for t in _at(one))]
+    positions = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
+    places = list(dict.fromkeys(positions))
+    return [*terms, *_along_world(), *(t for place in places for t in _at(place))]
 
 
 def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:

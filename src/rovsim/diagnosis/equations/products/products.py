@@ -60,18 +60,22 @@ class Products(Form):
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """List the coefficients in the units of their terms, then the place and its width."""
         numbers = []
-        each = zip(name_terms(self.terms), self.terms, strict=True)
-        for k, (name, term) in enumerate(each, start=1):
+        pairs = zip(name_terms(self.terms), self.terms, strict=True)
+        for k, (name, term) in enumerate(pairs, start=1):
             size = law.effect[f"size{k}"]
             value = law.effect[f"c{k}"] * size
             scale = float(f"{max(abs(value), 1e-6):.1g}")
             unit = TARGETS[term.on].unit_of(term.factors)
             symbol = f"c_{k}" if len(self.terms) > 1 else "c"
             numbers.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
-        known = {p.name: p for p in law.parameters}
+        parameters = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
             unit, symbol, scale = PLACES[name]
-            value, low, high = law.effect[name], stated(known[name].low), stated(known[name].high)
+            value, low, high = (
+                law.effect[name],
+                stated(parameters[name].low),
+                stated(parameters[name].high),
+            )
             numbers.append(Number(name, unit, symbol, value, std[name], scale, low, high, value))
         return numbers
 

@@ -31,12 +31,12 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
         columns: of the candidate terms.
         steps: how many terms each regression selects.
     """
-    whole = columns.gram
-    subsets = [whole, *(whole - part for part in columns.parts)]
-    named = Counter(k for G in subsets for k in _follow(G, steps))
-    alone = find_alone(whole)
-    order = sorted(named, key=lambda k: (-named[k], -alone[k]))
-    order += [int(k) for k in np.argsort(-alone, kind="stable")[:FIRST] if k not in named]
+    gram = columns.gram
+    subsets = [gram, *(gram - part for part in columns.parts)]
+    counts = Counter(k for G in subsets for k in _follow(G, steps))
+    reductions = find_alone(gram)
+    order = sorted(counts, key=lambda k: (-counts[k], -reductions[k]))
+    order += [int(k) for k in np.argsort(-reductions, kind="stable")[:FIRST] if k not in counts]
     return [columns.terms[k] for k in order]
 
 
@@ -65,17 +65,17 @@ def _follow(G: Array, steps: int) -> list[int]:
     """
     from pysindy import FROLS
 
-    kept = np.sort(np.argsort(-find_alone(G), kind="stable")[:KEPT])
-    H, b = G[1:, 1:][np.ix_(kept, kept)], G[1:, 0][kept]
+    places = np.sort(np.argsort(-find_alone(G), kind="stable")[:KEPT])
+    H, b = G[1:, 1:][np.ix_(places, places)], G[1:, 0][places]
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     X, y = _as_rows(H / np.outer(scale, scale), b / scale)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # PySINDy warns of columns that resemble one another
         path = FROLS(max_iter=steps, alpha=1e-9, unbias=False).fit(X, y[:, None]).history_
-    found: list[int] = []
+    order: list[int] = []
     for row in path[: steps + 1]:  # the first row is that of no term
-        found += [int(kept[k]) for k in np.flatnonzero(row[0]) if kept[k] not in found]
-    return found
+        order += [int(places[k]) for k in np.flatnonzero(row[0]) if places[k] not in order]
+    return order
 
 
 def _as_rows(H: Array, b: Array) -> tuple[Array, Array]:

@@ -41,25 +41,27 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
     """
     site, middle = fits.runs[0].motion.site, middle_of(fits.runs)
     terms: tuple[LawTerm, ...] = ()
-    fit, best = fits.selection.fit(start), None
+    fit, law = fits.selection.fit(start), None
     score = fits.workspace.score(fit)
     while len(terms) < TERMS and fit.is_finite:
-        known: Known = (None, None)
-        if best is not None:
-            middle, known = stay(middle, list_moved(terms), place_of(best.law, site))
-        taken = [t.kind for t in terms]
-        left = [t for t in list_terms(fits.runs, known) if t.kind not in taken]
-        columns = fits.project(fit, left, middle)
+        fixed_place: Known = (None, None)
+        if law is not None:
+            middle, fixed_place = stay(middle, list_moved(terms), place_of(law.law, site))
+        used_kinds = [t.kind for t in terms]
+        remaining = [t for t in list_terms(fits.runs, fixed_place) if t.kind not in used_kinds]
+        columns = fits.project(fit, remaining, middle)
         if len(columns.terms) < TERMS:
             break
         kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
-        tried = fit_products(fits, fit, terms, kinds, columns)
-        more = next((k for k, one in tried.items() if fits.is_worth(one, fit, score)), None)
-        if more is None:
+        laws = fit_products(fits, fit, terms, kinds, columns)
+        kind = next(
+            (k for k, candidate in laws.items() if fits.is_worth(candidate, fit, score)), None
+        )
+        if kind is None:
             break
-        best = tried.pop(more).beats(tried.values())
-        terms, fit, score = (*terms, more), best.fit, best.score
-    return best
+        law = laws.pop(kind).beats(laws.values())
+        terms, fit, score = (*terms, kind), law.fit, law.score
+    return law
 
 
 def fit_products(
@@ -81,8 +83,8 @@ def fit_products(
     Returns:
         The fitted laws by their additional terms, without those that stay far behind.
     """
-    around = Surroundings.of(fits.runs)
-    starts = {k: add_term(fit.hypothesis, terms, k, columns, around) for k in more}
+    surroundings = Surroundings.of(fits.runs)
+    starts = {k: add_term(fit.hypothesis, terms, k, columns, surroundings) for k in more}
     return fits.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
 
 
@@ -98,9 +100,11 @@ def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Know
         The place (4,) with the coordinates of the law where it has fitted them, and of these what
         is known of north and east.
     """
-    own = np.array([name in moved for name in ("x", "y", "z", "width")])
-    n, e = (float(p) if known else None for p, known in zip(place[:2], own[:2], strict=True))
-    return np.where(own, place, middle), (n, e)
+    fixed = np.array([name in moved for name in ("x", "y", "z", "width")])
+    n, e = (
+        float(p) if is_fixed else None for p, is_fixed in zip(place[:2], fixed[:2], strict=True)
+    )
+    return np.where(fixed, place, middle), (n, e)
 
 
 def choose_kinds(terms: Sequence[LawTerm]) -> list[LawTerm]:

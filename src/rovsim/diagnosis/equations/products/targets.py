@@ -57,11 +57,11 @@ class Target:
 
     def unit_of(self, factors: Sequence[int]) -> str:
         """SI unit of the coefficient of a product of these factors, given by their codes."""
-        used = [VARIABLES[k] for k in factors]
+        variables = [VARIABLES[k] for k in factors]
         powers = {
-            "m": self.meters - sum(v.meters for v in used),
-            "s": self.seconds - sum(v.seconds for v in used),
-            "rad": -sum(v.radians for v in used),
+            "m": self.meters - sum(v.meters for v in variables),
+            "s": self.seconds - sum(v.seconds for v in variables),
+            "rad": -sum(v.radians for v in variables),
         }
         return write_unit(powers, self.newtons)
 
@@ -79,8 +79,8 @@ def _along_world() -> list[Target]:
     """Forces along the NED axes."""
     latex, towards = ("F_n", "F_e", "F_d"), ("towards north", "towards east", "downwards")
     return [
-        Target(name, "force", (Head(symbol, code),), f"a force {where}", newtons="N")
-        for name, symbol, code, where in zip(
+        Target(name, "force", (Head(symbol, code),), f"a force {direction}", newtons="N")
+        for name, symbol, code, direction in zip(
             ("north", "east", "down"), latex, WORLD_FORCES, towards, strict=True
         )
     ]

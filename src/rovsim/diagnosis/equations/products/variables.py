@@ -60,9 +60,9 @@ def _velocities() -> list[Variable]:
             code.format(IN_CODE[i]),
             *_unit_of_velocity(i, kind),
             i in ODD and kind != "|{}|",
-            what.format(axis),
+            meaning.format(axis),
         )
-        for kind, latex, code, what in kinds
+        for kind, latex, code, meaning in kinds
         for i, axis in enumerate(AXES)
     ]
 
@@ -79,9 +79,9 @@ def _attitudes() -> list[Variable]:
     signs = (r"\tanh(d_{}/" + f"{TILT:g})", "tanh(d{} / " + f"{TILT:g})")
     kinds = (("d_{}", "d_{}", "d{}"), ("sign(d_{})", *signs))
     return [
-        Variable(symbol.format(x), latex.format(x), code.format(x), 0, 0, 0, x == "y", what)
+        Variable(symbol.format(x), latex.format(x), code.format(x), 0, 0, 0, x == "y", meaning)
         for symbol, latex, code in kinds
-        for x, what in (("x", "pitch"), ("y", "roll"), ("z", "uprightness"))
+        for x, meaning in (("x", "pitch"), ("y", "roll"), ("z", "uprightness"))
     ]
 
 
@@ -110,9 +110,9 @@ def tabulate(state: Array, place: Array) -> Array:
     nu, R = state[:, 7:].T, matrix(state[:, 3:7])
     down, U = R[:, 2].T, np.sqrt(np.sum(state[:, 7:10] ** 2, axis=1))
     n, e, d = state[:, :3].T - place[:3, None]
-    near = np.exp(-(n**2 + e**2) / (2.0 * place[3] ** 2))
-    rest = [U, 1.0 / np.sqrt(U**2 + STILL**2), n, e, d, near]
-    return np.vstack([nu, np.abs(nu), np.tanh(nu / SMOOTH), down, np.tanh(down / TILT), *rest])
+    proximity = np.exp(-(n**2 + e**2) / (2.0 * place[3] ** 2))
+    extra = [U, 1.0 / np.sqrt(U**2 + STILL**2), n, e, d, proximity]
+    return np.vstack([nu, np.abs(nu), np.tanh(nu / SMOOTH), down, np.tanh(down / TILT), *extra])
 
 
 def write_unit(powers: Mapping[str, int], head: str = "") -> str:
@@ -122,11 +122,13 @@ def write_unit(powers: Mapping[str, int], head: str = "") -> str:
         powers: of the units, by name.
         head: a unit that comes first, such as N or N m; empty for none.
     """
-    above = [_power(name, k) for name, k in powers.items() if k > 0]
-    below = [_power(name, -k) for name, k in powers.items() if k < 0]
-    over = " ".join(([head] if head else []) + above) or "1"
-    under = " ".join(below)
-    return over + (f"/({under})" if len(below) > 1 else f"/{under}" if below else "")
+    numerators = [_power(name, k) for name, k in powers.items() if k > 0]
+    denominators = [_power(name, -k) for name, k in powers.items() if k < 0]
+    numerator = " ".join(([head] if head else []) + numerators) or "1"
+    denominator = " ".join(denominators)
+    return numerator + (
+        f"/({denominator})" if len(denominators) > 1 else f"/{denominator}" if denominators else ""
+    )
 
 
 def _power(name: str, k: int) -> str:

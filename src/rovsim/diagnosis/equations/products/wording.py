@@ -12,10 +12,10 @@ from rovsim.dynamics.effects.law_codes import SWIRL
 def name_terms(terms: Sequence[LawTerm]) -> list[str]:
     """Name the coefficient of each term after what it acts on, numbered where terms share that."""
     heads = [TARGETS[t.on].name.replace(" ", "_") for t in terms]
-    count, found = Counter(heads), []
+    count, names = Counter(heads), []
     for k, head in enumerate(heads):
-        found.append(head if count[head] == 1 else f"{head}_{heads[: k + 1].count(head)}")
-    return found
+        names.append(head if count[head] == 1 else f"{head}_{heads[: k + 1].count(head)}")
+    return names
 
 
 def write_equation(terms: Sequence[LawTerm]) -> str:
@@ -40,11 +40,11 @@ def _joined(parts: Sequence[str]) -> str:
 
 def _powers(factors: Sequence[int]) -> list[str]:
     """Write factors, given by their codes, in LaTeX; equal ones as a power."""
-    found = []
+    texts = []
     for k, count in Counter(factors).items():
         text = VARIABLES[k].latex
-        found.append(text if count == 1 else f"{text}^{count}")
-    return found
+        texts.append(text if count == 1 else f"{text}^{count}")
+    return texts
 
 
 def describe(terms: Sequence[LawTerm]) -> str:
@@ -64,10 +64,10 @@ def list_quantities(term: LawTerm) -> tuple[str, ...]:
 
     These are velocities by their symbols, `attitude`, `place`, `depth` and `speed`.
     """
-    found = [_QUANTITY.get(VARIABLES[k].meaning, VARIABLES[k].symbol) for k in term.factors]
-    found += ["place"] if term.on == SWIRL else []
-    plain = [name.replace("|", "").removeprefix("sign(").rstrip(")") for name in found]
-    return tuple(dict.fromkeys(plain))
+    names = [_QUANTITY.get(VARIABLES[k].meaning, VARIABLES[k].symbol) for k in term.factors]
+    names += ["place"] if term.on == SWIRL else []
+    quantities = [name.replace("|", "").removeprefix("sign(").rstrip(")") for name in names]
+    return tuple(dict.fromkeys(quantities))
 
 
 _QUANTITY = {

@@ -71,8 +71,8 @@ class LooseFile:
             effect = block.candidate.effect
             if not block.candidate.absent or effect.id not in FILE_EFFECT_IDS:
                 continue
-            each = zip(block.derivatives, block.candidate.term().parameters, strict=True)
-            for column, parameter in each:
+            pairs = zip(block.derivatives, block.candidate.term().parameters, strict=True)
+            for column, parameter in pairs:
                 # the gain of a single thruster is a fault of that thruster, not of the file
                 if effect.id != ThrusterGain.id or parameter.name in ONE_GAIN:
                     spread = spread_of_file(base, effect, parameter)
@@ -102,13 +102,13 @@ class LooseFile:
         """
         G, spread = self.workspace.columns.gram(fit.linearised), self._spread
         H = G[np.ix_(self._rows, self._rows)]
-        needless = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
-        return float(G[0, 0]) - self._cost_at(G) - needless
+        log_det = float(np.linalg.slogdet(np.eye(len(H)) + spread[:, None] * H * spread)[1])
+        return float(G[0, 0]) - self._cost_at(G) - log_det
 
     def measure_loss(self, fit: Fit, term: Term) -> float:
         """By how much the sum of squares grows without one term of a fit, beside a loose file."""
-        rest = self.workspace.gram_without(fit, term)
-        return self._cost_at(rest) - self.measure_cost(fit)
+        gram = self.workspace.gram_without(fit, term)
+        return self._cost_at(gram) - self.measure_cost(fit)
 
     def find_limit(self, term: Term) -> float:
         """The least loss that justifies a term beside a loose file; 0 for a file effect."""
@@ -120,7 +120,7 @@ class LooseFile:
         """Whether all of the file together explains what a special effect of a fit does."""
         if name in FILE_EFFECT_IDS:
             return False
-        term = next(one for one in fit.hypothesis.terms if one.id == name)
+        term = next(t for t in fit.hypothesis.terms if t.id == name)
         return self.measure_loss(fit, term) <= self.find_limit(term)
 
     def weigh(self, own: Contender, other: Contender, deviance_difference: float) -> float:
@@ -132,12 +132,12 @@ class LooseFile:
             deviance_difference: of the two fits as they are. It is returned where both are file
                 effects, where the file is not loose, or where the other fit is hopeless.
         """
-        both = own.term.id in FILE_EFFECT_IDS and other.term.id in FILE_EFFECT_IDS
+        both_of_file = own.term.id in FILE_EFFECT_IDS and other.term.id in FILE_EFFECT_IDS
         loose = has_loose_file(own.fit.hypothesis)
-        if both or not loose or deviance_difference >= HOPELESS_LR:
+        if both_of_file or not loose or deviance_difference >= HOPELESS_LR:
             return deviance_difference
-        more = self.measure_cost(other.fit) - self.measure_cost(own.fit)
-        return more + self.find_limit(other.term) - self.find_limit(own.term)
+        difference = self.measure_cost(other.fit) - self.measure_cost(own.fit)
+        return difference + self.find_limit(other.term) - self.find_limit(own.term)
 
     def propose(self, current: Fit) -> Hypothesis | None:
         """Add all values of the file that, to first order, are worth their penalty together.
@@ -149,8 +149,8 @@ class LooseFile:
             The hypothesis with these values; None where there are none.
         """
         numbers = [n for n in self.numbers if n.candidate.effect.id != ThrusterGain.id]
-        own, G = [number.row for number in numbers], self.workspace.columns.gram(current.linearised)
-        reduction = eliminate_columns(G[np.ix_(own, own)], G[own, 0], self.workspace.penalty)
+        k, G = ([number.row for number in numbers], self.workspace.columns.gram(current.linearised))
+        reduction = eliminate_columns(G[np.ix_(k, k)], G[k, 0], self.workspace.penalty)
         h = current.hypothesis
         for j, x in zip(reduction.chosen, reduction.x, strict=True):
             term = numbers[j].candidate.term([numbers[j].parameter])

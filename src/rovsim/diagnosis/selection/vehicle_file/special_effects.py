@@ -47,26 +47,26 @@ def judge_beside_file(
 
     `gone`: effects that had to go already, and do not come back: so this ends.
     """
-    named = {term.id for term in current.hypothesis.terms}
-    if not has_loose_file(current.hypothesis) or named <= {*FILE_EFFECT_IDS}:
+    ids = {term.id for term in current.hypothesis.terms}
+    if not has_loose_file(current.hypothesis) or ids <= {*FILE_EFFECT_IDS}:
         return Judged(current)
-    _, own = _fit_beside(workspace, current.hypothesis)
-    if np.isinf(own):
+    _, current_misfit = _fit_beside(workspace, current.hypothesis)
+    if np.isinf(current_misfit):
         return Judged(current)
     file, rivals = LooseFile(workspace), []
-    rests = workspace.remove_each(current)
-    for term, rest in zip(current.hypothesis.terms, rests, strict=True):
+    removals = workspace.remove_each(current)
+    for term, removed in zip(current.hypothesis.terms, removals, strict=True):
         limit = file.find_limit(term)
-        for other in _list_alternatives(file, term, rest):
-            if other.name in gone:
+        for alternative in _list_alternatives(file, term, removed):
+            if alternative.name in gone:
                 continue
-            fitted, misfit = _fit_beside(workspace, other.start)
-            worse = misfit + other.limit - own - limit
-            if fitted is not None and worse < 0.0:
-                better = prune(workspace, workspace.fit(fitted.hypothesis))
-                return judge_beside_file(workspace, better, gone | {term.id})
-            if other.name not in named:
-                rivals.append(Rival(other.name, term.id, worse, fitted))
+            fit, misfit = _fit_beside(workspace, alternative.start)
+            deficit = misfit + alternative.limit - current_misfit - limit
+            if fit is not None and deficit < 0.0:
+                pruned = prune(workspace, workspace.fit(fit.hypothesis))
+                return judge_beside_file(workspace, pruned, gone | {term.id})
+            if alternative.name not in ids:
+                rivals.append(Rival(alternative.name, term.id, deficit, fit))
     return Judged(current, tuple(rivals))
 
 
@@ -78,15 +78,15 @@ def _list_alternatives(file: LooseFile, term: Term, rest: Removed) -> Iterator[A
     if term.id in FILE_EFFECT_IDS:
         return
     yield Alternative(ThrusterGain.id, rest.hypothesis, 0.0)
-    workspace, hopeless = file.workspace, WORTH_FITTING * file.find_limit(term)
+    workspace, largest_loss = file.workspace, WORTH_FITTING * file.find_limit(term)
     for p in find_swaps(workspace, term, rest, workspace.settings.trials):
-        if p.term.id in FILE_EFFECT_IDS or rest.ss_increase - p.net_decrease > hopeless:
+        if p.term.id in FILE_EFFECT_IDS or rest.ss_increase - p.net_decrease > largest_loss:
             continue
-        with_it = rest.hypothesis.with_term(p.term)
-        yield Alternative(p.term.id, with_it, file.find_limit(p.term))
+        start = rest.hypothesis.with_term(p.term)
+        yield Alternative(p.term.id, start, file.find_limit(p.term))
 
 
 def _fit_beside(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Fit | None, float]:
     """A hypothesis with all of the file, fitted, and its misfit; infinite where it diverges."""
-    whole = fit_whole_file(start, workspace.bank, workspace.noise)
-    return whole, np.inf if whole is None else measure_misfit(whole, start)
+    fit = fit_whole_file(start, workspace.bank, workspace.noise)
+    return fit, np.inf if fit is None else measure_misfit(fit, start)

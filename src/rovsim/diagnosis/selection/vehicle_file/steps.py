@@ -20,10 +20,10 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
         return current
     for term in terms:
         if file.explains(current, term.id):
-            rest = workspace.fit(workspace.drop(current, [(term,)])[0])
-            fewer = prune(workspace, add_file_effects(workspace, rest))
-            if _is_as_good(file, fewer, current, term):
-                return prefer_file(workspace, fewer)
+            without_term = workspace.fit(workspace.drop(current, [(term,)])[0])
+            trial = prune(workspace, add_file_effects(workspace, without_term))
+            if _is_as_good(file, trial, current, term):
+                return prefer_file(workspace, trial)
     return current
 
 
@@ -44,32 +44,35 @@ def suspect_loose_file(workspace: SearchWorkspace, current: Fit) -> Fit:
     """
     if has_loose_file(current.hypothesis):
         return current
-    file, rest = LooseFile(workspace), current
-    while explained := _find_explained(file, rest):
-        rest = workspace.fit(workspace.drop(rest, [(explained,)])[0])
-    if workspace.score(rest) + file.measure_doubt(rest) < workspace.score(current) + MIN_LR_APART:
+    file, reduced = LooseFile(workspace), current
+    while explained := _find_explained(file, reduced):
+        reduced = workspace.fit(workspace.drop(reduced, [(explained,)])[0])
+    if (
+        workspace.score(reduced) + file.measure_doubt(reduced)
+        < workspace.score(current) + MIN_LR_APART
+    ):
         return current
-    loose = add_file_effects(workspace, rest)
+    loose = add_file_effects(workspace, reduced)
     # first-order predictions of many numbers together may be five times what a fit makes of them
-    kept = workspace.score(loose) > workspace.score(current) - FILE_LR
-    if not (has_loose_file(loose.hypothesis) and kept):
+    likely_enough = workspace.score(loose) > workspace.score(current) - FILE_LR
+    if not (has_loose_file(loose.hypothesis) and likely_enough):
         return current
-    return loose if workspace.find_relevant(loose, [rest.hypothesis.model])[0] else current
+    return loose if workspace.find_relevant(loose, [reduced.hypothesis.model])[0] else current
 
 
 def _find_explained(file: LooseFile, fit: Fit) -> Term | None:
     """The special effect that a loose file needs least, if it explains one."""
-    special = [term for term in fit.hypothesis.terms if term.id not in FILE_EFFECT_IDS]
-    beyond = [file.measure_loss(fit, term) - file.find_limit(term) for term in special]
-    return special[beyond.index(min(beyond))] if beyond and min(beyond) <= 0.0 else None
+    special_terms = [term for term in fit.hypothesis.terms if term.id not in FILE_EFFECT_IDS]
+    excess = [file.measure_loss(fit, term) - file.find_limit(term) for term in special_terms]
+    return special_terms[excess.index(min(excess))] if excess and min(excess) <= 0.0 else None
 
 
 def add_file_effects(workspace: SearchWorkspace, current: Fit) -> Fit:
     """With all file effects that are worth their penalty beside each other."""
-    wanted = LooseFile(workspace).propose(current)
-    if wanted is None:
+    proposal = LooseFile(workspace).propose(current)
+    if proposal is None:
         return current
-    trial = workspace.fit(wanted)
+    trial = workspace.fit(proposal)
     return trial if workspace.score(trial) > workspace.score(current) else current
 
 
@@ -78,6 +81,6 @@ def fix_gain(workspace: SearchWorkspace, current: Fit) -> Fit:
     gain = mark_gain(current.hypothesis)
     if not (has_loose_file(current.hypothesis) and gain.any()):
         return current
-    rest = workspace.fit(drop_parameters(current.hypothesis, gain))
-    other = prune(workspace, add_file_effects(workspace, rest))
-    return other if workspace.score(other) > workspace.score(current) else current
+    without_gain = workspace.fit(drop_parameters(current.hypothesis, gain))
+    trial = prune(workspace, add_file_effects(workspace, without_gain))
+    return trial if workspace.score(trial) > workspace.score(current) else current

@@ -29,10 +29,10 @@ def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit 
     """All that the file states, fitted; None where it is not loose, or such a model diverges."""
     if not has_loose_file(selected):
         return None
-    freed = free_rest(selected)
-    prior = know_file(selected, freed)
-    seen = levenberg_marquardt(freed, bank, noise, prior)
-    return judge(seen, bank, noise, prior) if seen.finite else None
+    hypothesis = free_rest(selected)
+    prior = know_file(selected, hypothesis)
+    linearised = levenberg_marquardt(hypothesis, bank, noise, prior)
+    return judge(linearised, bank, noise, prior) if linearised.finite else None
 
 
 def measure_misfit(whole: Fit, selected: Hypothesis) -> float:
@@ -57,31 +57,31 @@ def know_file(selected: Hypothesis, freed: Hypothesis) -> Prior:
 
 def mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
     """Which parameters (k,) of the one are not selected."""
-    known = set(selected.parameter_names)
-    return np.array([name not in known for name in freed.parameter_names], bool)
+    names = set(selected.parameter_names)
+    return np.array([name not in names for name in freed.parameter_names], bool)
 
 
 def free_rest(h: Hypothesis) -> Hypothesis:
     """With all free that the file states; each thruster's own gain where several differ."""
-    fitted = set(h.parameter_names)
-    for effect in (one.on(h.base.vehicle) for one in FILE_EFFECTS):
-        left = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in fitted)
-        if left:
-            h = h.with_term(Term(effect(), left))
+    names = set(h.parameter_names)
+    for effect in (cls.on(h.base.vehicle) for cls in FILE_EFFECTS):
+        parameters = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in names)
+        if parameters:
+            h = h.with_term(Term(effect(), parameters))
     return h
 
 
 def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
     if effect.id != ThrusterGain.id:
         return [p.name for p in effect.parameters if p.fitted]
-    own = name_gains(h.base.vehicle.thruster_count)
-    selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in own)
-    return (*ONE_GAIN, *own) if selected >= SEVERAL else ONE_GAIN
+    gains = name_gains(h.base.vehicle.thruster_count)
+    selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in gains)
+    return (*ONE_GAIN, *gains) if selected >= SEVERAL else ONE_GAIN
 
 
 def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
-    known = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
-    each = zip(freed.parameter_names, known, strict=True)
-    new = [one for name, one in each if name not in h.parameter_names]
-    return np.array([spread_of_file(h.base, *one) for one in new])
+    parameters = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
+    pairs = zip(freed.parameter_names, parameters, strict=True)
+    new = [parameter for name, parameter in pairs if name not in h.parameter_names]
+    return np.array([spread_of_file(h.base, *parameter) for parameter in new])
