@@ -23,10 +23,10 @@ def compose(overrides: Sequence[str]) -> Settings:
 
     from rovsim.application.conf_search import first_folder
 
-    words = [_allow_unlisted(word) for word in overrides]
+    escaped = [_allow_unlisted(override) for override in overrides]
     try:
         with initialize_config_dir(first_folder(), version_base="1.3"):
-            return settings_of(hydra_compose("config", overrides=words))
+            return settings_of(hydra_compose("config", overrides=escaped))
     except RovsimError:
         raise
     except Exception as error:  # Hydra's own errors, and any that odd words cause in it
@@ -44,10 +44,10 @@ def sweep_folder(overrides: Sequence[str]) -> Path:
 
     from rovsim.application.conf_search import first_folder
 
-    words = [_allow_unlisted(word) for word in overrides]
+    escaped = [_allow_unlisted(override) for override in overrides]
     with initialize_config_dir(first_folder(), version_base="1.3"):
         return Path(
-            hydra_compose("config", overrides=words, return_hydra_config=True).hydra.sweep.dir
+            hydra_compose("config", overrides=escaped, return_hydra_config=True).hydra.sweep.dir
         )
 
 
@@ -66,25 +66,25 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
         overrides: all of them.
         message: of Hydra's error.
     """
-    chosen = [word for word in overrides if _is_choice(word)]
-    for word in overrides:
-        key, _, value = word.lstrip("+~").partition("=")
+    choices = [override for override in overrides if _is_choice(override)]
+    for override in overrides:
+        key, _, value = override.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
         if options and value not in options:
-            return unlisted(value, options, found=f"there is no {key} '{value}'", where=word)
+            return unlisted(value, options, found=f"there is no {key} '{value}'", where=override)
         if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
-            known = _keys(chosen)
-            if key not in known and key in message:
+            keys = _keys(choices)
+            if key not in keys and key in message:
                 return BadInput(
                     f"there is no key '{key}'",
-                    where=word,
+                    where=override,
                     expected="a key of conf/config.yaml",
-                    remedy=nearest(key, known),
+                    remedy=nearest(key, keys),
                 )
     if message.startswith("Ambiguous value"):
-        word = next((word for word in overrides if word in message), overrides[0])
+        override = next((override for override in overrides if override in message), overrides[0])
         return BadInput(
-            f"several values ({word})",
+            f"several values ({override})",
             where=f"overrides {' '.join(overrides)}",
             expected="one value of each key",
             remedy="Add -m: then each value is a run of a sweep; or put a list into brackets.",
@@ -123,7 +123,7 @@ def settings_of(composed: Any) -> Settings:
     """
     from omegaconf import OmegaConf
 
-    plain = OmegaConf.to_container(composed, resolve=True)
-    if isinstance(plain, dict):
-        plain.pop("hydra", None)
-    return checked(Settings, plain, "configuration")
+    container = OmegaConf.to_container(composed, resolve=True)
+    if isinstance(container, dict):
+        container.pop("hydra", None)
+    return checked(Settings, container, "configuration")

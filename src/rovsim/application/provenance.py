@@ -39,17 +39,17 @@ def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> st
     Returns:
         The first 16 hexadecimal digits of a SHA-256.
     """
-    wanted = find_modules(*names)
+    modules = find_modules(*names)
     if without:
-        wanted = {name for name in wanted if not f"{name}.".startswith(f"{without}.")}
-    return _digest(map(_file, sorted(wanted)), described if wanted & {MODEL, VEHICLE} else ())
+        modules = {name for name in modules if not f"{name}.".startswith(f"{without}.")}
+    return _digest(map(_file, sorted(modules)), described if modules & {MODEL, VEHICLE} else ())
 
 
 def imports_of(script: Path) -> list[str]:
     """List the modules of rovsim that a script imports."""
     tree = ast.parse(script.read_text(encoding="utf-8"))
-    found = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
-    return sorted({name for name in found if name and name.startswith("rovsim")})
+    modules = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    return sorted({name for name in modules if name and name.startswith("rovsim")})
 
 
 def find_modules(*names: str) -> set[str]:
@@ -61,11 +61,13 @@ def find_modules(*names: str) -> set[str]:
     graph = _graph()
 
     def found(packages: Iterable[str]) -> set[str]:
-        own = {name for package in packages for name in (package, *graph.find_descendants(package))}
-        return own.union(*(graph.find_upstream_modules(name) for name in own))
+        members = {
+            name for package in packages for name in (package, *graph.find_descendants(package))
+        }
+        return members.union(*(graph.find_upstream_modules(name) for name in members))
 
-    wanted = found(names)
-    return wanted | found(_discovered(wanted))
+    modules = found(names)
+    return modules | found(_discovered(modules))
 
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:
@@ -97,8 +99,8 @@ def _discovered(modules: set[str]) -> set[str]:
     A model may hold any effect and compiles its engine: modules that depend on models depend on all
     effects and on the engine.
     """
-    found = {package for package in LOOKED_INTO if package in modules}
-    return found | (set(OF_MODELS) if MODEL in modules else set())
+    packages = {package for package in LOOKED_INTO if package in modules}
+    return packages | (set(OF_MODELS) if MODEL in modules else set())
 
 
 @cache
@@ -148,8 +150,8 @@ def provenance(
         campaign: that was used; None where the settings create it (a synthetic one).
         recordings: digests of its files that are known (`digest_recordings`).
     """
-    chosen = settings.model_dump(mode="json", exclude=set(UNRELATED))
-    origin = {"settings": chosen, **describe_origin(catalogue)}
+    relevant = settings.model_dump(mode="json", exclude=set(UNRELATED))
+    origin = {"settings": relevant, **describe_origin(catalogue)}
     if campaign is None:
         return origin
     vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
@@ -180,8 +182,8 @@ def digest_recordings(campaign: Campaign) -> dict[str, str]:
 def _digest_each(
     campaign: Campaign, files: Sequence[Path], known: Mapping[str, str]
 ) -> dict[str, str]:
-    there = {relpath(path, campaign.folder): path for path in files if path.is_file()}
-    return {name: known.get(name) or _sha256(path)[:16] for name, path in there.items()}
+    present = {relpath(path, campaign.folder): path for path in files if path.is_file()}
+    return {name: known.get(name) or _sha256(path)[:16] for name, path in present.items()}
 
 
 def _sha256(path: Path) -> str:

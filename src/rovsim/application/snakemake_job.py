@@ -58,8 +58,8 @@ class Job:
 
     def paths(self, name: str) -> list[Path]:
         """Return the input files under a name, none where the rule left it empty."""
-        given = self.snakemake.input.get(name) or []
-        return [Path(path) for path in as_list(given)]
+        files = self.snakemake.input.get(name) or []
+        return [Path(path) for path in as_list(files)]
 
     def path(self, name: str) -> Path:
         """Return the one input file under a name."""
@@ -73,8 +73,8 @@ class Job:
     def outputs(self) -> dict[str, list[Path]]:
         """Return all output files by name."""
         return {
-            name: [Path(path) for path in as_list(given)]
-            for name, given in self.snakemake.output.items()
+            name: [Path(path) for path in as_list(files)]
+            for name, files in self.snakemake.output.items()
         }
 
     def contents(self, *names: str) -> dict[str, Path]:
@@ -135,10 +135,10 @@ class Job:
         """Return the input `replays` by model and run, in the rule's order; read when asked for."""
         from rovsim.simulation.prediction import Replay
 
-        found: dict[str, dict[str, Path]] = {}
+        by_model: dict[str, dict[str, Path]] = {}
         for path in self.paths("replays"):  # MODEL/RUN.npz
-            found.setdefault(path.parent.name, {})[path.stem] = path
-        return {model: read_again(runs, Replay.read) for model, runs in found.items()}
+            by_model.setdefault(path.parent.name, {})[path.stem] = path
+        return {model: read_again(runs, Replay.read) for model, runs in by_model.items()}
 
 
 @contextmanager

@@ -82,16 +82,20 @@ class Equation:
     @cached_property
     def products(self) -> dict[str, float]:
         """Coefficients of products of velocities by SNAME name (Yuv), as in vehicle files."""
-        found: dict[str, float] = {}
+        coefficients: dict[str, float] = {}
         for flow in self._those(CrossFlow):
-            found |= {name: found.get(name, 0.0) + c for name, c in flow.products.items()}
+            coefficients |= {
+                name: coefficients.get(name, 0.0) + c for name, c in flow.products.items()
+            }
         for lift in self._those(Lift):
             for name in ("Y|u|v", "Z|u|w"):
-                found[name] = found.get(name, 0.0) - lift["coefficient"]
+                coefficients[name] = coefficients.get(name, 0.0) - lift["coefficient"]
         for cubic in self._those(CubicDamping):
             for axis, force, v in zip(AXES, FORCE, VELOCITY, strict=True):
-                found[f"{force}{3 * v}"] = found.get(f"{force}{3 * v}", 0.0) - cubic[axis]
-        return {name: c for name, c in found.items() if c}
+                coefficients[f"{force}{3 * v}"] = (
+                    coefficients.get(f"{force}{3 * v}", 0.0) - cubic[axis]
+                )
+        return {name: c for name, c in coefficients.items() if c}
 
     @property
     def constant(self) -> Array:
@@ -112,8 +116,8 @@ class Equation:
     def columns(self) -> Array:
         """Position (n,) of the command that each thruster follows, counted from 0."""
         order = np.arange(self.model.thrust_path.thrusters.count)[None]
-        for swapped in self._those(ThrusterOrder):
-            order = swapped.thruster_command(order)
+        for effect in self._those(ThrusterOrder):
+            order = effect.thruster_command(order)
         return np.asarray(order[0], dtype=int)
 
     @property

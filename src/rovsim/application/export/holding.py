@@ -75,8 +75,10 @@ def whole(effect: Effect) -> tuple[Effect, str]:
 
 def nothing(effect: Effect) -> tuple[Effect, str]:
     """Keep nothing of an effect: return it at values that do nothing, and why, by its kind."""
-    gone = HeldAxes() if isinstance(effect, HeldAxes) else effect.neutral()
-    return gone, next((why for kind, why in WHY if isinstance(effect, kind)), "it has no such term")
+    neutral = HeldAxes() if isinstance(effect, HeldAxes) else effect.neutral()
+    return neutral, next(
+        (reason for kind, reason in WHY if isinstance(effect, kind)), "it has no such term"
+    )
 
 
 class Fixed(Thrusters):
@@ -96,17 +98,17 @@ def unpowered(thrusters: Thrusters) -> tuple[Thrusters, str]:
         The thrusters, and what is left out; empty where thrust does not depend on voltage.
     """
     tables = [curve.tables for curve in thrusters.curves if curve.tables is not None]
-    several = [one for one in tables if len(one.volts) > 1]
-    if not several:
+    by_voltage = [table for table in tables if len(table.volts) > 1]
+    if not by_voltage:
         return thrusters, ""
     layout = thrusters.layout
-    own = [
+    units = [
         unit.model_copy(update={"force_curve": curve.at_nominal_voltage})
         for unit, curve in zip(layout.units, thrusters.curves, strict=True)
     ]
-    volts = ", ".join(f"{v:g}" for v in sorted({one.usual for one in several}))
-    held = Thrusters(layout.model_copy(update={"units": tuple(own)}))
-    return held, f"thrust is that at {volts} V, whatever the battery has"
+    volts = ", ".join(f"{v:g}" for v in sorted({table.usual for table in by_voltage}))
+    converted = Thrusters(layout.model_copy(update={"units": tuple(units)}))
+    return converted, f"thrust is that at {volts} V, whatever the battery has"
 
 
 def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
@@ -115,11 +117,11 @@ def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
     Returns:
         The thrusters, and what is left out; empty where that is nothing.
     """
-    held, why = unpowered(thrusters)
+    converted, reason = unpowered(thrusters)
     if not thrusters.turning.any():
-        return held, why
-    still = "thrusters do not turn: they push along the angle zero"
-    return Fixed(held.layout), f"{still}; {why}" if why else still
+        return converted, reason
+    note = "thrusters do not turn: they push along the angle zero"
+    return Fixed(converted.layout), f"{note}; {reason}" if reason else note
 
 
 def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
@@ -134,11 +136,11 @@ def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
     """
     effects = list(model.effects)
     for k, effect in enumerate(model.effects):
-        held, why = hold(effect)
-        if why and acts(effect):
+        remainder, reason = hold(effect)
+        if reason and acts(effect):
             before = model.with_effects(tuple(effects))
-            effects[k] = held
-            yield Left(effect.id, why, before, model.with_effects(tuple(effects)))
+            effects[k] = remainder
+            yield Left(effect.id, reason, before, model.with_effects(tuple(effects)))
     if model.residual is not None:
         before = model.with_effects(tuple(effects))
         yield Left(

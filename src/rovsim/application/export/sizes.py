@@ -55,7 +55,7 @@ class Sized:
 
 def size_all(left: Sequence[Left], motions: Sequence[Motion]) -> list[Sized]:
     """Measure the force of each part over some true motions."""
-    return [Sized(one.name, one.why, _rms(one, motions)) for one in left]
+    return [Sized(part.name, part.why, _rms(part, motions)) for part in left]
 
 
 def flights(model: Model, motions: Iterable[Motion] | None) -> list[Motion]:
@@ -77,7 +77,7 @@ def typical_flight(model: Model) -> Motion:
     demands per axis where an effect acts on these.
     """
     demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in model.effects)
-    flown = replace(
+    plant = replace(
         model,
         residual=None,
         effects=tuple(
@@ -87,25 +87,27 @@ def typical_flight(model: Model) -> Motion:
     )
     settings = _calm(model.vehicle, demands)
     try:
-        return _fly(flown, settings)
+        return _fly(plant, settings)
     except LeftTank:
         sides = {axis: (-ROOM, ROOM) for axis in "xyz"}
-        return _fly(flown, settings.model_copy(update={"tank": Box(**sides)}))
+        return _fly(plant, settings.model_copy(update={"tank": Box(**sides)}))
 
 
 def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
     """Return a tank that suits a vehicle, without turbulence, which no model describes."""
-    suits = SUITABLE["surfaces"] if vehicle.surfaces else {}
-    suits = SUITABLE["waterplane"] if vehicle.floats else suits
-    box = Box(**suits["tank"]) if suits else Box()
-    none = Turbulence(force=0.0, moment=0.0)
-    return TankSettings(tank=box, turbulence=none, log=Log(kind="demand" if demands else "pwm"))
+    suitable = SUITABLE["surfaces"] if vehicle.surfaces else {}
+    suitable = SUITABLE["waterplane"] if vehicle.floats else suitable
+    box = Box(**suitable["tank"]) if suitable else Box()
+    still_water = Turbulence(force=0.0, moment=0.0)
+    return TankSettings(
+        tank=box, turbulence=still_water, log=Log(kind="demand" if demands else "pwm")
+    )
 
 
 def _fly(model: Model, settings: TankSettings) -> Motion:
     tank = settings.tank.ned
-    found = fly_run(model, settings, "6dof", tank, np.random.default_rng(SEED))
-    state, time = found.state[::STRIDE], np.round(found.time[::STRIDE], 9)
+    flight = fly_run(model, settings, "6dof", tank, np.random.default_rng(SEED))
+    state, time = flight.state[::STRIDE], np.round(flight.time[::STRIDE], 9)
     site = Site(tank, HALF_TURN_X, float(tank[2, 0]))
     return Motion(
         RunInfo("flight", "6dof", "train"),
@@ -116,7 +118,7 @@ def _fly(model: Model, settings: TankSettings) -> Motion:
         np.gradient(state[:, 7:], time, axis=0),
         state[:, 7:],
         np.ones(len(time), bool),
-        found.commands,
+        flight.commands,
         False,
         float(time[-1]),
     )
@@ -131,9 +133,9 @@ def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
 
 def _force(left: Left, motion: Motion) -> Array:
     """Compute the wrench (n, 6), N and N m, that is left out at the states of a motion."""
-    both = (left.before, left.after)
-    before, after = (accelerate_as_logged(model, motion, ReplaySettings()) for model in both)
-    force = (before - after) @ left.before.M.T
+    models = (left.before, left.after)
+    full, reduced = (accelerate_as_logged(model, motion, ReplaySettings()) for model in models)
+    force = (full - reduced) @ left.before.M.T
     if left.missing is not None:
         force = force + left.missing(left.before, motion.state)
     return np.asarray(force)

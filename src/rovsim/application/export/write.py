@@ -48,9 +48,9 @@ def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
             expected="a model that forces move",
             remedy="Name nominal, or a model file.",
         )
-    left = list(leave_out(model, target.hold))
-    held = left[-1].after if left else model
-    if not held.possible:
+    parts = list(leave_out(model, target.hold))
+    reduced = parts[-1].after if parts else model
+    if not reduced.possible:
         raise BadInput(
             f"{model.name} has axes that are held, and no inertia along them",
             where="model",
@@ -58,7 +58,7 @@ def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
             remedy="Give the vehicle file Ixx, Iyy and added mass of those axes, or write it for "
             "a simulator that holds axes (to=mss).",
         )
-    return held, [*left, *target.further(held)]
+    return reduced, [*parts, *target.further(reduced)]
 
 
 def export_model(
@@ -77,11 +77,11 @@ def export_model(
     Raises:
         BadInput: the target cannot hold such a model at all.
     """
-    held, left = represent(model, target)
-    sized = size_all(left, flights()) if left else []
+    reduced, parts = represent(model, target)
+    sized = size_all(parts, flights()) if parts else []
     notes = [f"{model.name}, {WRITTEN} {target.title}.", f"Model: {origin}"]
     notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
-    return Export(target.text(Equation(held), notes), tuple(sized))
+    return Export(target.text(Equation(reduced), notes), tuple(sized))
 
 
 def model_parts(model: Model) -> str:
@@ -107,5 +107,5 @@ def _listed(sized: Sequence[Sized], over: str) -> list[str]:
     units = f"{', '.join(AXES[:3])} in N, {', '.join(AXES[3:])} in N m"
     head = [f"LEFT OUT, with the RMS of its force over {over}", f"({units}):"]
     return head + [
-        f"  {one.name}: {' '.join(f'{v:.3g}' for v in one.rms)}  ({one.why})" for one in sized
+        f"  {part.name}: {' '.join(f'{v:.3g}' for v in part.rms)}  ({part.why})" for part in sized
     ]

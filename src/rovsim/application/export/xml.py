@@ -33,7 +33,7 @@ def comment(parent: ET.Element, lines: Sequence[str]) -> None:
 
 def _legal(text: str | None) -> str | None:
     """Replace characters that XML cannot hold, even escaped, by their Python escapes."""
-    return text and ILLEGAL.sub(lambda found: repr(found[0])[1:-1], text)
+    return text and ILLEGAL.sub(lambda match: repr(match[0])[1:-1], text)
 
 
 def numbers(values: Sequence[float] | Array) -> str:
@@ -54,9 +54,9 @@ def force_tables(equation: Equation) -> list[str]:
     force = equation.static_force(np.tile(TABLE[:, None], (1, count)))
     head = "  ".join(f"{c:+.1f}" for c in TABLE)
     lines = ["Thrust in N at the commands", f"  {head}"]
-    pulls = (force * equation.reach).T
-    for name, column, row in zip(equation.names, equation.columns, pulls, strict=True):
-        follows = f"  (follows the command of {equation.names[column]})"
-        swapped = follows if equation.names[column] != name else ""
-        lines.append(f"  {name}: {'  '.join(f'{f:+.2f}' for f in row)}{swapped}")
+    forces = (force * equation.reach).T
+    for name, column, row in zip(equation.names, equation.columns, forces, strict=True):
+        note = f"  (follows the command of {equation.names[column]})"
+        suffix = note if equation.names[column] != name else ""
+        lines.append(f"  {name}: {'  '.join(f'{f:+.2f}' for f in row)}{suffix}")
     return lines

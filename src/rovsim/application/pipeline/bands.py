@@ -28,14 +28,14 @@ def bands_when_asked(
         Bands by model and run, of models whose uncertainty is known.
     """
     recent = Recent[Band | None]()
-    sure = [model for model in models if model.uncertainty is not None]
-    how = settings.only(WINDOW)
+    with_uncertainty = [model for model in models if model.uncertainty is not None]
+    window_settings = settings.only(WINDOW)
 
     def of(model: Model, run: str) -> Band | None:
-        spans = find_spans(motions[run], how.replay, open_loop=False)[HORIZON]
-        return predict_band(model, motions[run], spans, how)
+        spans = find_spans(motions[run], window_settings.replay, open_loop=False)[HORIZON]
+        return predict_band(model, motions[run], spans, window_settings)
 
-    return {m.name: Remade(motions, partial(of, m), recent=recent) for m in sure}
+    return {m.name: Remade(motions, partial(of, m), recent=recent) for m in with_uncertainty}
 
 
 def cover_test_runs(
@@ -47,29 +47,29 @@ def cover_test_runs(
         None where no model has bands.
     """
     runs = [run for run in data.runs.of("test") if run in data.motions]
-    asked = [
+    jobs = [
         (model, run)
         for model in models
         for run in runs
         if why_without_bands(model, data.motions[run]) is None
     ]
-    found: dict[str, dict[str, RunBands]] = {}
-    for model, run in counted(asked, "drawing bands"):
+    by_model: dict[str, dict[str, RunBands]] = {}
+    for model, run in counted(jobs, "drawing bands"):
         windows = _cover_run(model, data.motions[run], settings)
         if windows:
             split = data.quality[run].split
-            found.setdefault(model.name, {})[run] = RunBands(split=split, windows=windows)
-    if not found:
+            by_model.setdefault(model.name, {})[run] = RunBands(split=split, windows=windows)
+    if not by_model:
         return None
-    models_of = {name: ModelBands(runs=runs) for name, runs in found.items()}
+    models_of = {name: ModelBands(runs=runs) for name, runs in by_model.items()}
     return Bands(level=LEVEL, models=models_of)
 
 
 def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:
-    how = settings.only(*(s for s in settings.replay.horizons if s >= WINDOW))
-    found = {}
-    for name, spans in find_spans(motion, how.replay, open_loop=False).items():
-        band = predict_band(model, motion, spans, how) if spans else None
+    window_settings = settings.only(*(s for s in settings.replay.horizons if s >= WINDOW))
+    coverage = {}
+    for name, spans in find_spans(motion, window_settings.replay, open_loop=False).items():
+        band = predict_band(model, motion, spans, window_settings) if spans else None
         if band is not None:
-            found[name] = cover(motion, band, spans)
-    return found
+            coverage[name] = cover(motion, band, spans)
+    return coverage

@@ -30,9 +30,9 @@ def compare(
 
     Runs are taken once, one after the other, so that memory does not grow with their number.
     """
-    scored = Scored((model.name for model in models), settings.replay.longest)
+    scores = Scored((model.name for model in models), settings.replay.longest)
     searches = _searches(data, models, settings)
-    shown = replay_when_asked(models, data.motions, settings)
+    replays = replay_when_asked(models, data.motions, settings)
     budgets = Remade(
         data.motions, lambda run: balance_forces(models[-1], data.motions[run], settings)
     )
@@ -40,24 +40,24 @@ def compare(
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
         for model in models:
-            found = score_run(scored, model, motion, settings, HORIZON, OPEN_LOOP)
-            shown[model.name].keep(run, found)
+            prediction = score_run(scores, model, motion, settings, HORIZON, OPEN_LOOP)
+            replays[model.name].keep(run, prediction)
         for search in searches:
             search.add(motion)
         forces[run] = budgets[run].totals
     return ReportData(
         motions=data.motions,
-        replays=shown,
+        replays=replays,
         bands=bands_when_asked(models, data.motions, settings),
         coverage=cover_test_runs(models, data, settings),
         budgets=budgets,
         quality=data.quality,
-        comparison=scored.comparison,
-        growth=scored.growth,
-        steps=tuple(scored.steps),
+        comparison=scores.comparison,
+        growth=scores.growth,
+        steps=tuple(scores.steps),
         forces=BudgetTotals(runs=forces),
         where=list_conditions([search.found for search in searches]),
-        drawn=_choose_drawn(scored.comparison, models[-1].name, list(data.motions)),
+        drawn=_choose_drawn(scores.comparison, models[-1].name, list(data.motions)),
     )
 
 
@@ -71,8 +71,8 @@ def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tu
     """
     if len(runs) <= DRAWN:
         return tuple(runs)
-    found = comparison.models[model].runs
-    rmse = np.array([found[run].windows[HORIZON].velocity_rmse.array() for run in runs])
+    errors = comparison.models[model].runs
+    rmse = np.array([errors[run].windows[HORIZON].velocity_rmse.array() for run in runs])
     rmse = np.nan_to_num(rmse[:, np.isfinite(rmse).any(axis=0)], nan=np.inf)  # diverged: the worst
     worst = np.argsort(-np.mean(rmse / np.median(rmse, axis=0), axis=1), kind="stable")
     return tuple(runs[k] for k in sorted(worst[:DRAWN].tolist()))
@@ -82,5 +82,5 @@ def _searches(
     data: MeasuredCampaign, models: Sequence[Model], settings: SimulationSettings
 ) -> list[ConditionSearch]:
     splits = [data.quality[run].split for run in data.motions]
-    moving = [model for model in models if not model.inert]
-    return [ConditionSearch(m, splits, settings) for m in moving]
+    dynamic = [model for model in models if not model.inert]
+    return [ConditionSearch(m, splits, settings) for m in dynamic]

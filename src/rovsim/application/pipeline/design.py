@@ -71,15 +71,17 @@ def design(
             remedy="Record a run with commands first, however short.",
         )
     with staged("designing", STAGES) as stage:
-        found = plan(
+        flight_plan = plan(
             model, data.runs, question, log.axis_numbers if log.per_axis else None, catalogue, stage
         )
     site = next(iter(data.motions.values())).site
-    experiment = report(found, model.name, question, site)
-    wider = warn_of_wider(model, {n: one.now for n, one in experiment.expects.std.items()})
-    experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *wider)})
-    commands = found.flight.commands
-    return Designed(experiment, format_commands(commands, log), _picture(found, commands, log))
+    experiment = report(flight_plan, model.name, question, site)
+    warnings = warn_of_wider(model, {n: std.now for n, std in experiment.expects.std.items()})
+    experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *warnings)})
+    commands = flight_plan.flight.commands
+    return Designed(
+        experiment, format_commands(commands, log), _picture(flight_plan, commands, log)
+    )
 
 
 def write_flight(out: Path, found: Designed) -> None:

@@ -37,6 +37,6 @@ def diagnose(
     """
     require_physics(base, "diagnose")
     with staged("diagnosing", STAGES) as stage:
-        found = diagnose_campaign(runs, base, settings, catalogue, stage, failing)
-    kept = found.diagnosis.model_copy(update={"recordings": dict(recordings)})
-    return replace(found, diagnosis=kept)
+        diagnosed = diagnose_campaign(runs, base, settings, catalogue, stage, failing)
+    diagnosis = diagnosed.diagnosis.model_copy(update={"recordings": dict(recordings)})
+    return replace(diagnosed, diagnosis=diagnosis)

@@ -19,29 +19,33 @@ def read_given_diagnosis(path: Path, campaign: Campaign) -> Diagnosis:
     Raises:
         BadInput: the file is missing or damaged, or it is a diagnosis of other recordings.
     """
-    found = Diagnosis.read(path)
-    if found.recordings:
-        _refuse_other(path, found.recordings, campaign)
-    return found
+    diagnosis = Diagnosis.read(path)
+    if diagnosis.recordings:
+        _refuse_other(path, diagnosis.recordings, campaign)
+    return diagnosis
 
 
 def _refuse_other(path: Path, diagnosed: Mapping[str, str], campaign: Campaign) -> None:
-    here = digest_recordings(campaign)
-    gone = [name for name, content in diagnosed.items() if content not in here.values()]
-    new = [name for name, content in here.items() if content not in diagnosed.values()]
-    if len(gone) == len(diagnosed):
-        found = f"is a diagnosis of other recordings: none of the {len(gone)} files that it read "
-        found += "is in this campaign"
-    elif gone:
-        said = f"{len(gone)} of the {len(diagnosed)} files that it read are not in this campaign"
-        found = f"is a diagnosis of other recordings: {said} ({several(gone)})"
+    digests = digest_recordings(campaign)
+    absent = [name for name, content in diagnosed.items() if content not in digests.values()]
+    new = [name for name, content in digests.items() if content not in diagnosed.values()]
+    if len(absent) == len(diagnosed):
+        problem = (
+            f"is a diagnosis of other recordings: none of the {len(absent)} files that it read "
+        )
+        problem += "is in this campaign"
+    elif absent:
+        detail = (
+            f"{len(absent)} of the {len(diagnosed)} files that it read are not in this campaign"
+        )
+        problem = f"is a diagnosis of other recordings: {detail} ({several(absent)})"
     elif new:
-        said = f"it did not read {len(new)} of the {len(here)} files of this campaign"
-        found = f"is a diagnosis of fewer recordings: {said} ({several(new)})"
+        detail = f"it did not read {len(new)} of the {len(digests)} files of this campaign"
+        problem = f"is a diagnosis of fewer recordings: {detail} ({several(new)})"
     else:
         return
     raise BadInput(
-        found,
+        problem,
         where=path,
         expected=f"a diagnosis of the recordings of '{campaign.name}' in {campaign.folder}",
         remedy="Open the campaign that was diagnosed; or leave `diagnosis=` out, and the workbench "

@@ -46,10 +46,10 @@ def compare_with_published(
     """
     from rovsim.reporting.tables import tabulate_published_errors  # a fold is scored without it
 
-    moved = {motion.run.id: find_demanded(motion.commands) for motion in motions}
-    found = compare_published(read_published(published), comparisons, moved)
-    tabulate_published_errors(found).write(tables, "published_errors")
-    found.write(out)
+    demanded_axes = {motion.run.id: find_demanded(motion.commands) for motion in motions}
+    comparison = compare_published(read_published(published), comparisons, demanded_axes)
+    tabulate_published_errors(comparison).write(tables, "published_errors")
+    comparison.write(out)
 
 
 def measure_pitfalls_by_run(

@@ -29,9 +29,9 @@ def load_models(specs: str | Sequence[str], vehicle: Vehicle, catalogue: Catalog
     Raises:
         BadInput: a model cannot be loaded, or two are of the same file.
     """
-    given = list(dict.fromkeys(as_list(specs)))
-    loaded = [load_model(spec, vehicle, catalogue) for spec in given]
-    names = tell_apart([model.name for model in loaded], given)
+    distinct = list(dict.fromkeys(as_list(specs)))
+    loaded = [load_model(spec, vehicle, catalogue) for spec in distinct]
+    names = tell_apart([model.name for model in loaded], distinct)
     return [model.called(name) for model, name in zip(loaded, names, strict=True)]
 
 
@@ -47,18 +47,18 @@ def tell_apart(names: Sequence[str], specs: Sequence[str]) -> list[str]:
     """
     files = [None if spec in BUILT_IN else Path(spec).resolve() for spec in specs]
     deepest = max((len(file.parts) for file in files if file), default=0)
-    found = list(names)
+    unique = list(names)
     for depth in range(1, deepest):
-        taken = {name for name in found if name in BUILT_IN or found.count(name) > 1}
-        found = [
-            _with_folders(own, file, depth) if file and name in taken else name
-            for own, name, file in zip(names, found, files, strict=True)
+        ambiguous = {name for name in unique if name in BUILT_IN or unique.count(name) > 1}
+        unique = [
+            _with_folders(stem, file, depth) if file and name in ambiguous else name
+            for stem, name, file in zip(names, unique, files, strict=True)
         ]
-    twice = [k for k, name in enumerate(found) if found.count(name) > 1]
-    if not twice:
-        return found
+    doubles = [k for k, name in enumerate(unique) if unique.count(name) > 1]
+    if not doubles:
+        return unique
     raise BadInput(
-        f"two models are called '{names[twice[0]]}' ({', '.join(specs[k] for k in twice)})",
+        f"two models are called '{names[doubles[0]]}' ({', '.join(specs[k] for k in doubles)})",
         where="model",
         expected="each model once (it is called by its file's stem, and by folders if need be)",
         remedy="Leave one of them out, or rename its file.",
@@ -136,7 +136,7 @@ def write_with_effects(
             remedy="For example model=NEW.yaml.",
         )
     require_replaceable(out, f"schema: {SCHEMA}")  # not as a diagnosis has it, of its base
-    found = Diagnosis.read(diagnosis)
-    added = apply.add_effects(found, diagnosis, base, effects, catalogue)
+    fitted = Diagnosis.read(diagnosis)
+    added = apply.add_effects(fitted, diagnosis, base, effects, catalogue)
     write_model(added.model, out, provenance={"base": base, "effects": added.names, **story})
     return added

@@ -108,10 +108,10 @@ def measure(
         if quality[run.id].unusable is None:
             stages.keep(run.id, resampled(recording, settings))
             motions.keep(run.id, derive(run.id))
-    found = MeasuredCampaign(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
+    measured = MeasuredCampaign(campaign, load_campaign_vehicle(campaign), motions, quality, stages)
     if not even_unusable:
-        refuse_unusable(found)
-    return found
+        refuse_unusable(measured)
+    return measured
 
 
 def refuse_unusable(data: MeasuredCampaign) -> None:

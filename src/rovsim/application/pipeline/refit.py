@@ -18,12 +18,12 @@ def refit(
 
     The fit uses the same parts of the train runs as the diagnosis.
     """
-    most = settings.search.most_seconds
-    train = prepare_train(runs, settings.replay, catalogue, base.body.free, most).runs
+    seconds = settings.search.most_seconds
+    train = prepare_train(runs, settings.replay, catalogue, base.body.free, seconds).runs
     model = refit_nominal(base, train)
     story = {
         "base": base.name,
-        "train_runs": list(dict.fromkeys(one.motion.run.id for one in train)),
+        "train_runs": list(dict.fromkeys(run.motion.run.id for run in train)),
     }
     write_model(model, out, provenance=story)
     return model

@@ -26,10 +26,12 @@ def replay_when_asked(
     Returns:
         Replays by model and run.
     """
-    how, recent = settings.only(WINDOW), Recent[Replay]()
+    window_settings, recent = settings.only(WINDOW), Recent[Replay]()
 
     def by(model: Model) -> Remade[Replay]:
-        return Remade(motions, lambda run: replay(model, motions[run], how), recent=recent)
+        return Remade(
+            motions, lambda run: replay(model, motions[run], window_settings), recent=recent
+        )
 
     return {model.name: by(model) for model in models}
 
@@ -38,11 +40,11 @@ def score_models(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
 ) -> Scored:
     """Replay every run with every model, and score it."""
-    scored = Scored((model.name for model in models), settings.replay.longest)
+    scores = Scored((model.name for model in models), settings.replay.longest)
     for run in counted(list(motions), "replaying"):
         for model in models:
-            score_run(scored, model, motions[run], settings)
-    return scored
+            score_run(scores, model, motions[run], settings)
+    return scores
 
 
 def score_run(
@@ -57,14 +59,14 @@ def score_run(
         settings: how it is replayed.
         kept: names of horizons to return; the others are dropped to save memory.
     """
-    found = Replay(model.name, motion.run, motion.time, {})
+    kept_replay = Replay(model.name, motion.run, motion.time, {})
 
     def horizons() -> Iterator[tuple[str, Prediction]]:
         for name, prediction in by_horizon(model, motion, settings):
             if name in kept:
-                found.horizons[name] = prediction
+                kept_replay.horizons[name] = prediction
             yield name, prediction
             del prediction  # while the next one is made
 
     scored.take(motion, model.name, horizons())
-    return found
+    return kept_replay

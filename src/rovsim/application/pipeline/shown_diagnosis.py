@@ -58,11 +58,11 @@ class ShownDiagnosis:
 
     def track(self, tracking: TrackingSettings, files: Sequence[Path]) -> str:
         """Log the diagnosis with these files; return why that failed, empty if it did not."""
-        found = self.data.diagnosis
-        assert found is not None
-        kept = [self.out / "diagnosis.json", *files]
+        diagnosis = self.data.diagnosis
+        assert diagnosis is not None
+        artifacts = [self.out / "diagnosis.json", *files]
         try:
-            track_diagnosis(tracking, self.campaign, self.base, found, self.params, kept)
+            track_diagnosis(tracking, self.campaign, self.base, diagnosis, self.params, artifacts)
         except (RovsimError, OSError) as error:
             return str(error)
         return ""

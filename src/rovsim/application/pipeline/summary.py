@@ -30,9 +30,9 @@ def summarize(
         diagnosis: whose effects are added to the ladder one by one.
         out: folder that is written to.
     """
-    scored = Scored.of(motions, replays)
-    ladder = Ladder.with_diagnosis(scored.steps, diagnosis.ladder.steps)
+    scored_runs = Scored.of(motions, replays)
+    ladder = Ladder.with_diagnosis(scored_runs.steps, diagnosis.ladder.steps)
     ErrorConditions.merged(searches).write(out / "where.json")
-    scored.growth.write(out / "growth.json")
+    scored_runs.growth.write(out / "growth.json")
     ladder.write(out / "ladder.json")
     Comparison.merged(scores).write(out / "comparison.json")

@@ -45,7 +45,7 @@ def train(
     """
     learner = settings.learner
     with reported(f"training {learner.kind}") as progress:
-        gathered = gather_pairs(
+        examples = gather_pairs(
             base,
             motions,
             settings.control,
@@ -53,13 +53,13 @@ def train(
             settings,
             settings.seed,
         )
-        trained = fit(*gathered.pairs, learner, settings.seed, progress)
-    known = {"base": base.name, "train_runs": gathered.runs, "train_rows": gathered.rows}
-    known |= {"seed": settings.seed}
+        trained = fit(*examples.pairs, learner, settings.seed, progress)
+    facts = {"base": base.name, "train_runs": examples.runs, "train_rows": examples.rows}
+    facts |= {"seed": settings.seed}
     # both files appear together: a model never refers to the arrays of another training
     with appearing_together(out.parent, last=out.name) as folder:
         residual = write_residual(folder, trained.residual(settings.control))
-        write_model(base, folder / out.name, residual, {**known, **story})
+        write_model(base, folder / out.name, residual, {**facts, **story})
     return read_model(out, catalogue)
 
 
@@ -74,11 +74,15 @@ def time_predictors(
         motion: the run.
         settings: how long is measured.
     """
-    pairs, how = sample_run(base, motion, settings), settings.timing
+    pairs, timing = sample_run(base, motion, settings), settings.timing
     return Timing(
         inference={
             model.name: time_both_ways(
-                residual, pairs.features(residual.features), how.calls, how.warmup, how.seconds
+                residual,
+                pairs.features(residual.features),
+                timing.calls,
+                timing.warmup,
+                timing.seconds,
             )
             for model in models
             if (residual := model.residual) is not None

@@ -46,8 +46,8 @@ class Dependencies:
             residual: kind of the residual.
             control: of the runs that it learns from.
         """
-        chosen = {"residual": self._residual(residual), "control": control}
-        settings = self.study.settings.model_copy(update=chosen)
+        choice = {"residual": self._residual(residual), "control": control}
+        settings = self.study.settings.model_copy(update=choice)
         return select(settings, TrainingSettings).model_dump_json()
 
     def learner(self, kind: str) -> LearnerSettings:
@@ -62,10 +62,10 @@ class Dependencies:
 
     def _compose_residual(self, kind: str) -> Mapping[str, object]:
         overrides = self.study.snakemake.overrides
-        kept = [word for word in overrides if not word.startswith("residual=")]
+        remaining = [override for override in overrides if not override.startswith("residual=")]
         if kind != self.study.settings.residual["kind"]:
-            kept = [word for word in kept if not word.startswith("residual.")]
-        return compose([*kept, f"residual={kind}"]).residual
+            remaining = [override for override in remaining if not override.startswith("residual.")]
+        return compose([*remaining, f"residual={kind}"]).residual
 
     def code(self, script: Path, *more: str, without: str = "") -> str:
         """Digest what a script imports, directly or indirectly: an edit re-runs what it touches.

@@ -32,8 +32,8 @@ class LeaveOneRunOut:
         name, campaign = self.study.settings.folds.published, self.study.campaign
         if name is None:
             return None
-        known = isinstance(campaign, Campaign)
-        return Path(campaign.folder if known else f"{self.study.folder}/raw") / name
+        recorded = isinstance(campaign, Campaign)
+        return Path(campaign.folder if recorded else f"{self.study.folder}/raw") / name
 
     def check(self) -> None:
         """Check the settings of the folds before anything is planned.
@@ -81,13 +81,13 @@ class LeaveOneRunOut:
     @property
     def figures(self) -> list[FigureKind]:
         """Figures that the study draws once; of published errors only where there are any."""
-        found = list_study_figures()
-        return [one for one in found if self.published or "published_errors" not in one.needs]
+        kinds = list_study_figures()
+        return [kind for kind in kinds if self.published or "published_errors" not in kind.needs]
 
     @property
     def targets(self) -> list[str]:
         """Files that the folds add to the results of the study."""
         folder = self.study.folder
         folds = [f"{folder}/folds/{run}/comparison.json" for run in self.runs]
-        asked = {"published_errors": self.published, "pitfalls": self.pitfalls}
-        return [*folds, *(f"{folder}/{name}.json" for name, yes in asked.items() if yes)]
+        parts = {"published_errors": self.published, "pitfalls": self.pitfalls}
+        return [*folds, *(f"{folder}/{name}.json" for name, part in parts.items() if part)]

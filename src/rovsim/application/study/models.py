@@ -20,15 +20,15 @@ class StudyModels:
     @cached_property
     def trained(self) -> list[str]:
         """Models with a residual on the nominal one, for each control that has train runs."""
-        wanted = self.study.settings.study
-        controls = [c for c in wanted.controls if self.study.train_runs(c)]
-        return [name_learned(kind, control) for kind in wanted.residuals for control in controls]
+        section = self.study.settings.study
+        controls = [c for c in section.controls if self.study.train_runs(c)]
+        return [name_learned(kind, control) for kind in section.residuals for control in controls]
 
     @cached_property
     def on_effects(self) -> list[str]:
         """Models with a residual on top of the effects that were found."""
-        wanted = self.study.settings.study.on_effects
-        return [f"{EFFECTS}+{name}" for name in self.trained if name in wanted]
+        selected = self.study.settings.study.on_effects
+        return [f"{EFFECTS}+{name}" for name in self.trained if name in selected]
 
     @property
     def with_files(self) -> list[str]:

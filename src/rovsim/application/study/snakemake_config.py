@@ -28,14 +28,14 @@ class SnakemakeConfig:
     @cached_property
     def overrides(self) -> list[str]:
         """Hydra overrides of conf/, such as `residual=knn`."""
-        given = self.told.get("overrides") or []
-        return split_words(given) if isinstance(given, str) else [str(word) for word in given]
+        entry = self.told.get("overrides") or []
+        return split_words(entry) if isinstance(entry, str) else [str(item) for item in entry]
 
     @cached_property
     def settings(self) -> Settings:
         """Settings of conf/, with the overrides and effect files given to Snakemake."""
-        composed, named = compose(self.overrides), self.told.get("effects_file")
-        return composed.model_copy(update={"effects_file": named}) if named else composed
+        base, effects_file = compose(self.overrides), self.told.get("effects_file")
+        return base.model_copy(update={"effects_file": effects_file}) if effects_file else base
 
     @cached_property
     def catalogue(self) -> Catalogue:
@@ -60,8 +60,8 @@ class SnakemakeConfig:
         """
         for key in self.told:
             if key not in self.keys:
-                found = f"unknown key '{key}'"
-                raise unlisted(key, self.keys, found=found, where="snakemake --config")
+                problem = f"unknown key '{key}'"
+                raise unlisted(key, self.keys, found=problem, where="snakemake --config")
 
 
 def split_words(text: str) -> list[str]:

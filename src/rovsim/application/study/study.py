@@ -77,12 +77,12 @@ class Study:
                 campaign only.
         """
         if isinstance(self.campaign, Campaign):
-            one = self.campaign.run(run)
-            return [str(self.campaign.file), *map(str, self.campaign.raw_files(one))]
+            recording = self.campaign.run(run)
+            return [str(self.campaign.file), *map(str, self.campaign.raw_files(recording))]
         runs = [r for r in self.campaign.runs if run in ("", r.id)]
         files = [name for r in runs for name in (*r.sensor_files, r.commands)]
-        own = [VEHICLE] if own_vehicle(self.settings.tank) else []
-        extra = own if run else [*own, SEALED]
+        vehicle_files = [VEHICLE] if own_vehicle(self.settings.tank) else []
+        extra = vehicle_files if run else [*vehicle_files, SEALED]
         return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]
 
     @property
@@ -123,12 +123,12 @@ class Study:
             learner(kind, "study.residuals")
         for name in self.settings.study.on_effects:
             kind, _, control = name.rpartition("_")
-            known = get_args(Control)
-            if control not in known:
+            controls = get_args(Control)
+            if control not in controls:
                 raise BadInput(
                     f"'{name}'",
                     where="study.on_effects",
-                    expected=f"a residual and a control ({', '.join(known)}), as in knn_6dof",
+                    expected=f"a residual and a control ({', '.join(controls)}), as in knn_6dof",
                     remedy="Correct that value.",
                 )
             learner(kind, "study.on_effects")

@@ -37,7 +37,7 @@ def track_diagnosis(
         Ids of the runs, by name: `diagnosis`, and each step's model.
     """
     files = list(files)
-    selected = "+".join(one.effect for one in found.selected) or "none"
+    selected = "+".join(effect.effect for effect in found.selected) or "none"
     tags = {"model": base, "verdict": found.verdict, "selected": selected}
     diagnosis = TrackedRun(
         experiment=experiment,
@@ -48,13 +48,13 @@ def track_diagnosis(
         parent=parent,
         metrics=diagnosis_metrics(found),
     )
-    whole = track(settings, diagnosis)
-    runs = {"diagnosis": whole}
+    run_id = track(settings, diagnosis)
+    runs = {"diagnosis": run_id}
     for step in found.ladder.steps:
         of_step = TrackedRun(
             experiment=experiment,
             name=step.model,
-            parent=whole,
+            parent=run_id,
             tags={"model": step.model, "residual": "none", "control": "none"},
             files=[path for path in files if path.stem in OF_STEPS],
             metrics=step_metrics(step),
@@ -66,11 +66,11 @@ def track_diagnosis(
 def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
     """Return the errors of a diagnosis; of each selected effect its worth and fitted values."""
     metrics = {f"error/{name}": value for name, value in found.error}
-    for one in found.selected:
-        name = one.effect
-        metrics[f"{name}/error_reduction"] = one.error_reduction
-        metrics[f"{name}/probability"] = one.probability
-        for parameter, fitted in one.parameters.items():
+    for selected in found.selected:
+        name = selected.effect
+        metrics[f"{name}/error_reduction"] = selected.error_reduction
+        metrics[f"{name}/probability"] = selected.probability
+        for parameter, fitted in selected.parameters.items():
             metrics[f"{name}/{parameter}"] = fitted.value
             metrics[f"{name}/{parameter}/std"] = fitted.std
     return {name: value for name, value in metrics.items() if value is not None}
@@ -78,7 +78,7 @@ def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
 
 def step_metrics(step: Step) -> dict[str, float]:
     """Return the numbers of one step of a ladder, named as those of a comparison."""
-    found = {"windows_2s": step.windows_2s}
+    metrics = {"windows_2s": step.windows_2s}
     for quantity in ("acceleration_rmse", "velocity_mae"):
-        found |= {f"test/2/{quantity}/{axis}": v for axis, v in getattr(step, quantity)}
-    return {name: value for name, value in found.items() if value is not None}
+        metrics |= {f"test/2/{quantity}/{axis}": v for axis, v in getattr(step, quantity)}
+    return {name: value for name, value in metrics.items() if value is not None}

@@ -92,22 +92,22 @@ def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[s
     Returns:
         Metrics by name; empty where one of the errors is unknown.
     """
-    own, before = errors[model], errors[base]
-    if own is None or not before:
+    error, base_error = errors[model], errors[base]
+    if error is None or not base_error:
         return {}
-    return {RANKED_BY: own, OF_BASE: own / before}
+    return {RANKED_BY: error, OF_BASE: error / base_error}
 
 
 def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
     """Average errors over runs; metrics are named `split/horizon/quantity/axis`."""
-    found: dict[str, list[float]] = {}
+    by_key: dict[str, list[float]] = {}
     for run in scores.values():
         for horizon in (OPEN_LOOP, *run.windows):
             metrics = run.at(horizon)
             for key, value in _flat(metrics) if metrics else ():
                 if value is not None:
-                    found.setdefault(f"{run.split}/{horizon}/{key}", []).append(value)
-    return {key: float(np.mean(values)) for key, values in found.items()}
+                    by_key.setdefault(f"{run.split}/{horizon}/{key}", []).append(value)
+    return {key: float(np.mean(values)) for key, values in by_key.items()}
 
 
 def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
@@ -134,11 +134,11 @@ def tell_ranking(settings: TrackingSettings, experiment: str) -> str:
 def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable[Path]) -> None:
     from mlflow.entities import Metric, Param
 
-    values = [Param(key, str(value)[:500]) for key, value in params.items()]
-    client.log_batch(run_id, params=values)
-    found = [Metric(key, value, 0, 0) for key, value in metrics.items()]
-    for first in range(0, len(found), 900):  # MLflow takes at most 1000 metrics a batch
-        client.log_batch(run_id, metrics=found[first : first + 900])
+    entries = [Param(key, str(value)[:500]) for key, value in params.items()]
+    client.log_batch(run_id, params=entries)
+    batch = [Metric(key, value, 0, 0) for key, value in metrics.items()]
+    for first in range(0, len(batch), 900):  # MLflow takes at most 1000 metrics a batch
+        client.log_batch(run_id, metrics=batch[first : first + 900])
     for file in files:
         client.log_artifact(run_id, str(file))
 
@@ -206,18 +206,18 @@ def _absolute(uri: str) -> str:
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
     """Return the number of an experiment, created if need be, with the tags of its ranking."""
-    found = _found(client, settings, name)
-    known = client.get_experiment(found).tags
-    for key, value in tags_of(found).items():
-        if key not in known:  # what a user has changed stays
-            client.set_experiment_tag(found, key, value)
-    return found
+    experiment_id = _found(client, settings, name)
+    tags = client.get_experiment(experiment_id).tags
+    for key, value in tags_of(experiment_id).items():
+        if key not in tags:  # what a user has changed stays
+            client.set_experiment_tag(experiment_id, key, value)
+    return experiment_id
 
 
 def _found(client, settings: TrackingSettings, name: str) -> str:
-    known = client.get_experiment_by_name(name)
-    if known is not None:
-        return known.experiment_id
+    experiment = client.get_experiment_by_name(name)
+    if experiment is not None:
+        return experiment.experiment_id
     local = _local(settings.uri) is not None
     place = Path(settings.artifacts, name).absolute().as_uri() if local else None
     from mlflow.exceptions import MlflowException
@@ -225,10 +225,10 @@ def _found(client, settings: TrackingSettings, name: str) -> str:
     try:
         return client.create_experiment(name, artifact_location=place, tags=SHOWN)
     except MlflowException:  # another machine was first: a file lock holds on one only
-        known = client.get_experiment_by_name(name)
-        if known is None:
+        experiment = client.get_experiment_by_name(name)
+        if experiment is None:
             raise
-        return known.experiment_id
+        return experiment.experiment_id
 
 
 def _lock(uri: str) -> Path:

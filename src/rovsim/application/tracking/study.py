@@ -51,7 +51,7 @@ def track_study(
     """
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
     steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
-    written = {path.parent.name: path for path in files.models}
+    by_model = {path.parent.name: path for path in files.models}
     figures = [path for path in files.kept if path.stem in OF_MODELS]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
     study = TrackedRun(experiment=campaign, name="study", tags={"model": "study"}, files=files.kept)
@@ -67,7 +67,7 @@ def track_study(
             parent=parent,
             scores=entry.runs,
             metrics={"windows_2s": steps[name]} if name in steps else {},
-            **_described(name, written.get(name), figures),
+            **_described(name, by_model.get(name), figures),
         )
         runs[name] = track(settings, of_model)
     return runs
@@ -96,5 +96,5 @@ def _described(name: str, path: Path | None, figures: Sequence[Path]) -> dict[st
 def _hyperparameters(residual: Mapping[str, Any], seed: int) -> dict[str, Any]:
     """Return hyperparameters of a trained residual, under the keys that `rovsim train` logs."""
     features = {"blocks": [*residual["features"]], "scaling": residual["scaling"]}
-    asked = {"kind": residual["kind"], **residual["settings"], "features": features}
-    return asked | {"seed": seed}
+    hyperparameters = {"kind": residual["kind"], **residual["settings"], "features": features}
+    return hyperparameters | {"seed": seed}

@@ -54,7 +54,7 @@ def target(name: str) -> Target:
     Raises:
         BadInput: there is none; the message says which names come close.
     """
-    known = targets()
-    if name in known:
-        return known[name]
-    raise unlisted(name, known, found=f"unknown simulator '{name}'", where="to")
+    by_name = targets()
+    if name in by_name:
+        return by_name[name]
+    raise unlisted(name, by_name, found=f"unknown simulator '{name}'", where="to")

@@ -91,10 +91,10 @@ def _thrusters(equation: Equation) -> dict[str, Any]:
                 "command": equation.names[column],
                 "turns": unit.azimuth,
                 "curve": curve.model_dump(mode="json", by_alias=True, exclude_none=True),
-                "full": {"backwards": back, "forwards": ahead},
+                "full": {"backwards": reverse, "forwards": forward},
                 "gain": gain,
             }
-            for unit, column, curve, (back, ahead), gain in zip(
+            for unit, column, curve, (reverse, forward), gain in zip(
                 units,
                 equation.columns,
                 equation.curves,

@@ -66,8 +66,8 @@ def further(model: Model) -> Sequence[Left]:
     if not model.body.current.any():
         return []
     water = next(e for e in model.effects if isinstance(e, Current) and e.given())
-    why = "it acts on the damping; added mass moves as in still water"
-    return [Left(f"{water.id} on added mass", why, model, model, still_added_mass)]
+    reason = "it acts on the damping; added mass moves as in still water"
+    return [Left(f"{water.id} on added mass", reason, model, model, still_added_mass)]
 
 
 def still_added_mass(model: Model, state: Array) -> Array:
@@ -98,9 +98,9 @@ def _coriolis(M: Array, nu: Array) -> Array:
 
 def _split(flow: CrossFlow) -> tuple[Effect, str]:
     """Keep the products of velocities that the plugin has a name for; say which are lost."""
-    held = {name: c for name, c in flow.products.items() if _element(name) is not None}
-    lost = [name for name in flow.products if name not in held]
-    return CrossFlow(held), f"no name for {', '.join(lost)}" if lost else ""
+    products = {name: c for name, c in flow.products.items() if _element(name) is not None}
+    unnamed = [name for name in flow.products if name not in products]
+    return CrossFlow(products), f"no name for {', '.join(unnamed)}" if unnamed else ""
 
 
 def _element(name: str) -> tuple[str, float] | None:
@@ -118,8 +118,8 @@ def _element(name: str) -> tuple[str, float] | None:
     sizes = first < 6 <= second
     i, j = first % 6, second % 6
     # |v| keeps its sign between the axes; v |v| changes it as v does, and |v| |v| does not
-    turned = TURN[axis] * TURN[i] * (1.0 if sizes else TURN[j])
-    return f"{FORCES[axis]}{SPEEDS[i]}{'abs' if sizes else ''}{SPEEDS[j]}", float(turned)
+    sign = TURN[axis] * TURN[i] * (1.0 if sizes else TURN[j])
+    return f"{FORCES[axis]}{SPEEDS[i]}{'abs' if sizes else ''}{SPEEDS[j]}", float(sign)
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
@@ -141,9 +141,9 @@ def _vehicle(equation: Equation) -> ET.Element:
     inertia = np.array(equation.body.M_RB)
     units = equation.model.vehicle.thrusters.units
     share = PROPELLER * equation.rigid.mass
-    own = share * RADIUS**2 * np.eye(3)
+    propeller = share * RADIUS**2 * np.eye(3)
     for unit in units:
-        inertia -= inertia_at(share, np.array(unit.position), own)
+        inertia -= inertia_at(share, np.array(unit.position), propeller)
     base = ET.SubElement(vehicle, "link", name="base_link")
     base.append(_inertial(RigidInertia.of(inertia), equation.body.M_A))
     for kind in ("collision", "visual"):
@@ -153,7 +153,7 @@ def _vehicle(equation: Equation) -> ET.Element:
     for unit in units:
         link = ET.SubElement(vehicle, "link", name=f"{unit.name}_propeller")
         _tree(link, {"pose": numbers([*_turned(unit.position), 0, 0, 0])})
-        link.append(_inertial(RigidInertia(share, np.zeros(3), own)))
+        link.append(_inertial(RigidInertia(share, np.zeros(3), propeller)))
         joint = ET.SubElement(vehicle, "joint", name=unit.name, type="revolute")
         _tree(joint, {"parent": "base_link", "child": f"{unit.name}_propeller"})
         _tree(ET.SubElement(joint, "axis"), {"xyz": numbers(_turned(unit.direction))})
@@ -191,9 +191,9 @@ def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
     names = {f"i{'xyz'[i]}{'xyz'[j]}": number(moments[i, j]) for i, j in pairs}
     _tree(ET.SubElement(part, "inertia"), names)
     if added is not None:
-        around = TURN[:, None] * added * TURN
+        added_mass = TURN[:, None] * added * TURN
         rows = [(i, j) for i in range(6) for j in range(i, 6)]
-        water = {f"{LINKS[i]}{LINKS[j]}": number(around[i, j]) for i, j in rows}
+        water = {f"{LINKS[i]}{LINKS[j]}": number(added_mass[i, j]) for i, j in rows}
         _tree(ET.SubElement(part, "fluid_added_mass"), water)
     return part
 
@@ -216,23 +216,23 @@ def _displaced(equation: Equation, kind: str) -> ET.Element | None:
 
 def _water(equation: Equation) -> dict[str, str]:
     """Return the elements of the plugin Hydrodynamics; damping is negative there (SNAME)."""
-    found: defaultdict[str, float] = defaultdict(float)  # damping and a product may share one
+    elements: defaultdict[str, float] = defaultdict(float)  # damping and a product may share one
     for size, D in ((False, equation.linear), (True, equation.quadratic)):
         for i, j in zip(*np.nonzero(D), strict=True):
             name = f"{FORCES[i]}{SPEEDS[j]}" + (f"abs{SPEEDS[j]}" if size else "")
-            found[name] -= TURN[i] * TURN[j] * D[i, j]
+            elements[name] -= TURN[i] * TURN[j] * D[i, j]
     for product, c in equation.products.items():
         element = _element(product)
         assert element is not None  # `_split` left out the others
-        found[element[0]] += element[1] * c
+        elements[element[0]] += element[1] * c
     current = equation.body.current
-    moving = {"default_current": numbers(_turned(current))} if current.any() else {}
-    return {name: number(value) for name, value in found.items()} | moving
+    current_element = {"default_current": numbers(_turned(current))} if current.any() else {}
+    return {name: number(value) for name, value in elements.items()} | current_element
 
 
 def _plugin(parent: ET.Element, system: str, content: Mapping[str, str] | None = None) -> None:
-    words = "".join(f"-{c.lower()}" if c.isupper() else c for c in system).lstrip("-")
-    names = {"filename": f"gz-sim-{words}-system", "name": f"gz::sim::systems::{system}"}
+    kebab_case = "".join(f"-{c.lower()}" if c.isupper() else c for c in system).lstrip("-")
+    names = {"filename": f"gz-sim-{kebab_case}-system", "name": f"gz::sim::systems::{system}"}
     _tree(ET.SubElement(parent, "plugin", names), content or {})
 
 

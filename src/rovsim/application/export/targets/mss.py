@@ -124,8 +124,8 @@ def _comment(text: str) -> str:
 
 def _identifier(name: str) -> str:
     """Make a name that MATLAB accepts."""
-    plain = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return (plain if plain[:1].isalpha() else f"vehicle_{plain}")[:LONGEST]
+    identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return (identifier if identifier[:1].isalpha() else f"vehicle_{identifier}")[:LONGEST]
 
 
 def _constants(equation: Equation) -> list[str]:
@@ -149,8 +149,8 @@ def _inverse(equation: Equation) -> list[str]:
     if free.all():
         return ["Minv = inv(M);"]
     axes = ", ".join(str(k + 1) for k in np.flatnonzero(free))
-    held = f"free = [{axes}];  % the other axes are held"
-    return [held, "Minv = zeros(6, 6);", "Minv(free, free) = inv(M(free, free));"]
+    free_axes = f"free = [{axes}];  % the other axes are held"
+    return [free_axes, "Minv = zeros(6, 6);", "Minv(free, free) = inv(M(free, free));"]
 
 
 def _motion(equation: Equation) -> list[str]:
@@ -196,14 +196,14 @@ def _thrust(equation: Equation) -> list[str]:
     if not thrusters.count:
         return []
     starts = np.arange(thrusters.count) + np.cumsum(thrusters.turning) - thrusters.turning
-    own = (starts + 1)[equation.columns]
-    lines = ["", f"c = ui([{', '.join(map(str, own))}]);"]
+    indices = (starts + 1)[equation.columns]
+    lines = ["", f"c = ui([{', '.join(map(str, indices))}]);"]
     if equation.deadband:
         lines.append(f"c = c.*(abs(c) > {_number(equation.deadband)});")
     lines.append(f"F = {_static(equation.curves)};  % N")
     if equation.exponent != 1.0:
-        back, ahead = (_column(full) for full in equation.full)
-        lines.append(f"full = {back}.*(F < 0) + {ahead}.*(F >= 0);")
+        reverse, forward = (_column(full) for full in equation.full)
+        lines.append(f"full = {reverse}.*(F < 0) + {forward}.*(F >= 0);")
         lines.append(f"F = sign(F).*full.*(abs(F)./full).^{_number(equation.exponent)};")
     if (equation.gain != 1.0).any():
         lines.append(f"F = {_column(equation.gain)}.*F;")
@@ -239,9 +239,9 @@ def _curve(curve: ForceCurve, k: int) -> str:
     """Write the force of thruster k as a function of its command."""
     c = f"c({k + 1})"
     if curve.table is not None:
-        at, force = (_row(v) for v in (curve.table.command, curve.table.force_))
+        command, force = (_row(v) for v in (curve.table.command, curve.table.force_))
         low, high = (_number(v) for v in (curve.table.command[0], curve.table.command[-1]))
-        return f"interp1({at}, {force}, min(max({c}, {low}), {high}))"
+        return f"interp1({command}, {force}, min(max({c}, {low}), {high}))"
     if curve.quadratic is not None:
         q = curve.quadratic
         share = f"(max(abs({c}) - {_number(q.deadband)}, 0)/{_number(1.0 - q.deadband)})"
@@ -264,5 +264,5 @@ def _row(values: Sequence[float]) -> str:
 
 def _number(value: float) -> str:
     """Write a number, in brackets where it is negative, so that it may follow any sign."""
-    plain = f"{float(value) + 0.0:.15g}"
-    return f"({plain})" if plain.startswith("-") else plain
+    digits = f"{float(value) + 0.0:.15g}"
+    return f"({digits})" if digits.startswith("-") else digits

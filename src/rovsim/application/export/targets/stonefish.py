@@ -46,8 +46,8 @@ def hold(effect: Effect) -> tuple[Effect, str]:
         return fixed(effect)
     if effect.id in WHOLE:
         return whole(effect)
-    gone, why = nothing(effect)
-    return gone, "it computes its own from the shape of the body" if effect.id in OWN else why
+    neutral, reason = nothing(effect)
+    return neutral, "it computes its own from the shape of the body" if effect.id in OWN else reason
 
 
 def further(model: Model) -> Sequence[Left]:
@@ -77,14 +77,14 @@ def _surroundings(scenario: ET.Element) -> None:
     """Add a material and a look, which every scenario needs; neither changes the motion."""
     materials = _tag(scenario, "materials")
     _tag(materials, "material", name="Hull", density="1000.0", restitution="0.5")
-    same = {"material1": "Hull", "material2": "Hull", "static": "0.5", "dynamic": "0.3"}
-    _tag(_tag(materials, "friction_table"), "friction", **same)
+    friction = {"material1": "Hull", "material2": "Hull", "static": "0.5", "dynamic": "0.3"}
+    _tag(_tag(materials, "friction_table"), "friction", **friction)
     _tag(_tag(scenario, "looks"), "look", name="Yellow", rgb="1.0 0.9 0.0", roughness="0.3")
 
 
 def _robot(scenario: ET.Element, equation: Equation) -> None:
-    named = {"name": equation.model.name, "fixed": "false", "self_collisions": "false"}
-    robot = _tag(scenario, "robot", **named)
+    attributes = {"name": equation.model.name, "fixed": "false", "self_collisions": "false"}
+    robot = _tag(scenario, "robot", **attributes)
     shape = {"name": "Vehicle", "type": "box", "physics": "submerged", "buoyant": "true"}
     base = _tag(robot, "base_link", **shape)
     volume, center = _displaced(equation)
@@ -92,10 +92,10 @@ def _robot(scenario: ET.Element, equation: Equation) -> None:
     _tag(base, "origin", xyz=numbers(center), rpy="0.0 0.0 0.0")
     _tag(base, "material", name="Hull")
     _tag(base, "look", name="Yellow")
-    moments, turned = _principal(equation.rigid.inertia)
+    moments, rpy = _principal(equation.rigid.inertia)
     _tag(base, "mass", value=number(equation.rigid.mass))
     _tag(base, "inertia", xyz=numbers(moments))
-    _tag(base, "cg", xyz=numbers(equation.rigid.center), rpy=numbers(turned))
+    _tag(base, "cg", xyz=numbers(equation.rigid.center), rpy=numbers(rpy))
     for unit, force in zip(equation.model.vehicle.thrusters.units, equation.most, strict=True):
         push = _tag(robot, "actuator", name=unit.name, type="push")
         limits = {"lower_limit": number(-force), "upper_limit": number(force), "inverted": "false"}
