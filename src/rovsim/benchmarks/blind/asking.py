@@ -21,11 +21,11 @@ from rovsim.results.diagnosis import Diagnosis
 def diagnosis(campaign: Path, out: Path) -> Diagnosis:
     """What `rovsim diagnose` writes, without the report."""
     settings = compose(["command=diagnose"])
-    how = select(settings, DiagnosisSettings)
+    chosen_settings = select(settings, DiagnosisSettings)
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        base, read = nominal(data.vehicle), digest_recordings(data.campaign)
-        return diagnose(data.runs, base, how, built_in(), read).diagnosis
+        base, digests = nominal(data.vehicle), digest_recordings(data.campaign)
+        return diagnose(data.runs, base, chosen_settings, built_in(), digests).diagnosis
 
 
 def bands(campaign: Path, found: Diagnosis) -> Bands | None:

@@ -43,32 +43,32 @@ class Miss:
 
 def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
     """What the kept answers of one method claim, against the truth."""
-    misses = [miss for one in answers for miss in list_misses(one)]
-    names = [name for one in answers for name in _list_names(one)]
-    told = [(p, right) for p, right in names if p is not None]
+    misses = [miss for answer in answers for miss in list_misses(answer)]
+    claims = [claim for answer in answers for claim in _list_names(answer)]
+    with_probability = [(p, right) for p, right in claims if p is not None]
     return Calibration(
         ranks=rank(misses),
         effects=_rank_each(misses, lambda m: m.effect),
         parameters=_rank_each(misses, lambda m: f"{m.effect}.{m.name}"),
-        probability=tuple(_bin_claims(told)),
-        without_probability=_count([(0.0, right) for p, right in names if p is None], None, None),
-        bands=rate_bands([one.bands for one in answers if one.bands is not None]),
+        probability=tuple(_bin_claims(with_probability)),
+        without_probability=_count([(0.0, right) for p, right in claims if p is None], None, None),
+        bands=rate_bands([answer.bands for answer in answers if answer.bands is not None]),
     )
 
 
 def rate_bands(found: Sequence[Bands]) -> dict[str, BandRates]:
     """What bands hold at the ends of windows, by their length; a campaign each."""
-    held: dict[str, list[tuple[float, int]]] = defaultdict(list)
+    campaigns: dict[str, list[tuple[float, int]]] = defaultdict(list)
     for bands in found:
-        own: dict[str, list[float]] = defaultdict(list)
+        shares: dict[str, list[float]] = defaultdict(list)
         for run in (run for model in bands.models.values() for run in model.runs.values()):
-            for seconds, one in run.windows.items():
-                inside = one.at_end.array()
-                own[seconds] += list(np.repeat(inside[np.isfinite(inside)], one.windows))
-        for seconds, each in own.items():
-            if each:
-                held[seconds].append((float(np.mean(each)), len(each)))
-    return {seconds: _rate_band(parts) for seconds, parts in held.items()}
+            for seconds, coverage in run.windows.items():
+                inside = coverage.at_end.array()
+                shares[seconds] += list(np.repeat(inside[np.isfinite(inside)], coverage.windows))
+        for seconds, values in shares.items():
+            if values:
+                campaigns[seconds].append((float(np.mean(values)), len(values)))
+    return {seconds: _rate_band(parts) for seconds, parts in campaigns.items()}
 
 
 def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
@@ -87,26 +87,26 @@ def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
 def list_misses(answer: KeptAnswer) -> Iterator[Miss]:
     """Of every number with a deviation; one that no recipe hides is at its default."""
     hidden = {entry.effect: entry for entry in answer.case.hidden}
-    for one in answer.diagnosis.selected if answer.diagnosis else ():
-        if one.effect in hidden:
-            truth = {name: v.value for name, v in hidden[one.effect].parameters.items()}
-            yield from _compare(one, truth)
+    for selected in answer.diagnosis.selected if answer.diagnosis else ():
+        if selected.effect in hidden:
+            truth = {name: v.value for name, v in hidden[selected.effect].parameters.items()}
+            yield from _compare(selected, truth)
 
 
 def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
     defaults = {p.name: p.default for p in built_in()[one.effect].parameters}
-    known = defaults | truth  # fins have names of their vehicle's
+    true_values = defaults | truth  # fins have names of their vehicle's
     for name, fitted in one.parameters.items():
-        if name in known and fitted.value is not None and fitted.std:
-            deviations = (known[name] - fitted.value) / fitted.std
+        if name in true_values and fitted.value is not None and fitted.std:
+            deviations = (true_values[name] - fitted.value) / fitted.std
             yield Miss(one.effect, name, float(deviations))
 
 
 def rank(misses: Sequence[Miss]) -> Ranks:
     """How deviations are spread, against a standard Gaussian."""
     z = np.array([m.deviations for m in misses])
-    at = np.minimum((BINS * ndtr(z)).astype(int), BINS - 1)
-    counts = np.bincount(at, minlength=BINS)
+    bins = np.minimum((BINS * ndtr(z)).astype(int), BINS - 1)
+    counts = np.bincount(bins, minlength=BINS)
     return Ranks(
         values=len(z),
         covered=float(np.mean(np.abs(z) <= Z_95)) if len(z) else None,
@@ -126,15 +126,15 @@ def _test_evenness(counts: np.ndarray) -> float | None:
 
 def _rank_each(misses: Iterable[Miss], key: Callable[[Miss], str]) -> dict[str, Ranks]:
     groups: dict[str, list[Miss]] = {}
-    for one in misses:
-        groups.setdefault(key(one), []).append(one)
+    for miss in misses:
+        groups.setdefault(key(miss), []).append(miss)
     return {name: rank(group) for name, group in sorted(groups.items())}
 
 
 def _list_names(answer: KeptAnswer) -> Iterator[tuple[float | None, bool]]:
     """Of each selected name its claimed probability, and whether it is hidden."""
-    for one in answer.diagnosis.selected if answer.diagnosis else ():
-        yield one.probability, one.effect in _names(answer.case)
+    for selected in answer.diagnosis.selected if answer.diagnosis else ():
+        yield selected.probability, selected.effect in _names(answer.case)
 
 
 def _names(case: Case) -> set[str]:

@@ -83,18 +83,18 @@ class Case(Section):
 
     def weaker(self) -> "Case":
         """The same case with smaller effects: where the pilot could not hold the vehicle."""
-        outside = tuple(_shrunk_outside(one) for one in self.outside)
-        hidden = tuple(_shrunk(one) for one in self.hidden)
+        outside = tuple(_shrunk_outside(entry) for entry in self.outside)
+        hidden = tuple(_shrunk(entry) for entry in self.hidden)
         strength = self.strength * WEAKER
         return self.model_copy(update={"hidden": hidden, "outside": outside, "strength": strength})
 
 
 def _shrunk(entry: EffectEntry) -> EffectEntry:
     """An entry whose first parameters, those a recipe sizes, are closer to their defaults."""
-    known = {p.name: p for p in built_in()[entry.effect].parameters}
+    declared = {p.name: p for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
-        k: v if k in fixed or not known[k].fitted else Value(value=_closer(v.value, known[k]))
+        k: v if k in fixed or not declared[k].fitted else Value(value=_closer(v.value, declared[k]))
         for k, v in entry.parameters.items()
     }
     return EffectEntry(effect=entry.effect, parameters=values)
@@ -129,9 +129,9 @@ def random_of(case_id: str, seeds: Range) -> np.random.Generator:
 
 def merged(*settings: Mapping[str, Any]) -> dict[str, Any]:
     """Tank settings together, section by section."""
-    found: dict[str, Any] = {}
-    for one in settings:
-        for key, value in one.items():
-            inner = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
-            found[key] = {**found[key], **value} if inner else value
-    return found
+    combined: dict[str, Any] = {}
+    for layer in settings:
+        for key, value in layer.items():
+            nested = isinstance(value, Mapping) and isinstance(combined.get(key), Mapping)
+            combined[key] = {**combined[key], **value} if nested else value
+    return combined

@@ -70,12 +70,12 @@ def camera(how: str, k: int, seeds: Range) -> Case:
 
 def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case:
     """A wrong file, a camera that errs, and three or five special effects of different families."""
-    how, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
+    kind, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
     random = random_of(f"laboratory/{k}", seeds)
-    known = [own for family in families if (own := family & set(SPECIAL))]
-    special = draw_apart(known, count, random)
-    case_id = f"laboratory/{how}/{'+'.join(special)}/{k}"
-    settings, smoothing = _camera(how, random)
+    eligible = [members for family in families if (members := family & set(SPECIAL))]
+    special = draw_apart(eligible, count, random)
+    case_id = f"laboratory/{kind}/{'+'.join(special)}/{k}"
+    settings, smoothing = _camera(kind, random)
     hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)
     return Case(
         id=case_id,
@@ -109,5 +109,5 @@ def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
 
 
 def _entry(name: str, values: Mapping[str, float]) -> EffectEntry:
-    given = {k: Value(value=float(f"{v:.4g}")) for k, v in values.items() if v}
-    return EffectEntry(effect=name, parameters=given)
+    parameters = {k: Value(value=float(f"{v:.4g}")) for k, v in values.items() if v}
+    return EffectEntry(effect=name, parameters=parameters)

@@ -65,7 +65,7 @@ def _held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case |
 
 
 def _in_tank(case: Case, out: Path) -> None:
-    unlisted = [one.build() for one in case.outside]
+    unlisted = [physics.build() for physics in case.outside]
     make_campaign(case.settings(), out, built_in(), unlisted=unlisted)
     (out / SEALED).unlink()
 

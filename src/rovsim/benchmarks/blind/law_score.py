@@ -15,18 +15,18 @@ HALF = 0.5  # of the way to the noise floor
 
 def rate_laws(answers: Sequence[KeptAnswer]) -> dict[str, LawRates]:
     """By law, then all of them, then the cases that hide none; empty where no law was hidden."""
-    hidden = {name: [a for a in answers if _hides(a) == name] for name in LAWS}
-    found = {name: _rate(own, LAWS[name]) for name, own in hidden.items() if own}
-    if not found:
+    by_law = {name: [a for a in answers if _hides(a) == name] for name in LAWS}
+    rates = {name: _rate(group, LAWS[name]) for name, group in by_law.items() if group}
+    if not rates:
         return {}
-    count = np.array([one.cases for one in found.values()])
+    count = np.array([rate.cases for rate in rates.values()])
     keys = ("unexplained", "proposed", "right", "half")
-    means = {key: _mean([getattr(one, key) for one in found.values()], count) for key in keys}
-    found["all laws"] = LawRates(cases=int(count.sum()), **means)
-    others = [a for a in answers if _hides(a) is None]
-    if others:
-        found["no law"] = _rate(others, None)
-    return found
+    means = {key: _mean([getattr(rate, key) for rate in rates.values()], count) for key in keys}
+    rates["all laws"] = LawRates(cases=int(count.sum()), **means)
+    without_law = [a for a in answers if _hides(a) is None]
+    if without_law:
+        rates["no law"] = _rate(without_law, None)
+    return rates
 
 
 def _mean(shares: Sequence[float], count: np.ndarray) -> float:
@@ -39,13 +39,18 @@ def _hides(one: KeptAnswer) -> str | None:
 
 
 def _rate(answers: Sequence[KeptAnswer], law: KnownLaw | None) -> LawRates:
-    said = [one.diagnosis for one in answers]
-    laws = [one.unexplained.proposal if isinstance(one, Diagnosis) else None for one in said]
+    diagnoses = [answer.diagnosis for answer in answers]
+    laws = [
+        answer.unexplained.proposal if isinstance(answer, Diagnosis) else None
+        for answer in diagnoses
+    ]
     right = [p is not None and law is not None and is_right(p, law) for p in laws]
-    half = [isinstance(d, Diagnosis) and way(d) >= HALF for d in said]
+    half = [isinstance(d, Diagnosis) and way(d) >= HALF for d in diagnoses]
     return LawRates(
         cases=len(answers),
-        unexplained=float(np.mean([d is not None and d.verdict == "unexplained" for d in said])),
+        unexplained=float(
+            np.mean([d is not None and d.verdict == "unexplained" for d in diagnoses])
+        ),
         proposed=float(np.mean([p is not None for p in laws])),
         right=float(np.mean(right)),
         half=float(np.mean(half)),
@@ -54,16 +59,16 @@ def _rate(answers: Sequence[KeptAnswer], law: KnownLaw | None) -> LawRates:
 
 def is_right(proposal: ProposedEquation, law: KnownLaw) -> bool:
     """Whether the largest term acts where the law does, and such terms have its quantities."""
-    main = max(proposal.terms, key=lambda term: or_nan(term.size))
-    named = {q for term in proposal.terms if term.on in law.on for q in term.quantities}
-    named = (named - {"speed"}) | {"u", "v", "w"} if "speed" in named else named
-    return main.on in law.on and named == law.quantities
+    largest = max(proposal.terms, key=lambda term: or_nan(term.size))
+    quantities = {q for term in proposal.terms if term.on in law.on for q in term.quantities}
+    quantities = (quantities - {"speed"}) | {"u", "v", "w"} if "speed" in quantities else quantities
+    return largest.on in law.on and quantities == law.quantities
 
 
 def way(found: Diagnosis) -> float:
     """Share of the error between selected effects and noise floor that goes; NaN: unknown."""
     if found.unexplained.proposal is None:
         return float("nan")
-    reached = or_nan(found.ladder.models[-1].windows_2s)
-    before, floor = or_nan(found.error.with_effects), or_nan(found.error.noise_floor)
-    return (before - reached) / (before - floor)
+    with_equation = or_nan(found.ladder.models[-1].windows_2s)
+    with_effects, noise_floor = or_nan(found.error.with_effects), or_nan(found.error.noise_floor)
+    return (with_effects - with_equation) / (with_effects - noise_floor)

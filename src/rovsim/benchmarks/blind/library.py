@@ -46,18 +46,18 @@ def problem(
     model: Model, motions: Sequence[Motion], effects: Mapping[str, type[Effect]]
 ) -> Problem:
     """Target and library of some runs; what the log or the tank cannot feed has no column."""
-    plain = np.concatenate([_residual(model, m) for m in motions])
-    usual = np.concatenate([m.nu_dot[m.usable] for m in motions])
-    size = np.sqrt(np.nanmean(np.square(usual), axis=0))
+    residual = np.concatenate([_residual(model, m) for m in motions])
+    acceleration = np.concatenate([m.nu_dot[m.usable] for m in motions])
+    rms = np.sqrt(np.nanmean(np.square(acceleration), axis=0))
     columns, changes = [], []
     for column, effect in steps(motions[0].site, effects):
         try:
-            moved = np.concatenate([_residual(model + effect, m) for m in motions])
+            shifted = np.concatenate([_residual(model + effect, m) for m in motions])
         except BadInput:
             continue
         columns.append(column)
-        changes.append((plain - moved) / size)
-    return Problem(tuple(columns), plain / size, np.stack(changes, axis=-1))
+        changes.append((residual - shifted) / rms)
+    return Problem(tuple(columns), residual / rms, np.stack(changes, axis=-1))
 
 
 def _residual(model: Model, motion: Motion) -> Array:
@@ -66,8 +66,8 @@ def _residual(model: Model, motion: Motion) -> Array:
 
 def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:
     """Every column with the effect that makes it."""
-    moving = ((n, e) for n, e in effects.items() if not issubclass(e, MeasurementFilter))
-    for name, cls in moving:
+    included = ((n, e) for n, e in effects.items() if not issubclass(e, MeasurementFilter))
+    for name, cls in included:
         for start in cls.starts_at(site):
             if start:
                 yield Column(name, start), cls(**start)

@@ -208,8 +208,8 @@ class Backlash(ThrusterDynamics):
         """The play operator, step by step: what the catalogue's, found by doubling, is held to."""
         F = force[0] if state is None else state
         out, w = np.empty_like(force), self["width"]
-        for row, wanted in zip(out, force, strict=True):
-            F = np.clip(F, wanted - w, wanted + w)
+        for row, static in zip(out, force, strict=True):
+            F = np.clip(F, static - w, static + w)
             row[:] = F
         return out, F
 

@@ -23,35 +23,35 @@ CERTAIN = 1e-4  # from one: where a probability of one is drawn
 
 def write_pictures(page: Path, results: BlindSummary) -> list[str]:
     """Draw what the diagnosis claims into the page's images; the names of what there is to show."""
-    found = results.methods.get("diagnosis")
-    if found is None or not found.calibration.ranks.values:
+    summary = results.methods.get("diagnosis")
+    if summary is None or not summary.calibration.ranks.values:
         return []
-    drawn = {RANKS: draw_ranks, RELIABILITY: draw_reliability}
-    for name, draw in drawn.items():
-        for file in save(draw(found.calibration), page.parent / "images", name):
+    figures = {RANKS: draw_ranks, RELIABILITY: draw_reliability}
+    for name, draw in figures.items():
+        for file in save(draw(summary.calibration), page.parent / "images", name):
             if file.suffix == ".pdf":
                 file.unlink()
-    return list(drawn)
+    return list(figures)
 
 
 @styled()
 def draw_ranks(found: Calibration) -> Figure:
     """One histogram a parameter that has enough values, all values together first."""
-    shown = {"all": found.ranks} | _with_enough(found.parameters)
-    rows = ceil(len(shown) / COLUMNS)
+    by_name = {"all": found.ranks} | _with_enough(found.parameters)
+    rows = ceil(len(by_name) / COLUMNS)
     figure = sheet(14 + ROW * rows)
     panels = figure.subplots(rows, COLUMNS, sharex=True, squeeze=False).ravel()
-    for axes, (name, ranks) in zip(panels, shown.items(), strict=False):
+    for axes, (name, ranks) in zip(panels, by_name.items(), strict=False):
         _histogram(axes, name, ranks)
-    for axes in panels[len(shown) :]:
+    for axes in panels[len(by_name) :]:
         axes.set_axis_off()
-    fewer = len(found.parameters) - len(shown) + 1
+    omitted = len(found.parameters) - len(by_name) + 1
     note(
         figure,
         [
             "Rank of the truth, Φ((truth − value) / std), and how many values have it.",
             f"Grey: {100 * CHANCE:.0f} % of the bars of honest intervals lie there.",
-            f"{fewer} parameters have fewer than {2 * EXPECTED} values." if fewer else "",
+            f"{omitted} parameters have fewer than {2 * EXPECTED} values." if omitted else "",
         ],
     )
     return figure
@@ -83,11 +83,11 @@ def draw_reliability(found: Calibration) -> Figure:
     figure = sheet(75)
     axes = figure.subplots()
     # what is left to one, so that 0.99 and 0.999 are apart
-    claimed = np.array([max(1.0 - (c.claimed or 0.0), CERTAIN) for c in found.probability])
-    for doubt, bin_ in zip(claimed, found.probability, strict=True):
-        test = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")
+    doubts = np.array([max(1.0 - (c.claimed or 0.0), CERTAIN) for c in found.probability])
+    for doubt, bin_ in zip(doubts, found.probability, strict=True):
+        interval = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")
         share = bin_.right / bin_.names
-        axes.plot([doubt] * 2, [test.low, test.high], color=BAR, linewidth=1.2)
+        axes.plot([doubt] * 2, [interval.low, interval.high], color=BAR, linewidth=1.2)
         axes.plot(doubt, share, "o", color=BAR, markersize=4)
         axes.annotate(
             f"{bin_.right} of {bin_.names}",

@@ -114,14 +114,14 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
     if name == "thruster_order":
         return _swapped(random)
     recipe = RECIPES[name]
-    known = {p.name: p for p in built_in()[name].parameters}
-    chosen = recipe.choices[random.integers(len(recipe.choices))]
+    declared = {p.name: p for p in built_in()[name].parameters}
+    group = recipe.choices[random.integers(len(recipe.choices))]
     values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
     sign = recipe.sign or random.choice([-1, 1])
-    for k in chosen:
+    for k in group:
         change = sign * float(random.uniform(*recipe.sizes))
-        values[k] = _moved(known[k], change, strength if recipe.weak else 1.0)
-    values = {k: v for k, v in values.items() if _used(name, k, chosen)}
+        values[k] = _moved(declared[k], change, strength if recipe.weak else 1.0)
+    values = {k: v for k, v in values.items() if _used(name, k, group)}
     return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
 
 
@@ -129,8 +129,8 @@ def draw_apart(
     families: Sequence[frozenset[str]], count: int, random: np.random.Generator
 ) -> list[str]:
     """So many effects, each of another family."""
-    chosen = random.choice(len(families), size=count, replace=False)
-    return [str(random.choice(sorted(families[i]))) for i in chosen]
+    indices = random.choice(len(families), size=count, replace=False)
+    return [str(random.choice(sorted(families[i]))) for i in indices]
 
 
 def _swapped(random: np.random.Generator) -> EffectEntry:

@@ -53,12 +53,12 @@ def _releases() -> list[dict[str, Any]]:
     angles = ((0.4, 0.0), (-0.4, 0.3), (0.3, -0.3), (-0.3, 0.1), (0.2, 0.4), (0.4, 0.2))
     tests = ((0.35, 0.1), (-0.35, -0.2))
     splits = ["train"] * len(angles) + ["test"] * len(tests)
-    released = []
+    runs = []
     for k, (split, (roll, pitch)) in enumerate(zip(splits, (*angles, *tests), strict=True), 1):
         velocity = (roll, pitch, -roll, 0, 0, 2.0 * pitch)
         release = {"pose": (0, 0, 0, roll, pitch, 0), "velocity": velocity}
-        released.append({"id": f"run-{k}", "control": "6dof", "split": split, "release": release})
-    return released
+        runs.append({"id": f"run-{k}", "control": "6dof", "split": split, "release": release})
+    return runs
 
 
 KINDS: Mapping[str, Kind] = {
@@ -163,10 +163,10 @@ def recordings(seeds: Range) -> Iterator[Case]:
 def recording(kind: str, k: int, seeds: Range) -> Case:
     """The k-th case of a kind."""
     settings = KINDS[kind]
-    row: list[Hidden | None] = [*settings.shown, *settings.silent, None]
-    case_id, chosen = f"{kind}/{k}", row[k % len(row)]
-    entry = _draw(chosen, random_of(case_id, seeds)) if chosen else None
-    silent = tuple(name for name, _ in settings.silent if chosen and name == chosen[0])
+    cycle: list[Hidden | None] = [*settings.shown, *settings.silent, None]
+    case_id, hidden = f"{kind}/{k}", cycle[k % len(cycle)]
+    entry = _draw(hidden, random_of(case_id, seeds)) if hidden else None
+    silent = tuple(name for name, _ in settings.silent if hidden and name == hidden[0])
     return Case(
         id=case_id,
         kind=kind,

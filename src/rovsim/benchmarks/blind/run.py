@@ -90,14 +90,14 @@ def pending(
     cases: Sequence[Case], methods: Sequence[Method], folder: Path, simulator: str = "tank"
 ) -> Iterator[Job]:
     """Jobs for what is missing or was answered by other code, of cases the simulator can fly."""
-    flown_by = SIMULATORS[simulator]
+    backend = SIMULATORS[simulator]
     vehicle = [vehicle_file(default_vehicle())]
-    codes = {m.name: digest(FLIGHT, *flown_by.code, *m.code, described=vehicle) for m in methods}
-    for case in filter(flown_by.states, cases):
-        wanted = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
-        left = tuple(w for w in wanted if not _answered(w[1], w[2]))
-        if left:
-            yield Job(case, left, simulator)
+    codes = {m.name: digest(FLIGHT, *backend.code, *m.code, described=vehicle) for m in methods}
+    for case in filter(backend.states, cases):
+        answers = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
+        unanswered = tuple(w for w in answers if not _answered(w[1], w[2]))
+        if unanswered:
+            yield Job(case, unanswered, simulator)
 
 
 def _answered(path: Path, mark: str) -> bool:
@@ -110,9 +110,9 @@ def work(job: Job) -> None:
         campaign = Path(folder, "campaign")
         flown = fly(job.case, campaign, job.simulator)
         for method, path, mark in job.methods:
-            begin, worked = time.perf_counter(), time.process_time()
+            begin, begin_cpu = time.perf_counter(), time.process_time()
             diagnosis, error = _ask(method, campaign, Path(folder, method.name))
-            seconds, cpu = time.perf_counter() - begin, time.process_time() - worked
+            seconds, cpu = time.perf_counter() - begin, time.process_time() - begin_cpu
             KeptAnswer(
                 digest=mark,
                 method=method.name,

@@ -53,24 +53,26 @@ class Score:
 
 def score(case: Case, answer: Answer | Diagnosis) -> Score:
     """Judge what was said of the campaign of a case."""
-    selected = [one.effect for one in answer.selected]
-    counted = [s for s in selected if s not in case.forgiven]
+    selected = [fitted.effect for fitted in answer.selected]
+    names = [s for s in selected if s not in case.forgiven]
     groups = [set(group) for group in answer.indistinguishable]
-    right = answer.verdict in case.verdicts and set(case.silent) <= set(answer.not_observable)
-    matched = matching(counted, case.names, groups)
-    strict = set(counted) & set(case.names)
-    complete = len(counted) == len(case.names)
+    verdict_right = answer.verdict in case.verdicts and set(case.silent) <= set(
+        answer.not_observable
+    )
+    matches = matching(names, case.names, groups)
+    hits = set(names) & set(case.names)
+    as_many = len(names) == len(case.names)
     return Score(
-        verdict=right,
+        verdict=verdict_right,
         flagged=answer.verdict == "unexplained",
         first_strict=_first(selected, case.names, []),
         first=_first(selected, case.names, groups),
-        exact_strict=right and complete and set(counted) == set(case.names),
-        exact=right and complete and matched == len(case.names),
-        false_strict=len(counted) - len(strict),
-        false=len(counted) - matched,
+        exact_strict=verdict_right and as_many and set(names) == set(case.names),
+        exact=verdict_right and as_many and matches == len(case.names),
+        false_strict=len(names) - len(hits),
+        false=len(names) - matches,
         alike=max((len(g) for g in groups if g & set(case.names)), default=1),
-        unseen=_lacks_only_unseen(case, answer, set(counted)),
+        unseen=_lacks_only_unseen(case, answer, set(names)),
         parameters=tuple(_parameters(case, answer)),
     )
 
@@ -80,14 +82,14 @@ def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) 
     missing = set(case.names) - named
     if not missing or not missing <= set(answer.not_observable) or named - set(case.names):
         return False
-    rest = tuple(entry for entry in case.hidden if entry.effect not in missing)
-    return answer.verdict in case.model_copy(update={"hidden": rest}).verdicts
+    named_entries = tuple(entry for entry in case.hidden if entry.effect not in missing)
+    return answer.verdict in case.model_copy(update={"hidden": named_entries}).verdicts
 
 
 def _first(selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> bool | None:
     if not truth:
         return None
-    return bool(selected) and any(_same(selected[0], one, groups) for one in truth)
+    return bool(selected) and any(_same(selected[0], name, groups) for name in truth)
 
 
 def _same(a: str, b: str, groups: list[set[str]]) -> bool:
@@ -107,18 +109,18 @@ def matching(named: Sequence[str], truth: Sequence[str], groups: list[set[str]])
                     return True
         return False
 
-    return sum(place(one, set()) for one in named)
+    return sum(place(name, set()) for name in named)
 
 
 def _parameters(case: Case, answer: Answer | Diagnosis) -> Iterator[ParameterScore]:
     """Every number of a hidden effect that was named by its own name."""
-    named = {one.effect: one for one in answer.selected}
+    selected = {fitted.effect: fitted for fitted in answer.selected}
     for entry in case.hidden:
-        if entry.effect in case.names and entry.effect in named:
-            known = {p.name: p for p in built_in()[entry.effect].parameters}
+        if entry.effect in case.names and entry.effect in selected:
+            declared = {p.name: p for p in built_in()[entry.effect].parameters}
             for name, truth in entry.parameters.items():
-                if known[name].fitted:
-                    yield _parameter(known[name], truth.value, named[entry.effect])
+                if declared[name].fitted:
+                    yield _parameter(declared[name], truth.value, selected[entry.effect])
 
 
 def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> ParameterScore:

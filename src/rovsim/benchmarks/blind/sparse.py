@@ -66,13 +66,13 @@ def forward(least_gain: float, most: int) -> Regression:
     def coefficients(X: Array, y: Array) -> Array:
         from pysindy import FROLS
 
-        most_here = min(most, X.shape[1] - 1)
+        max_terms = min(most, X.shape[1] - 1)
         if not y.any():  # PySINDy would divide by its variance
             return np.zeros(X.shape[1])
         with _quietly():
-            found = FROLS(max_iter=most_here, alpha=1e-9, unbias=False).fit(X, y[:, None])
-        length = int(np.argmax(np.append(found.ERR_global[:most_here, 0] < least_gain, True)))
-        return found.history_[length][0]
+            optimizer = FROLS(max_iter=max_terms, alpha=1e-9, unbias=False).fit(X, y[:, None])
+        length = int(np.argmax(np.append(optimizer.ERR_global[:max_terms, 0] < least_gain, True)))
+        return optimizer.history_[length][0]
 
     return coefficients
 
@@ -89,11 +89,11 @@ def _quietly() -> Iterator[None]:
 
 def of_campaign(campaign: Path) -> Problem:
     """Target and library of the train runs."""
-    found = load_campaign(campaign)
-    found = mark_angles(found, load_campaign_vehicle(found))
-    runs = [run for run in found.runs if run.split == "train"]
-    motions = [clean(read_run(found, run.id)[0], SignalSettings()) for run in runs]
-    return problem(nominal(load_campaign_vehicle(found)), motions, built_in())
+    loaded = load_campaign(campaign)
+    loaded = mark_angles(loaded, load_campaign_vehicle(loaded))
+    runs = [run for run in loaded.runs if run.split == "train"]
+    motions = [clean(read_run(loaded, run.id)[0], SignalSettings()) for run in runs]
+    return problem(nominal(load_campaign_vehicle(loaded)), motions, built_in())
 
 
 def answer(given: Problem, regression: Regression) -> Answer:
@@ -101,10 +101,10 @@ def answer(given: Problem, regression: Regression) -> Answer:
     coefficients = by_axis(given, regression)
     gains: dict[str, float] = {}
     for k, column in enumerate(given.columns):
-        part = given.matrix[:, :, k] * coefficients[:, k]
-        left = given.target - np.einsum("nac,ac->na", given.matrix, coefficients)
+        contribution = given.matrix[:, :, k] * coefficients[:, k]
+        residual = given.target - np.einsum("nac,ac->na", given.matrix, coefficients)
         if coefficients[:, k].any():
-            gain = float(np.mean((left + part) ** 2) - np.mean(left**2))
+            gain = float(np.mean((residual + contribution) ** 2) - np.mean(residual**2))
             gains[column.effect] = gains.get(column.effect, 0.0) + gain
     order = sorted(gains, key=lambda name: -gains[name])
     selected = tuple(
@@ -116,15 +116,17 @@ def answer(given: Problem, regression: Regression) -> Answer:
 
 def by_axis(given: Problem, regression: Regression) -> Array:
     """Coefficients (6, c), zero where a column does nothing on an axis."""
-    found = np.zeros(given.matrix.shape[1:])
+    coefficients = np.zeros(given.matrix.shape[1:])
     n = np.sqrt(len(given.target))
     for axis in range(6):
         X, y = given.matrix[:, axis] / n, given.target[:, axis] / n
-        size = np.linalg.norm(X, axis=0)
-        kept = distinct(X, size)
-        if len(kept):
-            found[axis, kept] = regression(X[:, kept] / size[kept], y) / size[kept]
-    return found
+        norms = np.linalg.norm(X, axis=0)
+        columns = distinct(X, norms)
+        if len(columns):
+            coefficients[axis, columns] = (
+                regression(X[:, columns] / norms[columns], y) / norms[columns]
+            )
+    return coefficients
 
 
 def distinct(X: Array, size: Array) -> Array:
@@ -132,10 +134,10 @@ def distinct(X: Array, size: Array) -> Array:
 
     PySINDy stops at dependent columns; on one axis two starts of an effect may do the same.
     """
-    acting = np.flatnonzero(size > 1e-6 * max(size.max(), 1e-12))
-    unit = X[:, acting] / size[acting]
-    alike = np.triu(np.abs(unit.T @ unit), k=1)
-    return acting[alike.max(axis=0, initial=0.0) < 1.0 - 1e-9]
+    active = np.flatnonzero(size > 1e-6 * max(size.max(), 1e-12))
+    normalized = X[:, active] / size[active]
+    cosines = np.triu(np.abs(normalized.T @ normalized), k=1)
+    return active[cosines.max(axis=0, initial=0.0) < 1.0 - 1e-9]
 
 
 def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, FittedValue]:
@@ -143,12 +145,14 @@ def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, Fit
     declared = {p.name: p for p in built_in()[name].parameters}
     values: dict[str, FittedValue] = {}
     for k, column in enumerate(given.columns):
-        own = coefficients[:, k]
-        if column.effect == name and own.any():
-            best = own[np.argmax(np.abs(own) * np.linalg.norm(given.matrix[:, :, k], axis=0))]
+        weights = coefficients[:, k]
+        if column.effect == name and weights.any():
+            largest = weights[
+                np.argmax(np.abs(weights) * np.linalg.norm(given.matrix[:, :, k], axis=0))
+            ]
             for parameter, step in column.step.items():
-                known, unit = values.get(parameter), declared[parameter].unit
+                fitted, unit = values.get(parameter), declared[parameter].unit
                 default = np.nan_to_num(declared[parameter].default)
-                before = or_nan(known.value) if known else default
-                values[parameter] = FittedValue(value=float(before + best * step), unit=unit)
+                value = or_nan(fitted.value) if fitted else default
+                values[parameter] = FittedValue(value=float(value + largest * step), unit=unit)
     return values

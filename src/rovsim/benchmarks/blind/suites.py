@@ -140,14 +140,14 @@ def hiding(
     case_id = f"{label}/{'+'.join(names)}/{k}"
     random = random_of(f"{'+'.join(names)}/{k}", seeds)
     hidden = tuple(drawn(name, strength, random) for name in names)
-    needed = [RECIPES[name].tank for name in names]
+    tanks = [RECIPES[name].tank for name in names]
     return Case(
         id=case_id,
         kind=label,
         seed=seed_of(case_id, seeds),
         hidden=hidden,
         strength=strength,
-        tank=merged(*needed, tank or {}),
+        tank=merged(*tanks, tank or {}),
     )
 
 
@@ -202,8 +202,8 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
     case_id = f"{kind}/{name}/{k}"
     random = random_of(case_id, seeds)
     unlisted = drawn_outside(name, 1.0, random)
-    known = str(random.choice(["quadratic_damping", "net_buoyancy", "thruster_lag"]))
-    hidden = (drawn(known, 1.0, random),) if beside else ()
+    effect = str(random.choice(["quadratic_damping", "net_buoyancy", "thruster_lag"]))
+    hidden = (drawn(effect, 1.0, random),) if beside else ()
     return Case(
         id=case_id,
         kind=kind,
@@ -240,12 +240,12 @@ def strong(seeds: Range) -> Iterator[Case]:
 def law(name: str, k: int, seeds: Range) -> Case:
     """A smooth law outside the catalogue."""
     case_id = f"law/{name}/{k}"
-    found = drawn_law(name, random_of(case_id, seeds))
+    effect = drawn_law(name, random_of(case_id, seeds))
     return Case(
         id=case_id,
         kind="law",
         seed=seed_of(case_id, seeds),
-        outside=(Unlisted(name=name, parameters=found.given()),),
+        outside=(Unlisted(name=name, parameters=effect.given()),),
     )
 
 

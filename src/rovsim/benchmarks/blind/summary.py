@@ -39,7 +39,7 @@ class Judged:
 
 def judge(answers: Sequence[KeptAnswer]) -> list[Judged]:
     """Score the kept answers of one method."""
-    return [_judge(one) for one in answers]
+    return [_judge(answer) for answer in answers]
 
 
 def _judge(one: KeptAnswer) -> Judged:
@@ -65,19 +65,19 @@ def _judge(one: KeptAnswer) -> Judged:
 def _is_worse(answer: Answer | Diagnosis) -> bool | None:
     if not isinstance(answer, Diagnosis) or answer.error.nominal is None:
         return None
-    reached = answer.error.with_effects
-    return reached is None or reached > WORSE * answer.error.nominal
+    with_effects = answer.error.with_effects
+    return with_effects is None or with_effects > WORSE * answer.error.nominal
 
 
 def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
     """Rates of one method by kind of case, by effect, and outside the catalogue."""
-    found = judge(answers)
-    outside = [j for j in found if j.case.outside]
+    judged = judge(answers)
+    outside = [j for j in judged if j.case.outside]
     return MethodSummary(
-        cases=len(found),
-        failed=tuple(sorted(j.case.id for j in found if j.score is None)),
-        kinds={kind: rate(rows) for kind, rows in _grouped(found, lambda j: j.case.kind)},
-        effects={name: _rate_effect(rows) for name, rows in _by_effect(found)},
+        cases=len(judged),
+        failed=tuple(sorted(j.case.id for j in judged if j.score is None)),
+        kinds={kind: rate(rows) for kind, rows in _grouped(judged, lambda j: j.case.kind)},
+        effects={name: _rate_effect(rows) for name, rows in _by_effect(judged)},
         outside={n: rate(rows) for n, rows in _grouped(outside, lambda j: j.case.outside[0].name)},
         calibration=calibrate(answers),
         laws=rate_laws(answers),
@@ -89,29 +89,29 @@ def _grouped(
 ) -> Iterable[tuple[str, list[Judged]]]:
     """Groups in the order of their first member."""
     groups: dict[str, list[Judged]] = {}
-    for one in found:
-        groups.setdefault(key(one), []).append(one)
+    for judged in found:
+        groups.setdefault(key(judged), []).append(judged)
     return groups.items()
 
 
 def _by_effect(found: Sequence[Judged]) -> Iterable[tuple[str, list[Judged]]]:
     """Cases that hide one effect and nothing else, under usual noise and length, by effect."""
-    alone = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
-    return _grouped(alone, lambda j: j.case.hidden[0].effect)
+    single = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
+    return _grouped(single, lambda j: j.case.hidden[0].effect)
 
 
 def rate(found: Sequence[Judged]) -> Rates:
     """Shares of cases. An answer that crashed is wrong in every respect but false names."""
     scores = [j.score for j in found]
-    naming = [s for j, s in zip(found, scores, strict=True) if j.case.names]
+    of_names = [s for j, s in zip(found, scores, strict=True) if j.case.names]
     parameters = [p for s in scores if s for p in s.parameters]
     errors = [p.error for p in parameters]
-    worked = [j.cpu_seconds for j in found if j.cpu_seconds is not None]
+    cpu_seconds = [j.cpu_seconds for j in found if j.cpu_seconds is not None]
     return Rates(
         cases=len(found),
         verdict=share([bool(s and s.verdict) for s in scores]),
-        first_strict=share([bool(s and s.first_strict) for s in naming]),
-        first=share([bool(s and s.first) for s in naming]),
+        first_strict=share([bool(s and s.first_strict) for s in of_names]),
+        first=share([bool(s and s.first) for s in of_names]),
         exact_strict=share([bool(s and s.exact_strict) for s in scores]),
         exact=share([bool(s and s.exact) for s in scores]),
         unseen=share([bool(s and s.unseen) for s in scores]),
@@ -123,8 +123,8 @@ def rate(found: Sequence[Judged]) -> Rates:
         worse=share([j.worse for j in found if j.worse is not None]),
         seconds=_quantile([j.seconds for j in found], 0.5),
         seconds_95=_quantile([j.seconds for j in found], 0.95),
-        cpu_seconds=_quantile(worked, 0.5),
-        cpu_seconds_95=_quantile(worked, 0.95),
+        cpu_seconds=_quantile(cpu_seconds, 0.5),
+        cpu_seconds_95=_quantile(cpu_seconds, 0.95),
         parameters=len(errors),
         error_median=_quantile(errors, 0.5),
         error_95=_quantile(errors, 0.95),
@@ -147,10 +147,10 @@ def _mean(values: Sequence[float]) -> float | None:
 
 def _rate_effect(found: Sequence[Judged]) -> EffectRates:
     full = [j for j in found if j.case.kind == "single"]
-    named = [(j.case.strength, bool(j.score and j.score.first)) for j in found]
-    instead = {j.first or j.verdict for j in full if not (j.score and j.score.first)}
+    first_right = [(j.case.strength, bool(j.score and j.score.first)) for j in found]
+    wrong_answers = {j.first or j.verdict for j in full if not (j.score and j.score.first)}
     return EffectRates(
-        **dict(rate(full)), limit=detection_limit(named), instead=tuple(sorted(instead))
+        **dict(rate(full)), limit=detection_limit(first_right), instead=tuple(sorted(wrong_answers))
     )
 
 
@@ -164,12 +164,12 @@ def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:
         return None
     counts = np.array([[sum(s == x for s, _ in found)] for x in strengths], dtype=float).ravel()
     shares = np.array([np.mean([ok for s, ok in found if s == x]) for x in strengths])
-    rising = isotonic_regression(shares, weights=counts).x  # the nearest shares that never fall
-    if rising[-1] < HALF:
+    fit = isotonic_regression(shares, weights=counts).x  # the nearest shares that never fall
+    if fit[-1] < HALF:
         return None
-    k = int(np.argmax(rising >= HALF))
+    k = int(np.argmax(fit >= HALF))
     if k == 0:
         return float(strengths[0])
-    part = (0.5 - rising[k - 1]) / (rising[k] - rising[k - 1])
+    fraction = (0.5 - fit[k - 1]) / (fit[k] - fit[k - 1])
     a, b = np.log(strengths[k - 1]), np.log(strengths[k])
-    return float(np.exp(a + part * (b - a)))
+    return float(np.exp(a + fraction * (b - a)))

@@ -75,13 +75,13 @@ def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
         f"Made by `make benchmark-blind SUITE={results.suite}{share}`; {results.seeds} seeds "
         f"{first} to {last}; flown in the {_FLOWN[results.simulator]}.",
     ]
-    for name, found in results.methods.items():
-        parts += [f"### {name}", table(found.kinds, "cases of", KIND_COLUMNS)]
-        parts += [table(found.effects, "effect", EFFECT_COLUMNS)]
-        parts += [table(found.outside, "outside the catalogue", OUTSIDE_COLUMNS)]
-        parts += [table(found.laws, "law hidden", LAW_COLUMNS)]
-        parts += _calibration(found.calibration, pictures if name == "diagnosis" else ())
-        parts += [f"Crashed: {', '.join(found.failed)}."] if found.failed else []
+    for name, summary in results.methods.items():
+        parts += [f"### {name}", table(summary.kinds, "cases of", KIND_COLUMNS)]
+        parts += [table(summary.effects, "effect", EFFECT_COLUMNS)]
+        parts += [table(summary.outside, "outside the catalogue", OUTSIDE_COLUMNS)]
+        parts += [table(summary.laws, "law hidden", LAW_COLUMNS)]
+        parts += _calibration(summary.calibration, pictures if name == "diagnosis" else ())
+        parts += [f"Crashed: {', '.join(summary.failed)}."] if summary.failed else []
     return "\n\n".join(part for part in parts if part)
 
 
@@ -89,12 +89,12 @@ def _calibration(found: Calibration, pictures: Sequence[str]) -> list[str]:
     """Intervals and probabilities; nothing of a method that gives none."""
     if not found.ranks.values:
         return []
-    shown = {name: f"![{CAPTIONS[name]}](images/{name}.png)" for name in pictures}
+    images = {name: f"![{CAPTIONS[name]}](images/{name}.png)" for name in pictures}
     parts = ["**Are intervals honest?** All kinds of cases together."]
     parts += [_table_ranks({"all": found.ranks} | found.effects, "effect")]
     parts += ["Parameter by parameter:", _table_ranks(found.parameters, "parameter")]
-    parts += [shown.get(RANKS, "")]
-    parts += ["**Are probabilities honest?**", _table_claims(found), shown.get(RELIABILITY, "")]
+    parts += [images.get(RANKS, "")]
+    parts += ["**Are probabilities honest?**", _table_claims(found), images.get(RELIABILITY, "")]
     if found.bands:
         parts += ["**Do bands hold?** 90 % of the measured velocities should lie inside."]
         parts += [table(found.bands, "s after a start", BAND_COLUMNS)]

@@ -48,12 +48,12 @@ def worth(scores: list[Score]) -> tuple[float, float]:
 def tuned() -> dict[str, Any]:
     """Worth of every setting, best first."""
     cases = [c for c in suite("quick", "development") if not c.outside]
-    found: dict[str, list[Score]] = {}
+    scores: dict[str, list[Score]] = {}
     for case in counted(cases, "tuning"):
-        flown, given = prepared(case)
+        flown, problem = prepared(case)
         for name, regression in settings():
-            found.setdefault(name, []).append(score(flown, answer(given, regression)))
-    return dict(sorted(((k, worth(v)) for k, v in found.items()), key=lambda kv: kv[1])[::-1])
+            scores.setdefault(name, []).append(score(flown, answer(problem, regression)))
+    return dict(sorted(((k, worth(v)) for k, v in scores.items()), key=lambda kv: kv[1])[::-1])
 
 
 if __name__ == "__main__":

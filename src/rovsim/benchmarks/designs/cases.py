@@ -41,7 +41,7 @@ VALUES = (  # `effect.parameter`, which is hidden
 def list_cases() -> list[str]:
     """All 40, pairs and values in turns, so that a part of them is a fair part."""
     pairs = [f"{a}+{b}" for a, b in PAIRS]
-    return [one for both in zip(pairs, VALUES, strict=True) for one in both]
+    return [case for pair in zip(pairs, VALUES, strict=True) for case in pair]
 
 
 def hide(case: str, seeds: Range) -> TankSettings:
@@ -51,23 +51,23 @@ def hide(case: str, seeds: Range) -> TankSettings:
     entry = drawn(name, STRENGTH, random)  # of a value too: the size below is drawn after this
     if parameter:
         entry = _sized(name, parameter, random)
-    own_tank: dict[str, Any] = {
+    case_tank: dict[str, Any] = {
         "name": "design",
         "seed": seed_of(case, seeds),
         "duration": SECONDS,
         "effects": (entry,),
         "runs": (TankRun(id="a", control="6dof", split="train"),),
     }
-    return TankSettings(**merged(ROUGH, RECIPES[name].tank, own_tank))
+    return TankSettings(**merged(ROUGH, RECIPES[name].tank, case_tank))
 
 
 def _sized(name: str, parameter: str, random: np.random.Generator) -> EffectEntry:
     """An effect with one parameter, changed by a size that its recipe draws."""
-    known = next(p for p in built_in()[name].parameters if p.name == parameter)
+    declared = next(p for p in built_in()[name].parameters if p.name == parameter)
     recipe = RECIPES[name]
-    change = (recipe.sign or 1) * STRENGTH * random.uniform(*recipe.sizes) * known.scale
-    neutral = known.neutral_value
-    value = Value(value=float(f"{known.combine(neutral, neutral + change):.4g}"))
+    change = (recipe.sign or 1) * STRENGTH * random.uniform(*recipe.sizes) * declared.scale
+    neutral = declared.neutral_value
+    value = Value(value=float(f"{declared.combine(neutral, neutral + change):.4g}"))
     return EffectEntry(effect=name, parameters={parameter: value})
 
 

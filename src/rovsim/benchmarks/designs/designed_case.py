@@ -46,8 +46,8 @@ class DesignedCase:
     @cached_property
     def best_usual(self) -> CandidateFlight | None:
         """The usual manoeuvre that would tell most; None where none stays within the limits."""
-        usual = [own for own in self.plan.baselines.values() if own]
-        return max(usual, key=lambda own: own[1].utility)[0] if usual else None
+        baselines = [baseline for baseline in self.plan.baselines.values() if baseline]
+        return max(baselines, key=lambda baseline: baseline[1].utility)[0] if baselines else None
 
 
 def design_case(case: str, seeds: Range, folder: Path) -> DesignedCase:
@@ -56,10 +56,12 @@ def design_case(case: str, seeds: Range, folder: Path) -> DesignedCase:
     question = ask(case, settings)
     make_campaign(tank, folder / "before", built_in())
     data = measure_recorded(folder / "before", settings)
-    began, worked = time.perf_counter(), time.process_time()
-    found = plan(nominal(data.vehicle), data.runs, question, None, built_in(), lambda name: None)
-    seconds, cpu = time.perf_counter() - began, time.process_time() - worked
-    return DesignedCase(folder, tank, settings, data, question, found, seconds, cpu)
+    began, began_cpu = time.perf_counter(), time.process_time()
+    flight_plan = plan(
+        nominal(data.vehicle), data.runs, question, None, built_in(), lambda name: None
+    )
+    seconds, cpu = time.perf_counter() - began, time.process_time() - began_cpu
+    return DesignedCase(folder, tank, settings, data, question, flight_plan, seconds, cpu)
 
 
 def measure_recorded(folder: Path, settings: Settings) -> MeasuredCampaign:

@@ -23,15 +23,15 @@ def fly(case: DesignedCase, name: str, tried: CandidateFlight) -> Outcome:
 
     `name` is that of its files and of its run.
     """
-    sent, recorded = case.folder / f"{name}.csv", case.folder / f"with_{name}"
-    _write_log(case, tried, sent)
-    run = TankRun(id=name, control="6dof", split="train", fly=str(sent))
-    flown = case.tank.model_copy(update={"runs": (*case.tank.runs, run)})
+    log_file, campaign_folder = case.folder / f"{name}.csv", case.folder / f"with_{name}"
+    _write_log(case, tried, log_file)
+    run = TankRun(id=name, control="6dof", split="train", fly=str(log_file))
+    tank = case.tank.model_copy(update={"runs": (*case.tank.runs, run)})
     try:
-        make_campaign(flown, recorded, built_in())
+        make_campaign(tank, campaign_folder, built_in())
     except LeftTank as error:
         return ThroughWall(left=error.found)
-    return _reached(case.plan.prior, _fit(case, recorded))
+    return _reached(case.plan.prior, _fit(case, campaign_folder))
 
 
 def _write_log(case: DesignedCase, tried: CandidateFlight, sent: Path) -> None:
@@ -58,13 +58,13 @@ def _reached(before: PriorInformation, after: PriorInformation) -> ReachedOdds |
             log_odds=0.5 * after.deviance_difference,
             log_odds_before=0.5 * before.deviance_difference,
         )
-    (own,), (old,) = after.rivals, before.rivals
-    scale = own.hypothesis.terms[0].parameters[0].scale
-    std, was = float(own.std()[0]), float(old.std()[0])
-    value = float(own.hypothesis.x[own.of_interest[0]])
+    (rival_after,), (rival_before,) = after.rivals, before.rivals
+    scale = rival_after.hypothesis.terms[0].parameters[0].scale
+    std, std_before = float(rival_after.std()[0]), float(rival_before.std()[0])
+    value = float(rival_after.hypothesis.x[rival_after.of_interest[0]])
     return ReachedStd(
         std=std * scale,
-        std_before=was * scale,
-        gained=(was / std) ** 2 - 1.0,
+        std_before=std_before * scale,
+        gained=(std_before / std) ** 2 - 1.0,
         value=value * scale,
     )

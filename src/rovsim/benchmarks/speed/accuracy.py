@@ -20,7 +20,7 @@ CALLS = 2_000
 
 def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
     """One row for each way to learn: cost in us, and the share of the residual that is left."""
-    taught = pairs.of(SEEN)
+    train = pairs.of(SEEN)
     return tuple(
         Accuracy(
             name=name,
@@ -30,13 +30,13 @@ def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
             seen=measure_left(residual, pairs, SEEN),
             unseen=measure_left(residual, pairs, UNSEEN),
         )
-        for name, fades, residual in _ways(taught)
+        for name, fades, residual in _ways(train)
     )
 
 
 def _cost(residual: Residual, pairs: Pairs) -> float:
-    timed = time_calls(ours(residual), pairs.queries, CALLS, 200, points=residual.points)
-    return timed.median_us
+    latency = time_calls(ours(residual), pairs.queries, CALLS, 200, points=residual.points)
+    return latency.median_us
 
 
 def _ways(taught: Pairs) -> Iterator[tuple[str, bool, Residual]]:
@@ -57,7 +57,7 @@ def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
 
 def measure_left(residual: Residual, pairs: Pairs, control: str) -> Left:
     """Root mean square of what is left over that of the residual: all axes, and the worst."""
-    asked = pairs.query_control == control
-    error = residual.predict(pairs.queries[asked]) - pairs.answers[asked]
-    share = np.sqrt((error**2).mean(0) / (pairs.answers[asked] ** 2).mean(0))
+    rows = pairs.query_control == control
+    error = residual.predict(pairs.queries[rows]) - pairs.answers[rows]
+    share = np.sqrt((error**2).mean(0) / (pairs.answers[rows] ** 2).mean(0))
     return Left(mean=float(share.mean()), worst=float(share.max()))

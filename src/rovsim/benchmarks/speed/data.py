@@ -43,8 +43,8 @@ class Pairs:
 
     def of(self, control: str) -> "Pairs":
         """The train rows of one kind of run."""
-        kept = self.control == control
-        return replace(self, X=self.X[kept], Y=self.Y[kept], control=self.control[kept])
+        rows = self.control == control
+        return replace(self, X=self.X[rows], Y=self.Y[rows], control=self.control[rows])
 
     def exported(self, kind: str, rows: int, outputs: int) -> Array:
         """A predictor for only the first so many outputs; a process with some hyperparameters."""
@@ -59,8 +59,8 @@ class Pairs:
 
 def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """A residual of that kind."""
-    given = {"k": NEIGHBOURS, **more} if kind == "knn" else more
-    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **given}), seed=0)
+    settings = {"k": NEIGHBOURS, **more} if kind == "knn" else more
+    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **settings}), seed=0)
     return trained.residual("6dof")
 
 

@@ -67,15 +67,17 @@ class Stopwatch:
         """Time our way and the libraries', with the largest difference of their predictions."""
         stats = self.time(name, own, points, 60.0)
         queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // CHECKED)]
-        few = queries[:3]  # a library may take seconds a call
-        differences, faster = {}, {}
+        first_queries = queries[:3]  # a library may take seconds a call
+        differences, speedups = {}, {}
         for other, call in theirs.items():
-            timed = self.time(other, call, points, seconds)
-            some = few if timed.median_us > 1e5 else queries
-            differences[other] = _difference(own, call, some)
-            faster[other] = timed.median_us / stats.median_us
-        beside = {"largest_difference": differences} | ({"times_faster": faster} if faster else {})
-        self.found[f"{name}@{points}"] = stats.model_copy(update=beside)
+            latency = self.time(other, call, points, seconds)
+            compared = first_queries if latency.median_us > 1e5 else queries
+            differences[other] = _difference(own, call, compared)
+            speedups[other] = latency.median_us / stats.median_us
+        update = {"largest_difference": differences} | (
+            {"times_faster": speedups} if speedups else {}
+        )
+        self.found[f"{name}@{points}"] = stats.model_copy(update=update)
 
 
 def _difference(own: Callable, call: Callable, queries: Array) -> float:
@@ -121,8 +123,8 @@ def inference(
         time_neighbours(stopwatch, points, sweep)
     for points in (500, 1_000, 4_000):
         time_processes(stopwatch, points, sweep)
-    for name, own, points in _variants(pairs):
-        stopwatch.beside(name, own, points, {}, sweep)
+    for name, call, points in _variants(pairs):
+        stopwatch.beside(name, call, points, {}, sweep)
     return stopwatch.found, stopwatch.scheduling
 
 
@@ -136,8 +138,8 @@ def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
     """One kernel for six outputs: mean, mean and variance, and the faded correction."""
     pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)
-    never = unfading(gp)
-    stopwatch.beside("gp_mean", ours(never), points, libraries.means(never), seconds)
+    unfaded = unfading(gp)
+    stopwatch.beside("gp_mean", ours(unfaded), points, libraries.means(unfaded), seconds)
     stopwatch.beside("gp_faded", ours(gp), points, {}, seconds)
     theirs = libraries.variances(gp) if points <= 2_000 else {}
     stopwatch.beside("gp_variance", both(gp), points, theirs, seconds)
@@ -146,15 +148,15 @@ def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
 def _six_kernels(stopwatch: Stopwatch, points: int, seconds: float) -> None:
     pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points)
-    never = unfading(gp)
+    unfaded = unfading(gp)
     ways: tuple[tuple[str, Callable, dict[str, Callable]], ...] = (
-        ("gp_mean", ours(never), libraries.means(never)),
+        ("gp_mean", ours(unfaded), libraries.means(unfaded)),
         ("gp_faded", ours(gp), {}),
         ("gp_variance", both(gp), libraries.variances(gp)),
     )
-    for name, own, found in ways:
-        theirs = {f"{other}_six_kernels": call for other, call in found.items()}
-        stopwatch.beside(f"{name}_six_kernels", own, points, theirs, seconds)
+    for name, predict, library_calls in ways:
+        theirs = {f"{other}_six_kernels": call for other, call in library_calls.items()}
+        stopwatch.beside(f"{name}_six_kernels", predict, points, theirs, seconds)
 
 
 def _inducing(stopwatch: Stopwatch, seconds: float) -> None:

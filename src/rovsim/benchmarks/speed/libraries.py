@@ -38,8 +38,8 @@ def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int
         distance, rows = distance.reshape(-1, k), rows.reshape(-1, k)
         with np.errstate(divide="ignore"):
             weight = 1.0 / distance
-        hit = np.isinf(weight).any(axis=1)
-        weight[hit] = np.isinf(weight[hit])
+        exact = np.isinf(weight).any(axis=1)
+        weight[exact] = np.isinf(weight[exact])
         return (weight[..., None] * targets[rows]).sum(1) / weight.sum(1)[:, None]
 
     return predict
@@ -47,19 +47,19 @@ def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int
 
 def means(residual: Residual) -> Ways:
     """GPyTorch, scikit-learn and NumPy with stored weights; all with the same hyperparameters."""
-    found = {"gpytorch_mean": library_of(residual)}
+    ways = {"gpytorch_mean": library_of(residual)}
     if len(residual.arrays["lengthscale"]) == 1:
-        found |= {"sklearn_gp_mean": _sklearn(residual), "numpy_gp_mean": _numpy(residual)}
-    return found
+        ways |= {"sklearn_gp_mean": _sklearn(residual), "numpy_gp_mean": _numpy(residual)}
+    return ways
 
 
 def variances(residual: Residual) -> dict[str, Callable[[Array], tuple[Array, Array]]]:
     """GPyTorch's exact mean and variance, and by LOVE."""
-    make = learner(residual.kind).posterior_from
-    assert make is not None
+    posterior = learner(residual.kind).posterior_from
+    assert posterior is not None
     return {
-        "gpytorch_variance": make(residual.arrays, settings_of(residual)),
-        "gpytorch_love": make(residual.arrays, settings_of(residual), fast=True),
+        "gpytorch_variance": posterior(residual.arrays, settings_of(residual)),
+        "gpytorch_love": posterior(residual.arrays, settings_of(residual), fast=True),
     }
 
 
@@ -81,16 +81,16 @@ def _sklearn(residual: Residual) -> Predict:
 
 def _numpy(residual: Residual) -> Predict:
     a, (points, targets, scaling) = residual.arrays, _known(residual)
-    length, unit = a["lengthscale"][0], a["outputscale"][0]
-    Z = points / length
+    lengthscale, outputscale = a["lengthscale"][0], a["outputscale"][0]
+    Z = points / lengthscale
     squares = (Z**2).sum(1)
-    gram = unit * np.exp(-0.5 * np.maximum(squares[:, None] + squares - 2.0 * Z @ Z.T, 0.0))
-    gram[np.diag_indices(len(Z))] = unit + a["noise"][0]
-    weights = unit * np.linalg.solve(gram, targets.T - a["mean"]) * a["target_scale"]
+    gram = outputscale * np.exp(-0.5 * np.maximum(squares[:, None] + squares - 2.0 * Z @ Z.T, 0.0))
+    gram[np.diag_indices(len(Z))] = outputscale + a["noise"][0]
+    weights = outputscale * np.linalg.solve(gram, targets.T - a["mean"]) * a["target_scale"]
     mean = a["mean"] * a["target_scale"] + a["target_shift"]
 
     def predict(X: Array) -> Array:
-        z = scaling.apply(X) / length
+        z = scaling.apply(X) / lengthscale
         k = np.exp(-0.5 * ((z[:, None] - Z) ** 2).sum(2))
         return mean + k @ weights
 

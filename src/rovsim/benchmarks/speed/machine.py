@@ -13,7 +13,7 @@ def as_a_control_loop() -> Iterator[str]:
     does not, for 50 ms in every second.
     """
     try:
-        before = os.getpriority(os.PRIO_PROCESS, 0)
+        priority = os.getpriority(os.PRIO_PROCESS, 0)
         os.setpriority(os.PRIO_PROCESS, 0, -20)
     except (AttributeError, OSError):
         yield "at the priority of any other program"
@@ -21,4 +21,4 @@ def as_a_control_loop() -> Iterator[str]:
     try:
         yield "at the highest ordinary priority (nice -20)"
     finally:
-        os.setpriority(os.PRIO_PROCESS, 0, before)
+        os.setpriority(os.PRIO_PROCESS, 0, priority)

@@ -59,12 +59,12 @@ def draw_sizes(bench: Bench) -> Figure:
 
 
 def _sizes(inference: Mapping[str, Latency], name: str) -> dict[int, Latency]:
-    found = {
+    by_points = {
         int(key.split("@")[1]): stats
         for key, stats in inference.items()
         if key.split("@")[0] == name
     }
-    return dict(sorted(found.items()))
+    return dict(sorted(by_points.items()))
 
 
 @styled()
@@ -91,7 +91,7 @@ def draw_accuracy(bench: Bench) -> Figure:
 
 
 def _by_way(rows: Sequence[Accuracy]) -> dict[tuple[str, bool], list[Accuracy]]:
-    found: dict[tuple[str, bool], list[Accuracy]] = {}
+    by_way: dict[tuple[str, bool], list[Accuracy]] = {}
     for row in rows:
-        found.setdefault((row.name, row.fades), []).append(row)
-    return found
+        by_way.setdefault((row.name, row.fades), []).append(row)
+    return by_way

@@ -34,12 +34,12 @@ def steps_per_second(model: Model, count: int, steps: int) -> float:
 def best(call: Callable[[], Any]) -> float:
     """Shortest time in s of some calls, after one that may compile."""
     call()
-    took = []
+    durations = []
     for _ in range(REPEATS):
         start = perf_counter()
         call()
-        took.append(perf_counter() - start)
-    return min(took)
+        durations.append(perf_counter() - start)
+    return min(durations)
 
 
 def numpy_steps_per_second(model: Model) -> float:
@@ -63,9 +63,9 @@ def numpy_steps_per_second(model: Model) -> float:
         )
         d = (c.linear[0] + c.quadratic[0] * np.abs(nu)) * nu
         g = np.concatenate([c.net_weight[0] * R[2], np.cross(c.restoring_lever[0], R[2])])
-        rest = tau - coriolis(c.M_RB[0], nu) - coriolis(c.M_A[0], nu) - d + g
-        turn = 0.5 * np.concatenate([[-v @ nu[3:]], w * nu[3:] + np.cross(v, nu[3:])])
-        return np.concatenate([R @ nu[:3], turn, c.M_inv[0] @ rest])
+        net_force = tau - coriolis(c.M_RB[0], nu) - coriolis(c.M_A[0], nu) - d + g
+        q_dot = 0.5 * np.concatenate([[-v @ nu[3:]], w * nu[3:] + np.cross(v, nu[3:])])
+        return np.concatenate([R @ nu[:3], q_dot, c.M_inv[0] @ net_force])
 
     def drive() -> None:
         x = np.zeros(13)

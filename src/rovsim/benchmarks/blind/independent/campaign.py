@@ -61,8 +61,10 @@ def _record(
         tick,
         1.0 / settings["camera"]["rate"],
     )
-    ticks, wind = round(seconds / tick), settings["turbulence"]
-    pushes = draw_pushes(wind["force"], wind["moment"], wind["time_constant"], tick, ticks, random)
+    ticks, turbulence = round(seconds / tick), settings["turbulence"]
+    pushes = draw_pushes(
+        turbulence["force"], turbulence["moment"], turbulence["time_constant"], tick, ticks, random
+    )
     frames = list(flight.fly(pushes, tank))
     attitudes = Rotation.from_matrix(np.array([frame.R for frame in frames]))
     write_poses(
@@ -94,41 +96,43 @@ class Flight:
             OutOfTank: the pilot lost it.
         """
         thrusters = self.mover.thrusters
-        now = self.pilot.begin(len(self.mover.own.position))
+        vehicle = self.pilot.begin(len(self.mover.own.position))
         for k, push in enumerate(pushes):
             begin, end = k * self.tick, (k + 1) * self.tick
-            command = thrusters.command(self.pilot.steer(begin, now, self.tick))
+            command = thrusters.command(self.pilot.steer(begin, vehicle, self.tick))
             stamp, acts = thrusters.log(begin)
             self.stamps.append(stamp)
             self.acts.append(acts)
             self.commands.append(command)
             if k == 0:
-                yield now
+                yield vehicle
                 spun_up = thrusters.force(command)
-                now = Vehicle(now.place, now.R, now.velocity, spun_up, now.memory)
-            now, seen = self._advance(now, push, begin, end)
-            if np.any(now.place < tank[:, 0]) or np.any(now.place > tank[:, 1]):
+                vehicle = Vehicle(
+                    vehicle.place, vehicle.R, vehicle.velocity, spun_up, vehicle.memory
+                )
+            vehicle, frames = self._advance(vehicle, push, begin, end)
+            if np.any(vehicle.place < tank[:, 0]) or np.any(vehicle.place > tank[:, 1]):
                 raise _lost(end)
             # the last instant is the end of the run, which has no frame
-            yield from seen if k + 1 < len(pushes) else seen[:-1]
+            yield from frames if k + 1 < len(pushes) else frames[:-1]
 
     def _advance(
         self, now: Vehicle, push: Array, begin: float, end: float
     ) -> tuple[Vehicle, list[Vehicle]]:
         """Over one tick; commands change wherever they act inside it."""
         changes = [t for t in self.acts if begin < t < end]
-        frames = [
+        times = [
             k * self.frame
             for k in range(round(begin / self.frame) + 1, round(end / self.frame) + 1)
         ]
-        seen: list[Vehicle] = []
+        frames: list[Vehicle] = []
         for a, b in pairwise([begin, *changes, end]):
             k = int(np.searchsorted(self.acts, 0.5 * (a + b), side="right")) - 1
             static = self.mover.thrusters.force(self.commands[max(k, 0)])
-            wanted = [min(t, b) for t in frames if a + 1e-9 < t <= b + 1e-9]
-            now, found = self.mover.carry(now, static, push, (a, b), wanted)
-            seen += found
-        return now, seen
+            instants = [min(t, b) for t in times if a + 1e-9 < t <= b + 1e-9]
+            now, vehicles = self.mover.carry(now, static, push, (a, b), instants)
+            frames += vehicles
+        return now, frames
 
 
 def _lost(t: float) -> OutOfTank:
@@ -143,8 +147,8 @@ def _lost(t: float) -> OutOfTank:
 def _list_hidden(settings: Mapping[str, Any]) -> Hidden:
     """Parameters given, by effect."""
     return {
-        one["effect"]: {k: float(v["value"]) for k, v in one["parameters"].items()}
-        for one in settings["effects"]
+        entry["effect"]: {k: float(v["value"]) for k, v in entry["parameters"].items()}
+        for entry in settings["effects"]
     }
 
 

@@ -25,23 +25,23 @@ def write_poses(
     """Poses (n, 3) NED and n attitudes, one a frame, as Qualisys Track Manager exports them."""
     rate, count = float(camera["rate"]), len(places)
     places, attitudes = _sense(places, attitudes, hidden)
-    lasting = _draw_lasting(count, 1.0 / (rate * camera["colour_time"]), random)
+    coloured = _draw_lasting(count, 1.0 / (rate * camera["colour_time"]), random)
     shift = camera["position_noise"] * random.normal(size=(count, 3))
     turn = camera["attitude_noise"] * random.normal(size=(count, 3))
-    places = places + shift + camera["colour_noise"] * lasting[:, :3]
-    turn = turn + camera["colour_attitude"] * lasting[:, 3:]
+    places = places + shift + camera["colour_noise"] * coloured[:, :3]
+    turn = turn + camera["colour_attitude"] * coloured[:, 3:]
     attitudes = attitudes * Rotation.from_rotvec(turn)
     places, attitudes = _smooth(places, attitudes, rate, hidden)
-    swapped = random.random(count) < camera["outliers_per_minute"] / (60.0 * rate)
-    away = random.normal(size=(count, 3))
-    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    outliers = random.random(count) < camera["outliers_per_minute"] / (60.0 * rate)
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     smallest, largest = camera["outlier_size"]
     size = random.uniform(smallest, largest, size=(count, 1))
-    places = places + swapped[:, None] * size * away
+    places = places + outliers[:, None] * size * direction
     rows = _format(places, attitudes, random)
     for first in np.flatnonzero(random.random(count) < camera["bursts_per_minute"] / (60 * rate)):
-        lost = slice(first, first + int(random.integers(1, camera["longest_burst"] + 1)))
-        rows[lost] = [*np.zeros(6), -1.0, *np.zeros(9)]
+        gap = slice(first, first + int(random.integers(1, camera["longest_burst"] + 1)))
+        rows[gap] = [*np.zeros(6), -1.0, *np.zeros(9)]
     write_text(path, _header(count, rate) + _table(rows, rate))
 
 
@@ -61,24 +61,24 @@ def _smooth(
     """Two equal first-order low-passes, on the place and along the geodesic of the attitude."""
     if "pose_filter" not in hidden:
         return places, attitudes
-    keep = float(np.exp(-2.0 * np.pi * hidden["pose_filter"]["cutoff"] / rate))
+    pole = float(np.exp(-2.0 * np.pi * hidden["pose_filter"]["cutoff"] / rate))
     for _ in range(2):
         first = places[:1]
-        places = first + lfilter([1.0 - keep], [1.0, -keep], places - first, axis=0)
-        followed = [attitudes[0]]
-        for one in attitudes[1:]:
-            behind = (followed[-1].inv() * one).as_rotvec()
-            followed.append(followed[-1] * Rotation.from_rotvec((1.0 - keep) * behind))
-        attitudes = Rotation.concatenate(followed)
+        places = first + lfilter([1.0 - pole], [1.0, -pole], places - first, axis=0)
+        smoothed = [attitudes[0]]
+        for attitude in attitudes[1:]:
+            lag = (smoothed[-1].inv() * attitude).as_rotvec()
+            smoothed.append(smoothed[-1] * Rotation.from_rotvec((1.0 - pole) * lag))
+        attitudes = Rotation.concatenate(smoothed)
     return places, attitudes
 
 
 def _draw_lasting(count: int, step: float, random: np.random.Generator) -> Array:
     """Six errors (count, 6) that last, of unit variance; `step` in time constants."""
-    keep = np.exp(-step)
-    kicks = np.sqrt(1.0 - keep**2) * random.normal(size=(count, 6))
-    kicks[0] /= np.sqrt(1.0 - keep**2)
-    return lfilter([1.0], [1.0, -keep], kicks, axis=0)
+    pole = np.exp(-step)
+    innovations = np.sqrt(1.0 - pole**2) * random.normal(size=(count, 6))
+    innovations[0] /= np.sqrt(1.0 - pole**2)
+    return lfilter([1.0], [1.0, -pole], innovations, axis=0)
 
 
 def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> Array:
@@ -92,7 +92,7 @@ def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> 
 
 
 def _header(frames: int, rate: float) -> str:
-    known = {
+    fields = {
         "NO_OF_FRAMES": frames,
         "NO_OF_CAMERAS": 8,
         "NO_OF_BODIES": 1,
@@ -102,7 +102,7 @@ def _header(frames: int, rate: float) -> str:
         "BODY_NAMES": BODY,
     }
     names = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
-    lines = [f"{key}\t{value}" for key, value in known.items()]
+    lines = [f"{key}\t{value}" for key, value in fields.items()]
     return "\n".join([*lines, "\t".join(["Frame", "Time", f"{BODY} X", *names])]) + "\n"
 
 
@@ -130,11 +130,11 @@ def write_commands(
 ) -> None:
     """Pulse widths in whole microseconds; some lines are lost."""
     times = np.array(stamps) + log["jitter"] * random.normal(size=len(stamps))
-    kept = random.random(len(times)) >= log["missing"]
-    kept[0] = True
+    logged = random.random(len(times)) >= log["missing"]
+    logged[0] = True
     lines = ["time_s," + ",".join(f"t{k + 1}" for k in range(len(commands[0])))]
-    for time, command, keep in zip(times, commands, kept, strict=True):
-        if keep:
+    for time, command, is_logged in zip(times, commands, logged, strict=True):
+        if is_logged:
             widths = np.rint(1500.0 + 400.0 * command).astype(int)
             lines.append(f"{time:.4f}," + ",".join(map(str, widths)))
     write_text(path, "\n".join(lines) + "\n")

@@ -52,8 +52,8 @@ class Mover:
         self.M_inv = np.linalg.inv(own.M)
         self.weight = float(own.weights[:, 0].sum())
         self.hang = own.weights[:, 0] @ own.weights[:, 1:]
-        given = hidden.get("current", {})
-        self.current = np.array([given.get(k, 0.0) for k in ("north", "east", "down")])
+        current = hidden.get("current", {})
+        self.current = np.array([current.get(k, 0.0) for k in ("north", "east", "down")])
         self.lag = hidden.get("thruster_lag", {}).get("time_constant", 0.0)
         self.sags = "voltage_sag" in hidden
         wake = hidden.get("fluid_memory", {})
@@ -61,8 +61,8 @@ class Mover:
         self.wake_time = wake.get("time_constant", 0.0)
         self.loss = hidden.get("advance_loss", {}).get("coefficient", 0.0)
         arm = hidden.get("propeller_torque", {}).get("ratio", 0.0)
-        turning = np.cross(own.position, own.direction) + arm * own.spin[:, None] * own.direction
-        self.wrenches = np.hstack([own.direction, turning])  # of one newton of each
+        moments = np.cross(own.position, own.direction) + arm * own.spin[:, None] * own.direction
+        self.wrenches = np.hstack([own.direction, moments])  # of one newton of each
 
     def carry(
         self,
@@ -91,17 +91,17 @@ class Mover:
             rtol=self.tolerance,
             atol=0.1 * self.tolerance,
         )
-        seen, left = [], list(wanted)
+        vehicles, instants = [], list(wanted)
         while solver.status == "running":
             solver.step()
-            between = solver.dense_output() if left and left[0] < solver.t else None
-            while left and left[0] <= solver.t:
-                t = left.pop(0)
-                y = between(t) if between is not None and t < solver.t else solver.y
-                seen.append(flow.see(t, y))
-        last = flow.see(end, solver.y)
-        square = Rotation.from_matrix(last.R).as_matrix()
-        return Vehicle(last.place, square, last.velocity, last.thrust, last.memory), seen
+            interpolant = solver.dense_output() if instants and instants[0] < solver.t else None
+            while instants and instants[0] <= solver.t:
+                t = instants.pop(0)
+                y = interpolant(t) if interpolant is not None and t < solver.t else solver.y
+                vehicles.append(flow.see(t, y))
+        final = flow.see(end, solver.y)
+        R = Rotation.from_matrix(final.R).as_matrix()
+        return Vehicle(final.place, R, final.velocity, final.thrust, final.memory), vehicles
 
 
 class _Flow:
@@ -145,26 +145,26 @@ class _Flow:
         """y'."""
         mover, (R, v) = self.mover, self._motion(y)
         place = self.start.place + y[:3] + (t - self.t0) * mover.current
-        at, wrench, beside = Instant(place, R, v), self.push, []
+        instant, wrench, rates = Instant(place, R, v), self.push, []
         if self.steady:
             wrench = wrench + self.thrust
         else:
-            asked = self._battery(t) * self.static
-            acting = y[18 : 18 + len(asked)] if self.lags else asked
-            wrench = wrench + self._thrust(acting, v)
-            beside += [(asked - acting) / mover.lag] if self.lags else []
-        for one in mover.pushes:
-            wrench = wrench + one(at)
+            target = self._battery(t) * self.static
+            thrust = y[18 : 18 + len(target)] if self.lags else target
+            wrench = wrench + self._thrust(thrust, v)
+            rates += [(target - thrust) / mover.lag] if self.lags else []
+        for law in mover.pushes:
+            wrench = wrench + law(instant)
         if self.remembers:
             wrench = wrench - mover.wake * (v - y[-6:])
-            beside += [(v - y[-6:]) / mover.wake_time]
+            rates += [(v - y[-6:]) / mover.wake_time]
         forces = wrench.reshape(2, 3) @ R.T
-        hang = R @ mover.hang
+        weight_moment = R @ mover.hang
         forces[0, 2] += mover.weight
-        forces[1, 0] += hang[1]
-        forces[1, 1] -= hang[0]
+        forces[1, 0] += weight_moment[1]
+        forces[1, 1] -= weight_moment[0]
         forces[1] += cross(y[:3], forces[0])
-        return np.concatenate([R @ v[:3], (R @ skew(v[3:])).ravel(), forces.ravel(), *beside])
+        return np.concatenate([R @ v[:3], (R @ skew(v[3:])).ravel(), forces.ravel(), *rates])
 
     def _thrust(self, force: Array, v: Array) -> Array:
         if self.mover.loss:

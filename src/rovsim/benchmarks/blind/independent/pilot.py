@@ -46,16 +46,16 @@ class Pilot:
     def steer(self, t: float, now: Vehicle, tick: float) -> Array:
         """Demand (6,) at time t."""
         self.seen.append(now)
-        old = self.seen[max(0, len(self.seen) - 1 - LATE)]
-        k, part = divmod(t / JOURNEY, 1.0)
-        goal = (1.0 - part) * self.places[int(k)] + part * self.places[int(k) + 1]
-        missed = goal - old.place
-        self.trim = np.clip(self.trim + TRIM * tick * missed, -0.3, 0.3)
-        wish = self.size * np.sum(np.sin(2.0 * np.pi * self.hertz * t + self.phase), axis=0)
-        wish[:3] += old.R.T @ (PLACE * missed + self.trim) - SPEED * old.velocity[:3]
-        lean = [np.arctan2(now.R[2, 1], now.R[2, 2]), -np.arcsin(np.clip(now.R[2, 0], -1.0, 1.0))]
-        wish[3:5] = UPRIGHT * (wish[3:5] - lean) - RATE * now.velocity[3:5]
-        return np.clip(wish, -MOST, MOST)
+        delayed = self.seen[max(0, len(self.seen) - 1 - LATE)]
+        k, fraction = divmod(t / JOURNEY, 1.0)
+        goal = (1.0 - fraction) * self.places[int(k)] + fraction * self.places[int(k) + 1]
+        error = goal - delayed.place
+        self.trim = np.clip(self.trim + TRIM * tick * error, -0.3, 0.3)
+        demand = self.size * np.sum(np.sin(2.0 * np.pi * self.hertz * t + self.phase), axis=0)
+        demand[:3] += delayed.R.T @ (PLACE * error + self.trim) - SPEED * delayed.velocity[:3]
+        tilt = [np.arctan2(now.R[2, 1], now.R[2, 2]), -np.arcsin(np.clip(now.R[2, 0], -1.0, 1.0))]
+        demand[3:5] = UPRIGHT * (demand[3:5] - tilt) - RATE * now.velocity[3:5]
+        return np.clip(demand, -MOST, MOST)
 
 
 def draw_pushes(
@@ -67,9 +67,9 @@ def draw_pushes(
     random: np.random.Generator,
 ) -> Sequence[Array]:
     """A force that nobody logs: Ornstein-Uhlenbeck (count, 6), N and N m, held over each tick."""
-    keep = np.exp(-tick / time)
-    level = np.repeat([force, moment], 3)
-    found = [level * random.normal(size=6)]
+    decay = np.exp(-tick / time)
+    std = np.repeat([force, moment], 3)
+    pushes = [std * random.normal(size=6)]
     for _ in range(count - 1):
-        found.append(keep * found[-1] + level * np.sqrt(1.0 - keep**2) * random.normal(size=6))
-    return found
+        pushes.append(decay * pushes[-1] + std * np.sqrt(1.0 - decay**2) * random.normal(size=6))
+    return pushes

@@ -38,11 +38,11 @@ def cross(a: Array, b: Array) -> Array:
 
 def list_pushes(own: Constants, hidden: Hidden, tank: Array) -> list[Push]:
     """Every force of the water and of the tether; `tank` (3, 2) low and high in NED."""
-    found: list[Push] = [partial(drag, own, hidden, tank)]
-    found += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
+    pushes: list[Push] = [partial(drag, own, hidden, tank)]
+    pushes += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
     if "tether_drag" in hidden:
-        found.append(partial(tow, hidden["tether_drag"], tank))
-    return found
+        pushes.append(partial(tow, hidden["tether_drag"], tank))
+    return pushes
 
 
 def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
@@ -56,16 +56,16 @@ def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
 
 
 def _near(hidden: Hidden, tank: Array, place: Array) -> float:
-    more = 1.0
+    factor = 1.0
     if "wall_proximity" in hidden:
-        given = hidden["wall_proximity"]
+        parameters = hidden["wall_proximity"]
         gaps = np.maximum(np.min(np.abs(tank[:2] - place[:2, None]), axis=1), 0.0)
-        more += given["gain"] * np.sum(np.exp(-gaps / given.get("length_scale", 0.5)))
+        factor += parameters["gain"] * np.sum(np.exp(-gaps / parameters.get("length_scale", 0.5)))
     if "surface_proximity" in hidden:
-        given = hidden["surface_proximity"]
+        parameters = hidden["surface_proximity"]
         depth = max(place[2] - tank[2, 0], 0.0)
-        more += given["gain"] * np.exp(-depth / given.get("length_scale", 0.4))
-    return float(more)
+        factor += parameters["gain"] * np.exp(-depth / parameters.get("length_scale", 0.4))
+    return float(factor)
 
 
 def friction(given: Given, at: Instant) -> Array:
@@ -86,11 +86,11 @@ def lift(given: Given, at: Instant) -> Array:
 
 def pull(given: Given, at: Instant) -> Array:
     """An elastic tether from its attachment to its anchor."""
-    hook = _attachment(given)
-    line = at.R.T @ (_anchor(given, np.zeros(3)) - at.place) - hook
+    attachment = _attachment(given)
+    line = at.R.T @ (_anchor(given, np.zeros(3)) - at.place) - attachment
     length = float(np.sqrt(line @ line))
     stretch = max(0.0, length - given.get("slack_length", 0.0))
-    return _hung(given["stiffness"] * stretch * line / max(length, 1e-9), hook)
+    return _hung(given["stiffness"] * stretch * line / max(length, 1e-9), attachment)
 
 
 def tow(given: Given, tank: Array, at: Instant) -> Array:
@@ -122,8 +122,8 @@ def _attachment(given: Given) -> Array:
 
 def _anchor(given: Given, otherwise: Array) -> Array:
     """Where the anchor is, NED; given in MoCap axes."""
-    found = [given.get(f"anchor_{k}", v) for k, v in zip("xyz", otherwise, strict=True)]
-    return UPSIDE * np.array(found)
+    anchor = [given.get(f"anchor_{k}", v) for k, v in zip("xyz", otherwise, strict=True)]
+    return UPSIDE * np.array(anchor)
 
 
 def _hung(force: Array, place: Array) -> Array:

@@ -12,20 +12,20 @@ class Thrusters:
     """Commands c in [-1, 1] to forces in newtons, and when a command given at t acts."""
 
     def __init__(self, file: Mapping[str, Any], hidden: Hidden, seconds: float) -> None:
-        own = file["thrusters"]
-        self.limit = float(own.get("command_limit", 1.0))
-        self.mixer = np.array(list(own["mixer"].values()), float).T
-        powers = own["force_curve"]["odd_polynomial"]
+        section = file["thrusters"]
+        self.limit = float(section.get("command_limit", 1.0))
+        self.mixer = np.array(list(section["mixer"].values()), float).T
+        coefficients = section["force_curve"]["odd_polynomial"]
         # a_0 c + a_1 c^3 + …: every second coefficient of a polynomial
-        self.curve = np.polynomial.Polynomial([x for a in powers for x in (0.0, float(a))])
+        self.curve = np.polynomial.Polynomial([x for a in coefficients for x in (0.0, float(a))])
         self.full = float(self.curve(1.0)), float(-self.curve(-1.0))
         self.hidden, self.seconds = hidden, seconds
-        self.gain = self._gains(len(own["units"]))
+        self.gain = self._gains(len(section["units"]))
 
     def _gains(self, count: int) -> Array:
-        given = self.hidden.get("thruster_gain", {})
-        return given.get("all", 1.0) * np.array(
-            [given.get(f"t{i}", 1.0) for i in range(1, count + 1)]
+        gains = self.hidden.get("thruster_gain", {})
+        return gains.get("all", 1.0) * np.array(
+            [gains.get(f"t{i}", 1.0) for i in range(1, count + 1)]
         )
 
     def command(self, demand: Array) -> Array:
@@ -38,16 +38,16 @@ class Thrusters:
         force = self.curve(np.where(np.abs(command) > width, command, 0.0))
         exponent = self.hidden.get("force_curve", {}).get("exponent", 1.0)
         if exponent != 1.0:
-            most = np.where(force > 0.0, *self.full)
-            force = np.sign(force) * most * (np.abs(force) / most) ** exponent
+            full = np.where(force > 0.0, *self.full)
+            force = np.sign(force) * full * (np.abs(force) / full) ** exponent
         ratio = self.hidden.get("thrust_asymmetry", {}).get("ratio", 1.0)
         force = force * self.gain
         return np.where(force < 0.0, ratio * force, force)
 
     def battery(self, t: float) -> float:
         """What is left of every force after t seconds."""
-        given = self.hidden.get("voltage_sag", {})
-        share, rate = given.get("fraction", 0.0) / self.seconds, given.get("rate", 0.0)
+        sag = self.hidden.get("voltage_sag", {})
+        share, rate = sag.get("fraction", 0.0) / self.seconds, sag.get("rate", 0.0)
         return max(0.0, 1.0 - (share + rate) * t)
 
     def log(self, t: float) -> tuple[float, float]:

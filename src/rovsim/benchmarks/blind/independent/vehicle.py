@@ -42,29 +42,29 @@ def skew(r: Array) -> Array:
 def kinetic(mass: float, place: Array, inertia: Array) -> Array:
     """Inertia (6, 6) of a body from its kinetic energy: of its centre, and about it."""
     of_centre = np.hstack([np.eye(3), -skew(place)])
-    found = mass * of_centre.T @ of_centre
-    found[3:, 3:] += inertia
-    return found
+    M = mass * of_centre.T @ of_centre
+    M[3:, 3:] += inertia
+    return M
 
 
 def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
     """Constants of a vehicle file with what is hidden in them."""
     body, water, g = file["rigid_body"], file["hydrodynamics"], float(file["fluid"]["gravity"])
-    own = np.diag([float(body["inertia"][name]) for name in ("Ixx", "Iyy", "Izz")])
-    masses = [(float(body["mass"]), np.array(body["center_of_gravity"], float), own)]
+    inertia = np.diag([float(body["inertia"][name]) for name in ("Ixx", "Iyy", "Izz")])
+    masses = [(float(body["mass"]), np.array(body["center_of_gravity"], float), inertia)]
     load = hidden.get("payload", {})
     masses.append((load.get("mass", 0.0), _triple(load), np.zeros((3, 3))))
-    M = sum(kinetic(*one) for one in masses) + np.diag(np.array(water["added_mass"], float))
+    M = sum(kinetic(*part) for part in masses) + np.diag(np.array(water["added_mass"], float))
     M += np.diag(_six(hidden, "added_mass")) + _pairs(hidden.get("added_mass_coupling", {}))
-    lift = float(file["fluid"]["density"]) * g * float(body["displaced_volume"])
-    lift += hidden.get("net_buoyancy", {}).get("force", 0.0)
-    bubble = np.array(body["center_of_buoyancy"], float)
-    bubble = bubble + _triple(hidden.get("buoyancy_center", {}))
-    hung = [[m * g, *place] for m, place, _ in masses] + [[-lift, *bubble]]
+    buoyancy = float(file["fluid"]["density"]) * g * float(body["displaced_volume"])
+    buoyancy += hidden.get("net_buoyancy", {}).get("force", 0.0)
+    center_of_buoyancy = np.array(body["center_of_buoyancy"], float)
+    center_of_buoyancy = center_of_buoyancy + _triple(hidden.get("buoyancy_center", {}))
+    weights = [[m * g, *place] for m, place, _ in masses] + [[-buoyancy, *center_of_buoyancy]]
     units = file["thrusters"]["units"]
     return Constants(
         M=M,
-        weights=np.array(hung),
+        weights=np.array(weights),
         linear=np.array(water["linear_damping"], float) + _six(hidden, "linear_damping"),
         quadratic=np.array(water["quadratic_damping"], float) + _six(hidden, "quadratic_damping"),
         cubic=_six(hidden, "cubic_damping"),
@@ -76,8 +76,8 @@ def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
 
 
 def _six(hidden: Hidden, effect: str) -> Array:
-    given = hidden.get(effect, {})
-    return np.array([given.get(axis, 0.0) for axis in AXES])
+    parameters = hidden.get(effect, {})
+    return np.array([parameters.get(axis, 0.0) for axis in AXES])
 
 
 def _triple(given: Mapping[str, float]) -> Array:
@@ -86,17 +86,17 @@ def _triple(given: Mapping[str, float]) -> Array:
 
 def _pairs(given: Mapping[str, float]) -> Array:
     """A symmetric matrix (6, 6) of named pairs, `surge_pitch`."""
-    found = np.zeros((6, 6))
+    M = np.zeros((6, 6))
     for name, value in given.items():
         i, j = (AXES.index(axis) for axis in name.split("_"))
-        found[i, j] = found[j, i] = value
-    return found
+        M[i, j] = M[j, i] = value
+    return M
 
 
 def _couplings(given: Mapping[str, float]) -> Array:
     """Damping (2, 6, 6) of named ordered pairs, `yaw_from_sway`, `yaw_from_sway_quadratic`."""
-    found = np.zeros((2, 6, 6))
+    D = np.zeros((2, 6, 6))
     for name, value in given.items():
-        pushed, by = name.removesuffix("_quadratic").split("_from_")
-        found[int(name.endswith("_quadratic")), AXES.index(pushed), AXES.index(by)] = value
-    return found
+        row, column = name.removesuffix("_quadratic").split("_from_")
+        D[int(name.endswith("_quadratic")), AXES.index(row), AXES.index(column)] = value
+    return D
