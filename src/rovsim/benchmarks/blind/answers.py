@@ -1,4 +1,4 @@
-"""Answers as they are kept: one JSON for each case and method."""
+"""Answers as they are stored: one JSON file for each case and method."""
 
 from typing import ClassVar, Literal
 
@@ -11,10 +11,19 @@ from rovsim.results.diagnosis import Answer, Diagnosis
 
 
 class KeptAnswer(Result):
-    """What a method said to a case as it was flown; `error` where it crashed instead.
+    """The answer of a method to a case.
 
-    `digest` of all that the answer depends on; `redrawn`: flown again with weaker effects;
-    `seconds` by the clock, and of the processor; `bands` of the model it ends with.
+    Attributes:
+        digest: of the case, and of the code and vehicle file that the answer depends on.
+        method: its name.
+        case: as it was flown.
+        redrawn: whether the case was flown with weaker effects, or by another pilot, than it
+            declares.
+        seconds: wall-clock time of the method.
+        cpu_seconds: processor time of the method.
+        diagnosis: the answer; None where the method crashed.
+        bands: how much of the test runs lies in the bands of the diagnosed model, if it has bands.
+        error: message of the crash, if any.
     """
 
     noun: ClassVar[str] = "kept answer"

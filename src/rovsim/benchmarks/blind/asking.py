@@ -1,4 +1,4 @@
-"""The project's own diagnosis as a method, with the settings a user gets."""
+"""The diagnosis of rovsim as a method of the benchmark, with the settings that a user gets."""
 
 from pathlib import Path
 
@@ -19,7 +19,12 @@ from rovsim.results.diagnosis import Diagnosis
 
 
 def diagnosis(campaign: Path, out: Path) -> Diagnosis:
-    """What `rovsim diagnose` writes, without the report."""
+    """Diagnose a campaign as `rovsim diagnose` does, without its report.
+
+    Args:
+        campaign: its folder.
+        out: not used.
+    """
     settings = compose(["command=diagnose"])
     chosen_settings = select(settings, DiagnosisSettings)
     with heard_by():
@@ -29,7 +34,15 @@ def diagnosis(campaign: Path, out: Path) -> Diagnosis:
 
 
 def bands(campaign: Path, found: Diagnosis) -> Bands | None:
-    """What the bands of the model that a diagnosis ends with hold of the test runs."""
+    """Measure how much of the test runs lies in the bands of the model that a diagnosis ends with.
+
+    Args:
+        campaign: its folder.
+        found: the diagnosis of the campaign.
+
+    Returns:
+        None where the model has no bands.
+    """
     settings = compose(["command=compare"])
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)

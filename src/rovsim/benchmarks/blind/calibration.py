@@ -1,11 +1,12 @@
-"""Is what answers claim of themselves true? Their intervals, and the probabilities of their names.
+"""Compare the intervals and probabilities that answers claim with the truth.
 
 Simulation-based calibration (Talts et al. 2018, arXiv:1804.06788): draw a truth, simulate, infer;
-the rank of the truth in what was inferred is uniform if the inference is right. Here what was
-inferred is a Gaussian, so the rank is Φ((truth - value) / std). In strict simulation-based
-calibration truths are drawn from the prior of the inference; here they are drawn by the recipes,
-and only numbers of effects that were named count. So it is the part that tells whether intervals
-are honest where the data decide, not whether the whole inference is coherent.
+if the inference is right, the rank of the truth in the posterior is uniform. Here the posterior of
+a parameter is a Gaussian, so the rank is Φ((truth - value) / std).
+
+Strict simulation-based calibration draws truths from the prior of the inference. Here they are
+drawn by the recipes, and only parameters of effects that were named count. So this says whether
+intervals are honest where the data decide, and not whether the whole inference is coherent.
 """
 
 from collections import defaultdict
@@ -28,13 +29,19 @@ from rovsim.results.fitted import FittedEffect
 BINS = 10
 # Claimed probabilities pile up at one, so that bins are finer there.
 EDGES = (0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0)
-EXPECTED = 5  # values a bin, below which the chi-square of a histogram is not one (Cochran 1954)
-COARSER = (10, 5, 2)  # bins of the test, as many as there are values for
+EXPECTED = 5  # values a bin; with fewer, the statistic is not chi-square (Cochran 1954)
+COARSER = (10, 5, 2)  # bins of the test: the most that have enough values
 
 
 @dataclass(frozen=True)
 class Miss:
-    """(truth - value) / std of one number of an effect that is hidden and was named."""
+    """How far a fitted parameter of a hidden effect that was named is from the truth.
+
+    Attributes:
+        effect: its id.
+        name: of the parameter.
+        deviations: (truth - value) / std.
+    """
 
     effect: str
     name: str
@@ -42,7 +49,7 @@ class Miss:
 
 
 def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
-    """What the kept answers of one method claim, against the truth."""
+    """Compare the claims of all answers of one method with the truth."""
     misses = [miss for answer in answers for miss in list_misses(answer)]
     claims = [claim for answer in answers for claim in _list_names(answer)]
     with_probability = [(p, right) for p, right in claims if p is not None]
@@ -57,7 +64,14 @@ def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
 
 
 def rate_bands(found: Sequence[Bands]) -> dict[str, BandRates]:
-    """What bands hold at the ends of windows, by their length; a campaign each."""
+    """Measure how often measured velocities lie inside 90 % bands at the ends of windows.
+
+    Args:
+        found: bands of the test runs, one entry for each campaign.
+
+    Returns:
+        Rates by the length of the windows in s.
+    """
     campaigns: dict[str, list[tuple[float, int]]] = defaultdict(list)
     for bands in found:
         shares: dict[str, list[float]] = defaultdict(list)
@@ -72,7 +86,7 @@ def rate_bands(found: Sequence[Bands]) -> dict[str, BandRates]:
 
 
 def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
-    """Of shares and points, one pair a campaign."""
+    """Summarize campaigns, given the share inside the band and the number of points of each."""
     shares, points = np.array(parts).T
     low, high = np.quantile(shares, [0.05, 0.95])
     return BandRates(
@@ -85,7 +99,10 @@ def _rate_band(parts: Sequence[tuple[float, int]]) -> BandRates:
 
 
 def list_misses(answer: KeptAnswer) -> Iterator[Miss]:
-    """Of every number with a deviation; one that no recipe hides is at its default."""
+    """List the misses of all fitted parameters of an answer that have a standard deviation.
+
+    The truth of a parameter that is not hidden is its default.
+    """
     hidden = {entry.effect: entry for entry in answer.case.hidden}
     for selected in answer.diagnosis.selected if answer.diagnosis else ():
         if selected.effect in hidden:
@@ -94,8 +111,9 @@ def list_misses(answer: KeptAnswer) -> Iterator[Miss]:
 
 
 def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
+    """Compare a fitted effect with its true values; skip parameters without a known truth."""
     defaults = {p.name: p.default for p in built_in()[one.effect].parameters}
-    true_values = defaults | truth  # fins have names of their vehicle's
+    true_values = defaults | truth  # parameters of a vehicle's fins have no default here
     for name, fitted in one.parameters.items():
         if name in true_values and fitted.value is not None and fitted.std:
             deviations = (true_values[name] - fitted.value) / fitted.std
@@ -103,7 +121,7 @@ def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
 
 
 def rank(misses: Sequence[Miss]) -> Ranks:
-    """How deviations are spread, against a standard Gaussian."""
+    """Count deviations in bins of equal probability under a standard Gaussian; test the counts."""
     z = np.array([m.deviations for m in misses])
     bins = np.minimum((BINS * ndtr(z)).astype(int), BINS - 1)
     counts = np.bincount(bins, minlength=BINS)
@@ -117,7 +135,7 @@ def rank(misses: Sequence[Miss]) -> Ranks:
 
 
 def _test_evenness(counts: np.ndarray) -> float | None:
-    """Chance of a histogram (BINS,) as uneven as this one; None of too few values."""
+    """Return the chance of a histogram (BINS,) at least as uneven; None for too few values."""
     for bins in COARSER:
         if counts.sum() >= EXPECTED * bins:
             return float(chisquare(counts.reshape(bins, -1).sum(axis=1)).pvalue)
@@ -125,6 +143,7 @@ def _test_evenness(counts: np.ndarray) -> float | None:
 
 
 def _rank_each(misses: Iterable[Miss], key: Callable[[Miss], str]) -> dict[str, Ranks]:
+    """Rank the misses of each group by itself; `key` returns the group of a miss."""
     groups: dict[str, list[Miss]] = {}
     for miss in misses:
         groups.setdefault(key(miss), []).append(miss)
@@ -132,7 +151,7 @@ def _rank_each(misses: Iterable[Miss], key: Callable[[Miss], str]) -> dict[str, 
 
 
 def _list_names(answer: KeptAnswer) -> Iterator[tuple[float | None, bool]]:
-    """Of each selected name its claimed probability, and whether it is hidden."""
+    """Return, for each selected effect, its claimed probability and whether it is hidden."""
     for selected in answer.diagnosis.selected if answer.diagnosis else ():
         yield selected.probability, selected.effect in _names(answer.case)
 
@@ -142,7 +161,7 @@ def _names(case: Case) -> set[str]:
 
 
 def _bin_claims(told: Sequence[tuple[float, bool]]) -> Iterator[Claims]:
-    """Names by what was claimed of them; bins without a name are left out."""
+    """Count right names in bins of the claimed probability; empty bins are left out."""
     for low, high in pairwise(EDGES):
         last = high == EDGES[-1]
         inside = [(p, right) for p, right in told if low <= p and (p < high or last)]
@@ -151,6 +170,7 @@ def _bin_claims(told: Sequence[tuple[float, bool]]) -> Iterator[Claims]:
 
 
 def _count(names: Sequence[tuple[float, bool]], low: float | None, high: float | None) -> Claims:
+    """Count names, given as pairs of claimed probability and whether the name is right."""
     return Claims(
         low=low,
         high=high,

@@ -1,4 +1,4 @@
-"""One case: what is hidden in which tank, and what an answer may say about it."""
+"""One case: what is hidden in which tank, and which answers to it are right."""
 
 import hashlib
 import zlib
@@ -15,8 +15,8 @@ from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-# First and last seed of each range. Whoever builds or tunes a method looks at development cases
-# alone; a case of the other range is flown to report, never to decide.
+# First and last seed of each range. Methods are built and tuned on development cases alone; cases
+# of the other range are flown to report results, never to decide anything.
 SEEDS = {"development": (1_000_000, 1_999_999), "reporting": (5_000_000, 5_999_999)}
 Range = Literal["development", "reporting"]
 
@@ -24,23 +24,34 @@ WEAKER = 0.8  # of the size, each time the vehicle leaves the tank
 
 
 class Unlisted(Section):
-    """Physics outside the catalogue, by its name in `outside` or `laws`."""
+    """Physics outside the catalogue.
+
+    Attributes:
+        name: in `outside` or `laws`.
+        parameters: values by name, in the parameters' units.
+    """
 
     name: str
     parameters: dict[str, float] = Field(default_factory=dict)
 
     def build(self) -> Effect:
-        """The effect with these values."""
+        """Build the effect with these values."""
         return find_outside(self.name)(**self.parameters)
 
 
 class Case(Section):
-    """One case.
+    """One case of the benchmark.
 
-    `kind` is the row of the table it is counted in; `hidden` the truth in the catalogue's terms;
-    `outside` what no entry describes; `forgiven` effects that may be named or not; `silent`
-    hidden ones that the recordings cannot show, and an answer must say so; `strength` in
-    terms of the recipes; `tank` settings that differ from the default campaign.
+    Attributes:
+        id: unique name; the seed is made from it.
+        kind: row of the table in which the case is counted.
+        seed: of the campaign.
+        hidden: effects of the catalogue that are hidden.
+        outside: physics that is hidden and that no effect of the catalogue describes.
+        forgiven: effects that an answer may name or not.
+        silent: hidden effects that the recordings cannot show; an answer has to say so.
+        strength: of the hidden effects, relative to their recipes.
+        tank: settings that differ from the default campaign.
     """
 
     id: str
@@ -55,7 +66,7 @@ class Case(Section):
 
     @property
     def names(self) -> list[str]:
-        """What an answer has to name."""
+        """Ids of the effects that an answer has to name."""
         return [e.effect for e in self.hidden if e.effect not in (*self.forgiven, *self.silent)]
 
     @property
@@ -66,23 +77,24 @@ class Case(Section):
         return {"missing_effects"} if self.names else {"adequate"} | self._either()
 
     def _either(self) -> set[str]:
+        """Return verdicts that are right besides `adequate` where no effect has to be named."""
         quiet = {"insufficient_data"} if self.partial else set()
         return quiet | ({"missing_effects"} if self.forgiven else set())
 
     @property
     def partial(self) -> bool:
-        """Whether not all axes need be measured, or move."""
+        """Whether there may be axes that are not measured, or that do not move."""
         released = any(run.get("release") for run in self.tank.get("runs", ()))
         return bool(self.tank.get("sensors")) or released
 
     def settings(self) -> TankSettings:
-        """The campaign to fly."""
+        """Return the settings of the campaign to fly."""
         return TankSettings.model_validate(
             {"name": "hidden", "seed": self.seed, "effects": self.hidden, **self.tank}
         )
 
     def weaker(self) -> "Case":
-        """The same case with smaller effects: where the pilot could not hold the vehicle."""
+        """Return the same case with smaller effects, for a pilot that cannot hold the vehicle."""
         outside = tuple(_shrunk_outside(entry) for entry in self.outside)
         hidden = tuple(_shrunk(entry) for entry in self.hidden)
         strength = self.strength * WEAKER
@@ -90,7 +102,7 @@ class Case(Section):
 
 
 def _shrunk(entry: EffectEntry) -> EffectEntry:
-    """An entry whose first parameters, those a recipe sizes, are closer to their defaults."""
+    """Move the parameters of an effect that strength changes closer to their neutral values."""
     declared = {p.name: p for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
@@ -101,6 +113,7 @@ def _shrunk(entry: EffectEntry) -> EffectEntry:
 
 
 def _shrunk_outside(one: Unlisted) -> Unlisted:
+    """Move the first parameter of an effect outside the catalogue, its size, closer to neutral."""
     first = find_outside(one.name).parameters[0]
     smaller = {first.name: _closer(one.parameters[first.name], first)}
     return Unlisted(name=one.name, parameters=one.parameters | smaller)
@@ -111,24 +124,24 @@ def _closer(value: float, parameter: Parameter) -> float:
 
 
 def seed_of(case_id: str, seeds: Range) -> int:
-    """A case's seed: its own, whatever else the suite holds."""
+    """Return the seed of a case, which does not depend on the other cases of the suite."""
     first, last = SEEDS[seeds]
     return first + zlib.crc32(case_id.encode()) % (last - first + 1)
 
 
 def share_of(case_id: str) -> float:
-    """Where a case comes in a random order, 0 to 1; cases below a share are a sample of a suite."""
-    digest = hashlib.sha256(case_id.encode()).digest()  # CRC-32 is linear: alike ids go together
+    """Return a pseudo-random number from 0 to 1; cases below a share are a sample of a suite."""
+    digest = hashlib.sha256(case_id.encode()).digest()  # CRC-32 would correlate similar ids
     return int.from_bytes(digest[:8]) / 2**64
 
 
 def random_of(case_id: str, seeds: Range) -> np.random.Generator:
-    """What the case's own values are drawn with."""
+    """Return the random numbers from which a case's own values are drawn."""
     return np.random.default_rng([seed_of(case_id, seeds), 1])
 
 
 def merged(*settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Tank settings together, section by section."""
+    """Merge tank settings section by section; later ones win."""
     combined: dict[str, Any] = {}
     for layer in settings:
         for key, value in layer.items():

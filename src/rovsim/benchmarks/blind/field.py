@@ -1,11 +1,12 @@
-"""Cases as a laboratory has them: a vehicle file that is wrong everywhere, and cameras as they are.
+"""Cases as in a laboratory: a vehicle file that is wrong everywhere, and imperfect cameras.
 
-workshop     every coefficient of the vehicle file off, and none to two special effects
-camera       a right model, seen by cameras that err slowly or whose software smooths
+workshop     every coefficient of the vehicle file off, and up to two special effects
+camera       a right model, seen by cameras with coloured noise or with smoothing software
 laboratory   all of that at once, with three or five special effects
 
-How wrong is assumed: coefficients of drag and added mass by up to a quarter, the gain of the
-thrusters by a twentieth, the ballast by 1 N and its place by 4 mm.
+The errors of the vehicle file are assumed: coefficients of drag and added mass are off by up to a
+quarter, the gain of the thrusters by a twentieth, the net buoyancy by 1 N, and the height of the
+centre of buoyancy by 4 mm.
 """
 
 from typing import Any, Iterator, Mapping, Sequence
@@ -36,7 +37,13 @@ CUTOFF = (3.0, 12.0)  # Hz
 
 
 def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
-    """A vehicle file that is wrong everywhere, and these special effects."""
+    """Make a case with a wrong vehicle file and some special effects.
+
+    Args:
+        special: ids of the special effects.
+        k: number of the case among those with the same effects.
+        seeds: range that the seed is from.
+    """
     kind = f"workshop+{len(special)}"
     case_id = f"{kind}/{'+'.join(special) or 'nothing'}/{k}"
     random = random_of(case_id, seeds)
@@ -52,7 +59,11 @@ def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
 
 
 def workshops(k: int, seeds: Range) -> Iterator[Case]:
-    """One of each special effect, one of each with its next but two, and three without."""
+    """Make the k-th set of cases with a wrong vehicle file.
+
+    These are each special effect alone, each with the third after it in the list, and three cases
+    without any.
+    """
     for i, name in enumerate(SPECIAL):
         yield workshop((name,), k, seeds)
         yield workshop((name, SPECIAL[(i + 3) % len(SPECIAL)]), k, seeds)
@@ -60,7 +71,13 @@ def workshops(k: int, seeds: Range) -> Iterator[Case]:
 
 
 def camera(how: str, k: int, seeds: Range) -> Case:
-    """A right model, seen by cameras that err slowly, or through software that smooths."""
+    """Make a case with a right model and imperfect cameras.
+
+    Args:
+        how: `coloured` (noise that varies slowly) or `smoothed` (by the camera's software).
+        k: number of the case.
+        seeds: range that the seed is from.
+    """
     case_id = f"camera/{how}/{k}"
     settings, smoothing = _camera(how, random_of(case_id, seeds))
     return Case(
@@ -69,7 +86,13 @@ def camera(how: str, k: int, seeds: Range) -> Case:
 
 
 def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case:
-    """A wrong file, a camera that errs, and three or five special effects of different families."""
+    """Make a case with a wrong file, imperfect cameras, and special effects of different families.
+
+    Args:
+        families: sets of effects that push alike; at most one effect of each is hidden.
+        k: number of the case; kinds of cameras and numbers of effects (three or five) take turns.
+        seeds: range that the seed is from.
+    """
     kind, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
     random = random_of(f"laboratory/{k}", seeds)
     eligible = [members for family in families if (members := family & set(SPECIAL))]
@@ -90,7 +113,7 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
 def _camera(
     how: str, random: np.random.Generator
 ) -> tuple[dict[str, Any], tuple[EffectEntry, ...]]:
-    """Settings of the tank, and what the software does."""
+    """Draw settings of the tank for imperfect cameras, and the effect of their software, if any."""
     settings: dict[str, Any] = {name: random.uniform(*size) for name, size in CAMERAS[how].items()}
     cutoff = float(f"{random.uniform(*CUTOFF):.3g}")
     smoothing = EffectEntry(effect="pose_filter", parameters={"cutoff": Value(value=cutoff)})
@@ -98,7 +121,7 @@ def _camera(
 
 
 def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
-    """Every coefficient changed by its own share."""
+    """Draw effects that change every coefficient of the vehicle file by its own share."""
     water = load_vehicle(default_vehicle()).hydrodynamics
     for name in COEFFICIENTS:
         nominal = np.array(getattr(water, name))

@@ -1,4 +1,4 @@
-"""From a case to a campaign of raw exports, by one of two simulators."""
+"""Make a campaign of raw exports from a case, with one of two simulators."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,10 +18,13 @@ PILOTS = 3
 
 @dataclass(frozen=True)
 class Simulator:
-    """Who flies a case.
+    """A simulator that can fly cases.
 
-    `record(case, folder)` writes the campaign or says that the vehicle left the tank; `states` what
-    it can fly; `code` modules whose change makes old answers void.
+    Attributes:
+        name: of the simulator.
+        record: writes the campaign of a case to a folder; raises if the vehicle leaves the tank.
+        states: whether it can fly a case.
+        code: modules; when they change, answers have to be made again.
     """
 
     name: str
@@ -31,14 +34,22 @@ class Simulator:
 
 
 def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
-    """Write the campaign of a case to the folder `out`, its truth left out; the case as flown.
+    """Write the campaign of a case, without its truth.
 
-    A vehicle that leaves the tank is flown again with effects of 0.8 times the size, until the
-    pilot can hold it; where not even that helps, by another pilot (the next seed). So a case is a
-    function of its declaration alone.
+    If the vehicle leaves the tank, it is flown again with effects of 0.8 times the size until the
+    pilot can hold it, or else by another pilot (the next seed). So what is flown depends only on
+    the declaration of the case.
+
+    Args:
+        case: to be flown.
+        out: folder of the campaign.
+        simulator: its name.
+
+    Returns:
+        The case as flown.
 
     Raises:
-        BadInput: no pilot keeps it inside.
+        BadInput: no pilot keeps the vehicle inside the tank.
     """
     record = SIMULATORS[simulator].record
     for pilot in range(PILOTS):
@@ -54,7 +65,7 @@ def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
 
 
 def _held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case | None:
-    """The case with effects as strong as this pilot can hold; None if there are none."""
+    """Weaken a case until its pilot can hold the vehicle; None where that does not succeed."""
     for _ in range(TRIES):
         try:
             record(case, out)
@@ -75,7 +86,7 @@ def _independently(case: Case, out: Path) -> None:
 
 
 def _is_stated(case: Case) -> bool:
-    """Whether the second simulator knows all that is hidden, and how it is logged."""
+    """Whether the second simulator has all hidden effects, and logs commands as the case needs."""
     stated = all(entry.effect in STATED for entry in case.hidden)
     return stated and not case.outside and case.settings().log.kind == "pwm"
 

@@ -1,4 +1,4 @@
-"""Equations judged against the laws that were hidden."""
+"""Score proposed equations against the laws that were hidden."""
 
 from typing import Sequence
 
@@ -14,7 +14,12 @@ HALF = 0.5  # of the way to the noise floor
 
 
 def rate_laws(answers: Sequence[KeptAnswer]) -> dict[str, LawRates]:
-    """By law, then all of them, then the cases that hide none; empty where no law was hidden."""
+    """Rate the equations of all answers of one method.
+
+    Returns:
+        Rates by law, then of all laws, then of the cases that hide no law; empty where no law was
+        hidden.
+    """
     by_law = {name: [a for a in answers if _hides(a) == name] for name in LAWS}
     rates = {name: _rate(group, LAWS[name]) for name, group in by_law.items() if group}
     if not rates:
@@ -34,6 +39,7 @@ def _mean(shares: Sequence[float], count: np.ndarray) -> float:
 
 
 def _hides(one: KeptAnswer) -> str | None:
+    """Return the name of the law that a case hides, if any."""
     names = [o.name for o in one.case.outside if o.name in LAWS]
     return names[0] if names and one.case.kind == "law" else None
 
@@ -58,7 +64,11 @@ def _rate(answers: Sequence[KeptAnswer], law: KnownLaw | None) -> LawRates:
 
 
 def is_right(proposal: ProposedEquation, law: KnownLaw) -> bool:
-    """Whether the largest term acts where the law does, and such terms have its quantities."""
+    """Whether an equation is right.
+
+    Its largest term has to act where the law does, and its terms there have to be made of the law's
+    quantities, no more and no fewer.
+    """
     largest = max(proposal.terms, key=lambda term: or_nan(term.size))
     quantities = {q for term in proposal.terms if term.on in law.on for q in term.quantities}
     quantities = (quantities - {"speed"}) | {"u", "v", "w"} if "speed" in quantities else quantities
@@ -66,7 +76,12 @@ def is_right(proposal: ProposedEquation, law: KnownLaw) -> bool:
 
 
 def way(found: Diagnosis) -> float:
-    """Share of the error between selected effects and noise floor that goes; NaN: unknown."""
+    """Return how far the equation takes the error from the selected effects to the noise floor.
+
+    Returns:
+        0 where the equation does not help, 1 where the error reaches the noise floor; NaN where
+        there is no equation.
+    """
     if found.unexplained.proposal is None:
         return float("nan")
     with_equation = or_nan(found.ladder.models[-1].windows_2s)

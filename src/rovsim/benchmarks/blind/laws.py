@@ -1,7 +1,8 @@
-"""Smooth laws that no entry of the catalogue states: what an equation should be found for.
+"""Smooth laws that the catalogue does not have, and for which an equation should be found.
 
-In the form of effects and unlisted, as in `outside`. Each says of which quantities it is made, and
-on which axes it acts: an equation is right if its largest term is made of these.
+They have the form of effects that are not listed, as in `outside`. Each law says of which
+quantities it is made and on which axes it acts: an equation is right if its largest term acts there
+and is made of these.
 """
 
 from dataclasses import dataclass
@@ -14,20 +15,26 @@ from rovsim.benchmarks.blind.outside import OUTSIDE, Backlash, Compression, Jet,
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect, Parameter, Wrench
 
-# N s/m, N s2/m2: drag of the default vehicle, through which moving water pushes it.
+# Linear (N s/m) and quadratic (N s2/m2) drag of the default vehicle in surge, sway, heave.
 DRAG = ((13.7, 141.0), (0.0, 217.0), (33.0, 190.0))
 
 
 @njit(forceinline=True)
 def added(drag, v, water):
-    """To the drag of one axis."""
+    """Return the force on one axis, N, by which moving water changes the drag.
+
+    Args:
+        drag: linear (N s/m) and quadratic (N s2/m2) coefficient.
+        v: velocity of the vehicle through still water along the axis, m/s.
+        water: velocity of the moving water along the axis, m/s.
+    """
     a = v - water
     return drag[0] * water + drag[1] * (abs(v) * v - abs(a) * a)
 
 
 @njit(forceinline=True)
 def carried(at, north, east):
-    """What water that moves north and east adds to the drag: surge, sway, heave."""
+    """Return the force (surge, sway, heave; N) of water that moves north and east, m/s."""
     (a, b, c), (d, e, f) = at.R[0], at.R[1]
     return (
         added(DRAG[0], at.nu_r[0], a * north + d * east),
@@ -235,7 +242,7 @@ class SideWake(Coefficients):
     )
 
     def enter(self, body: Body) -> None:
-        """Memory of sway; the rest as in `fluid_memory`."""
+        """Add fluid memory in sway; all else is as in `fluid_memory`."""
         if self["coefficient"]:
             memory = np.array([0.0, self["coefficient"], 0.0, 0.0, 0.0, 0.0])
             body.remember(memory, self["time_constant"])
@@ -243,7 +250,13 @@ class SideWake(Coefficients):
 
 @dataclass(frozen=True)
 class KnownLaw:
-    """A law, the axes it acts on (world or body), and the quantities it is made of."""
+    """A law, and what an equation for it has to be made of.
+
+    Attributes:
+        effect: that is hidden.
+        on: axes that it acts on, in the world or the body.
+        quantities: that it depends on.
+    """
 
     effect: type[Effect]
     on: tuple[str, ...]
@@ -277,10 +290,10 @@ LAWS: dict[str, KnownLaw] = {
 
 
 def find_outside(name: str) -> type[Effect]:
-    """Physics outside the catalogue, a law or not."""
+    """Return the class of physics outside the catalogue, which may be one of the laws."""
     return LAWS[name].effect if name in LAWS else OUTSIDE[name]
 
 
 def drawn_law(name: str, random: np.random.Generator) -> Effect:
-    """A law of a size drawn about the scale of its first parameter."""
+    """Draw a law at strength 1, as `outside.drawn` does."""
     return drawn(LAWS[name].effect, 1.0, random)

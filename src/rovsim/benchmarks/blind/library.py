@@ -1,11 +1,13 @@
-"""The library of the sparse regressions: what one step of each effect would change.
+"""The library of the sparse regressions: how small steps of each effect change accelerations.
 
 The target is the acceleration residual a_res = a_real - a_sim of the nominal model at the measured
 states. A column is the change of a_sim, computed by the engine itself, when one parameter of the
-catalogue moves by its scale from its default; where zero is a flat place (a lag, a deadband, a
-slack tether), when the effect stands at one of its starts. So every effect is in the library,
-under its own name, through the filter of the measurement; but for a filter of the poses themselves.
-Its column is their noise, sharpened, and so is most of the target: every regression would name it.
+catalogue moves by its scale from its default. Where the derivative is zero there (a lag, a
+deadband, a slack tether), the effect is moved to one of its starts instead. So every effect is in
+the library under its own name, as the filter of the measurement shows it.
+
+Filters of the poses themselves are left out. Their column is the sharpened noise of the poses, and
+so is most of the target: every regression would name them.
 """
 
 from dataclasses import dataclass
@@ -27,7 +29,12 @@ EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 
 @dataclass(frozen=True)
 class Column:
-    """One column: an effect, and what a coefficient of 1 adds to its parameters."""
+    """One column of the library.
+
+    Attributes:
+        effect: its id.
+        step: what a coefficient of 1 adds to the effect's parameters, in their units.
+    """
 
     effect: str
     step: Mapping[str, float]
@@ -35,7 +42,13 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """`target` (n, 6) and `matrix` (n, 6, c), both divided by the RMS acceleration of each axis."""
+    """A regression problem over n samples, with c columns.
+
+    Attributes:
+        columns: of the library.
+        target: acceleration residual (n, 6), in units of the RMS acceleration of each axis.
+        matrix: change of the acceleration (n, 6, c) by each column, in the same units.
+    """
 
     columns: tuple[Column, ...]
     target: Array
@@ -45,7 +58,10 @@ class Problem:
 def problem(
     model: Model, motions: Sequence[Motion], effects: Mapping[str, type[Effect]]
 ) -> Problem:
-    """Target and library of some runs; what the log or the tank cannot feed has no column."""
+    """Make target and library of some runs.
+
+    An effect that the log or the tank lacks an input for has no column.
+    """
     residual = np.concatenate([_residual(model, m) for m in motions])
     acceleration = np.concatenate([m.nu_dot[m.usable] for m in motions])
     rms = np.sqrt(np.nanmean(np.square(acceleration), axis=0))
@@ -65,7 +81,7 @@ def _residual(model: Model, motion: Motion) -> Array:
 
 
 def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:
-    """Every column with the effect that makes it."""
+    """Yield every column, and the effect at the values of its step."""
     included = ((n, e) for n, e in effects.items() if not issubclass(e, MeasurementFilter))
     for name, cls in included:
         for start in cls.starts_at(site):

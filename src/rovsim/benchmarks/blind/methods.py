@@ -1,4 +1,4 @@
-"""Who is asked: a method reads a campaign folder and answers in the form of diagnosis.json."""
+"""The methods that are compared: each reads a campaign folder and answers like diagnosis.json."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,9 +15,13 @@ Ask = Callable[[Path, Path], Diagnosis | Answer]
 class Method:
     """A method under test.
 
-    `answer(campaign, out)` gives the diagnosis and may write into `out`; it is a module's function,
-    so that another process can find it. `code` modules whose change makes old answers void.
-    `bands(campaign, diagnosis)`: what the bands of the model it ends with hold of the test runs.
+    Attributes:
+        name: in settings and tables.
+        answer: returns the answer to the campaign in a folder; may write files into another folder.
+            A function of a module, so that another process can find it.
+        code: modules; when they change, answers have to be made again.
+        bands: measures how much of the test runs lies in the bands of the diagnosed model; None for
+            methods without bands.
     """
 
     name: str
@@ -27,7 +31,7 @@ class Method:
 
 
 def chosen(names: Sequence[str]) -> list[Method]:
-    """Methods by name; each is imported only when asked for.
+    """Return methods by name; each is imported only when it is asked for.
 
     Raises:
         BadInput: one of them needs a package that is not installed.

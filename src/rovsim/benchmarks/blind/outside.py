@@ -1,7 +1,7 @@
-"""Physics that no entry of the catalogue describes, in the same form as effects.
+"""Physics that no effect of the catalogue describes, in the form of effects.
 
-They are not listed: no model file can name them and no diagnosis can select them. What is right to
-say of them is that something is left that nothing known explains.
+They are not listed: no model file can name them and no diagnosis can select them. The right answer
+to them is that something is left unexplained.
 """
 
 from math import cos, exp, floor, pi, sin, tanh
@@ -205,7 +205,7 @@ class Backlash(ThrusterDynamics):
     parameters = (Parameter("width", "N", "w", low=0.0, scale=2.0),)
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """The play operator, step by step: what the catalogue's, found by doubling, is held to."""
+        """Apply the play operator step by step, as a reference for that of the catalogue."""
         F = force[0] if state is None else state
         out, w = np.empty_like(force), self["width"]
         for row, static in zip(out, force, strict=True):
@@ -233,12 +233,18 @@ SIZES = (0.7, 1.5)  # at strength 1, in scales of the first parameter
 
 
 def drawn_outside(name: str, strength: float, random: np.random.Generator) -> Effect:
-    """Physics outside the catalogue, of a size drawn about the scale of its first parameter."""
+    """Draw physics outside the catalogue, its first parameter about `strength` times its scale."""
     return drawn(OUTSIDE[name], strength, random)
 
 
 def drawn(cls: type[Effect], strength: float, random: np.random.Generator) -> Effect:
-    """An effect of a size drawn about the scale of its first parameter, the others about theirs."""
+    """Draw an effect: its first parameter is its size, the others vary about their defaults.
+
+    Args:
+        cls: class of the effect.
+        strength: factor of the size.
+        random: from which values are drawn.
+    """
     first, *others = cls.parameters
     values = {first.name: float(random.uniform(*SIZES)) * strength * first.scale}
     values |= {p.name: p.default + float(random.uniform(-1, 1)) * p.scale for p in others}

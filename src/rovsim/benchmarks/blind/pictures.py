@@ -18,11 +18,15 @@ RANKS, RELIABILITY = "blind_ranks", "blind_reliability"
 COLUMNS, ROW = 5, 24  # panels beside each other, mm
 CHANCE = 0.99  # of an honest histogram's bars lie inside the band
 BAR, BAND, LINE = "#0072B2", "#dddddd", "#D55E00"
-CERTAIN = 1e-4  # from one: where a probability of one is drawn
+CERTAIN = 1e-4  # least distance from one at which a probability is drawn
 
 
 def write_pictures(page: Path, results: BlindSummary) -> list[str]:
-    """Draw what the diagnosis claims into the page's images; the names of what there is to show."""
+    """Draw the calibration of the diagnosis into the images beside a page.
+
+    Returns:
+        Names of the pictures; empty where the diagnosis fitted no hidden parameter.
+    """
     summary = results.methods.get("diagnosis")
     if summary is None or not summary.calibration.ranks.values:
         return []
@@ -36,7 +40,7 @@ def write_pictures(page: Path, results: BlindSummary) -> list[str]:
 
 @styled()
 def draw_ranks(found: Calibration) -> Figure:
-    """One histogram a parameter that has enough values, all values together first."""
+    """Draw a rank histogram of all values together, and of each parameter with enough values."""
     by_name = {"all": found.ranks} | _with_enough(found.parameters)
     rows = ceil(len(by_name) / COLUMNS)
     figure = sheet(14 + ROW * rows)
@@ -62,7 +66,7 @@ def _with_enough(parameters: Mapping[str, Ranks]) -> dict[str, Ranks]:
 
 
 def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
-    """Shares of the values in each bin, over the band in which honest ones lie."""
+    """Draw the number of values in each bin, over the band in which honest ones lie."""
     bins = len(ranks.counts)
     low, high = binom.interval(CHANCE, ranks.values, 1.0 / bins)
     axes.axhspan(low, high, color=BAND, zorder=0)
@@ -79,10 +83,10 @@ def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
 
 @styled()
 def draw_reliability(found: Calibration) -> Figure:
-    """Share of right names against the probability that was claimed, with 95 % intervals."""
+    """Draw the share of right names against their claimed probability, with 95 % intervals."""
     figure = sheet(75)
     axes = figure.subplots()
-    # what is left to one, so that 0.99 and 0.999 are apart
+    # distance from one, in which 0.99 and 0.999 are far apart
     doubts = np.array([max(1.0 - (c.claimed or 0.0), CERTAIN) for c in found.probability])
     for doubt, bin_ in zip(doubts, found.probability, strict=True):
         interval = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")

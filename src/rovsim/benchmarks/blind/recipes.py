@@ -1,9 +1,9 @@
-"""How strong each effect of the catalogue is when it is hidden, and in which parameters.
+"""How large each effect of the catalogue is when it is hidden, and in which parameters.
 
-Strength 1 is a size that a laboratory would meet and that matters there: in 2 s windows the
-nominal model then errs two to ten times as much as a perfect one (the deadband 1.5, a tilted world
-1.1 times, whose sizes are the largest that anyone would overlook). Mostly that is one to a few of a
-parameter's own `scale`. Weaker strengths multiply `sizes`, never `fixed`.
+Strength 1 is a size that a laboratory would meet and that matters there: in 2 s windows the nominal
+model then errs two to ten times as much as a perfect one. (Exceptions are the deadband, 1.5 times,
+and a tilted world, 1.1 times, whose sizes are the largest that anyone would overlook.) Mostly that
+is one to a few of a parameter's own `scale`. Weaker strengths multiply `sizes`, never `fixed`.
 """
 
 from dataclasses import dataclass, field
@@ -21,11 +21,15 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Recipe:
-    """One effect as it is hidden.
+    """How one effect is hidden.
 
-    `choices` groups of parameters, one of which is drawn; `sizes` at strength 1, in scales of each
-    parameter; `sign` of the change: 0 = either; `fixed` values that strength does not change;
-    `tank` settings that the effect needs to show; `weak`: whether less of it is harder to see.
+    Attributes:
+        choices: groups of parameters, one of which is drawn and changed.
+        sizes: least and largest change at strength 1, in scales of each parameter.
+        sign: of the change; 0: either.
+        fixed: least and largest values of other parameters, which do not depend on strength.
+        tank: settings that the effect needs to show.
+        weak: whether a smaller effect is harder to see.
     """
 
     choices: tuple[tuple[str, ...], ...]
@@ -85,7 +89,7 @@ RECIPES: Mapping[str, Recipe] = {
     "voltage_sag": Recipe(_each("fraction"), (1.5, 3.0), 1),
     "advance_loss": Recipe(_each("coefficient"), (1.5, 4.0), 1),
     "propeller_torque": Recipe(_each("ratio"), (1.0, 3.0)),
-    "thruster_order": Recipe((("first", "second"),), (1.0, 1.0), weak=False),  # `_swapped`
+    "thruster_order": Recipe((("first", "second"),), (1.0, 1.0), weak=False),  # drawn by `_swapped`
     "pilot_gain": Recipe(
         _each("surge", "sway", "heave", "yaw"), (2.0, 5.0), tank=SUITABLE["demands"]
     ),
@@ -107,9 +111,14 @@ RECIPES: Mapping[str, Recipe] = {
 
 
 def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntry:
-    """An effect of the catalogue with values drawn by its recipe.
+    """Draw an effect of the catalogue by its recipe.
 
-    What is drawn is the same at every strength; only the size of the change differs.
+    The random numbers are the same at every strength; only the size of the change differs.
+
+    Args:
+        name: id of the effect.
+        strength: factor of the size.
+        random: from which values are drawn.
     """
     if name == "thruster_order":
         return _swapped(random)
@@ -128,13 +137,13 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
 def draw_apart(
     families: Sequence[frozenset[str]], count: int, random: np.random.Generator
 ) -> list[str]:
-    """So many effects, each of another family."""
+    """Draw `count` effects, each of another family."""
     indices = random.choice(len(families), size=count, replace=False)
     return [str(random.choice(sorted(families[i]))) for i in indices]
 
 
 def _swapped(random: np.random.Generator) -> EffectEntry:
-    """Two upright thrusters of the default vehicle: a pilot can still hold it."""
+    """Draw two swapped upright thrusters of the default vehicle, which a pilot can still hold."""
     first, second = sorted(random.choice([5.0, 6.0, 7.0, 8.0], size=2, replace=False).tolist())
     values = {"first": first, "second": second}
     return EffectEntry(
@@ -143,7 +152,7 @@ def _swapped(random: np.random.Generator) -> EffectEntry:
 
 
 def _moved(p: Parameter, scales: float, strength: float) -> float:
-    """A share of the change of a parameter by some of its scales, inside its range, rounded."""
+    """Change a parameter by a number of its scales, times the strength, within its range."""
     return _rounded(p.combine(p.neutral_value, p.neutral_value + scales * p.scale, strength))
 
 
@@ -152,7 +161,7 @@ def _rounded(value: float) -> float:
 
 
 def _used(name: str, parameter: str, chosen: tuple[str, ...]) -> bool:
-    """A loop's gain means nothing on an axis that has no loop."""
+    """Whether a parameter has a meaning: the gain of a loop has none on an axis without a loop."""
     if name != "onboard_control" or not parameter.startswith("gain_"):
         return True
     return parameter.replace("gain_", "bandwidth_") in chosen

@@ -1,4 +1,4 @@
-"""Recordings of other laboratories, as the tank imitates them: whatever was measured, any vehicle.
+"""Recordings as other laboratories have them, imitated by the tank: other sensors and vehicles.
 
 depth and attitude   a vehicle without motion capture, its pilot's demands on board
 gyro                 rates at 200 Hz, attitude and depth of an autopilot, thruster commands
@@ -6,7 +6,7 @@ ship                 a model ship in the plane, two thrusters that turn, poses a
 decay                let go from an angle and not commanded, filmed
 torpedo              fins, acoustic positions, a Doppler log, an inertial unit
 
-Every kind hides in turn each effect that its channels can show, and some that they cannot.
+The cases of a kind hide in turn each effect that its channels can show, and some that they cannot.
 """
 
 from dataclasses import dataclass
@@ -33,7 +33,13 @@ BUOYANCY: Hidden = ("net_buoyancy", {"force": (1.5, 3.0)})
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of recording: settings of the tank, effects it shows, effects it cannot show."""
+    """A kind of recording.
+
+    Attributes:
+        tank: settings of the tank.
+        shown: effects that such a recording can show, each with the range of its parameters.
+        silent: effects that it cannot show.
+    """
 
     tank: Mapping[str, Any]
     shown: tuple[Hidden, ...]
@@ -49,7 +55,7 @@ def _runs(control: str = "6dof", **extra: Any) -> list[dict[str, Any]]:
 
 
 def _releases() -> list[dict[str, Any]]:
-    """Let go from different angles while it moves, eight times for a few seconds."""
+    """Make eight runs of a few seconds, each let go from another angle while it moves."""
     angles = ((0.4, 0.0), (-0.4, 0.3), (0.3, -0.3), (-0.3, 0.1), (0.2, 0.4), (0.4, 0.2))
     tests = ((0.35, 0.1), (-0.35, -0.2))
     splits = ["train"] * len(angles) + ["test"] * len(tests)
@@ -155,13 +161,13 @@ KINDS: Mapping[str, Kind] = {
 
 
 def recordings(seeds: Range) -> Iterator[Case]:
-    """Eight of each kind: what it shows, what it cannot, nothing, and over again."""
+    """Yield eight cases of each kind: what it can show, what it cannot, nothing, and over again."""
     for kind in KINDS:
         yield from (recording(kind, k, seeds) for k in range(CASES))
 
 
 def recording(kind: str, k: int, seeds: Range) -> Case:
-    """The k-th case of a kind."""
+    """Make the k-th case of a kind."""
     settings = KINDS[kind]
     cycle: list[Hidden | None] = [*settings.shown, *settings.silent, None]
     case_id, hidden = f"{kind}/{k}", cycle[k % len(cycle)]

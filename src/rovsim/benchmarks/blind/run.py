@@ -1,4 +1,4 @@
-"""Run cases: resumable, one JSON per case and method."""
+"""Run cases, one JSON file for each case and method; what has been answered is not run again."""
 
 import hashlib
 import json
@@ -22,13 +22,19 @@ from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Answer, Diagnosis
 
 FLIGHT = "rovsim.benchmarks.blind.flight"
-_ASIDE = {"tank": (), "independent": ("independent",)}  # folders that keep answers apart
+_ASIDE = {"tank": (), "independent": ("independent",)}  # subfolder of the answers, by simulator
 Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
 class Job:
-    """A case and the methods that have not answered it yet, with where and under which digest."""
+    """A case, and the methods that have not answered it yet.
+
+    Attributes:
+        case: to be flown.
+        methods: each with the file of its answer and the digest that the answer will have.
+        simulator: that flies the case.
+    """
 
     case: Case
     methods: tuple[tuple[Method, Path, str], ...]
@@ -36,13 +42,20 @@ class Job:
 
     @property
     def mark(self) -> str:
-        """Digest of the answers it will give."""
+        """Digest of the files and digests of the answers that the job will give."""
         return hashlib.sha256(repr([w[1:] for w in self.methods]).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """What was asked for: the cases, who answers, and the folder that keeps the answers."""
+    """A run of the benchmark.
+
+    Attributes:
+        asked: settings.
+        out: folder of the answers.
+        cases: that are run.
+        methods: that answer them.
+    """
 
     asked: BlindSettings
     out: Path
@@ -51,37 +64,42 @@ class Benchmark:
 
     @staticmethod
     def of(asked: BlindSettings, out: str | None) -> "Benchmark":
-        """As the settings say; `out` is results/blind unless said."""
+        """Prepare a run with some settings; `out` is results/blind unless given."""
         folder = Path(out or Path("results/blind", *_ASIDE[asked.simulator]))
         cases = [c for c in suite(asked.suite, asked.seeds) if share_of(c.id) < asked.share]
         return Benchmark(asked, folder, tuple(cases), tuple(chosen(asked.methods)))
 
     @property
     def answers(self) -> Path:
-        """Folder of the answers to these seeds."""
+        """Folder of the answers to cases with these seeds."""
         return self.out / self.asked.seeds
 
     def only(self, name: str) -> "Benchmark":
-        """The same with one case alone, by the name of its files."""
+        """Reduce the run to one case, given by the name of its files."""
         return replace(self, cases=tuple(case for case in self.cases if file_name(case) == name))
 
     def pending(self) -> list[Job]:
-        """What is missing or was answered by other code."""
+        """List jobs for answers that are missing or were given by other code."""
         return list(pending(self.cases, self.methods, self.answers, self.asked.simulator))
 
 
 def file_name(case: Case) -> str:
-    """The id of a case, as the name of a file."""
+    """Return the id of a case as the name of a file."""
     return case.id.replace("/", "__").replace(" ", "_")
 
 
 def place(folder: Path, method: Method, case: Case) -> Path:
-    """Where the answer of a method to a case is kept."""
+    """Return the file of the answer of a method to a case."""
     return folder / method.name / f"{file_name(case)}.json"
 
 
 def fingerprint(case: Case, code: str) -> str:
-    """Digest of all that an answer depends on."""
+    """Digest all that an answer depends on.
+
+    Args:
+        case: that is answered.
+        code: digest of simulator, method and vehicle file.
+    """
     content = json.dumps([case.model_dump(mode="json"), code], sort_keys=True)
     return hashlib.sha256(content.encode()).hexdigest()[:16]
 
@@ -89,7 +107,14 @@ def fingerprint(case: Case, code: str) -> str:
 def pending(
     cases: Sequence[Case], methods: Sequence[Method], folder: Path, simulator: str = "tank"
 ) -> Iterator[Job]:
-    """Jobs for what is missing or was answered by other code, of cases the simulator can fly."""
+    """Yield jobs for answers that are missing or were given by other code.
+
+    Args:
+        cases: those that the simulator cannot fly are skipped.
+        methods: that answer them.
+        folder: of the answers.
+        simulator: its name.
+    """
     backend = SIMULATORS[simulator]
     vehicle = [vehicle_file(default_vehicle())]
     codes = {m.name: digest(FLIGHT, *backend.code, *m.code, described=vehicle) for m in methods}
@@ -105,7 +130,7 @@ def _answered(path: Path, mark: str) -> bool:
 
 
 def work(job: Job) -> None:
-    """Fly a case once, ask every method, keep each answer as soon as it is there."""
+    """Fly a case once, ask every method, and write each answer as soon as it is given."""
     with tempfile.TemporaryDirectory() as folder:
         campaign = Path(folder, "campaign")
         flown = fly(job.case, campaign, job.simulator)
@@ -127,7 +152,10 @@ def work(job: Job) -> None:
 
 
 def _ask(method: Method, campaign: Path, out: Path) -> tuple[Diagnosis | Answer | None, str | None]:
-    """The answer, or why there is none: a crash is a wrong answer, not the end of the benchmark."""
+    """Return the answer of a method, or the error by which it crashed.
+
+    A crash counts as a wrong answer and does not end the benchmark.
+    """
     try:
         return method.answer(campaign, out), None
     except (RovsimError, ArithmeticError, LookupError, TypeError, ValueError, SystemExit) as error:
@@ -141,7 +169,7 @@ def _cover(method: Method, campaign: Path, found: Diagnosis | Answer | None) -> 
 
 
 def run(jobs: Sequence[Job], progress: Progress = lambda done, total: None) -> None:
-    """Work off jobs, one after the other."""
+    """Do jobs one after the other; `progress` is called with how many are done, and of how many."""
     for done, job in enumerate(jobs):
         progress(done, len(jobs))
         work(job)
@@ -149,6 +177,6 @@ def run(jobs: Sequence[Job], progress: Progress = lambda done, total: None) -> N
 
 
 def read_answers(cases: Sequence[Case], method: Method, folder: Path) -> list[KeptAnswer]:
-    """What a method said to those cases that it has answered."""
+    """Read the answers of a method to those of the cases that it has answered."""
     paths = [place(folder, method, case) for case in cases]
     return [KeptAnswer.read(path) for path in paths if path.is_file()]

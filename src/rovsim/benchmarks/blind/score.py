@@ -1,9 +1,10 @@
-"""One answer judged against the truth. Pure: a case and a diagnosis in, numbers out.
+"""Score one answer against the truth, from a case and a diagnosis alone.
 
-An answer is `exact` if it names what is hidden and nothing else, and its verdict is right.
-Strictly: the very names. Leniently: up to the groups that the diagnosis itself calls
-indistinguishable, each hidden effect matched by one named effect. How large such groups are is
-counted, so that an answer cannot win by calling everything alike.
+An answer is `exact` if it names what is hidden and nothing else, and its verdict is right. Strict
+scores ask for the very names. Lenient ones also accept an effect of a group that the diagnosis
+itself calls indistinguishable from the hidden one; each hidden effect is matched by one named
+effect. The size of such groups is counted, so that an answer cannot win by calling everything
+alike.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,14 @@ from rovsim.results.fitted import FittedEffect
 
 @dataclass(frozen=True)
 class ParameterScore:
-    """One hidden number: relative `error`, and whether its 95 % interval covers it (None: none)."""
+    """How well one hidden parameter was found.
+
+    Attributes:
+        effect: its id.
+        name: of the parameter.
+        error: relative to the size of the hidden change.
+        covered: whether the 95 % interval contains the truth; None without an interval.
+    """
 
     effect: str
     name: str
@@ -30,12 +38,22 @@ class ParameterScore:
 
 @dataclass(frozen=True)
 class Score:
-    """What one answer is worth.
+    """The score of one answer.
 
-    `first` whether the first name is right (None where nothing is hidden); `false` names that are
-    neither hidden nor forgiven; `alike` size of the largest group that a hidden effect is in;
-    `unseen` whether all is right but for hidden effects of which the answer says that the runs
-    cannot show them.
+    Attributes:
+        verdict: whether the verdict is right, and hidden effects that the recordings cannot show
+            are said to be not observable.
+        flagged: whether the verdict is `unexplained`.
+        first_strict: as `first`, by the very name.
+        first: whether the first name is right; None where nothing is hidden.
+        exact_strict: as `exact`, by the very names.
+        exact: whether verdict and names are right, and nothing else is named.
+        false_strict: number of false names by the very names.
+        false: number of names that are neither hidden nor forgiven.
+        alike: size of the largest group of indistinguishable effects with a hidden one in it.
+        unseen: whether all is right except that hidden effects are missing of which the answer says
+            that the runs cannot show them.
+        parameters: of hidden effects that were named.
     """
 
     verdict: bool
@@ -52,7 +70,7 @@ class Score:
 
 
 def score(case: Case, answer: Answer | Diagnosis) -> Score:
-    """Judge what was said of the campaign of a case."""
+    """Score the answer to a case."""
     selected = [fitted.effect for fitted in answer.selected]
     names = [s for s in selected if s not in case.forgiven]
     groups = [set(group) for group in answer.indistinguishable]
@@ -78,7 +96,7 @@ def score(case: Case, answer: Answer | Diagnosis) -> Score:
 
 
 def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) -> bool:
-    """Whether the answer would be exact if what it calls not observable were not hidden."""
+    """Whether the answer is exact except for hidden effects that it calls not observable."""
     missing = set(case.names) - named
     if not missing or not missing <= set(answer.not_observable) or named - set(case.names):
         return False
@@ -87,17 +105,19 @@ def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) 
 
 
 def _first(selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> bool | None:
+    """Whether the first selected effect is hidden; None where nothing is."""
     if not truth:
         return None
     return bool(selected) and any(_same(selected[0], name, groups) for name in truth)
 
 
 def _same(a: str, b: str, groups: list[set[str]]) -> bool:
+    """Whether two effects are the same or in one group."""
     return a == b or any({a, b} <= group for group in groups)
 
 
 def matching(named: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> int:
-    """How many names can be paired with hidden effects, each used once (augmenting paths)."""
+    """Count the names that can be paired with hidden effects, each used once (augmenting paths)."""
     owner: dict[str, str] = {}
 
     def place(one: str, seen: set[str]) -> bool:
@@ -113,7 +133,7 @@ def matching(named: Sequence[str], truth: Sequence[str], groups: list[set[str]])
 
 
 def _parameters(case: Case, answer: Answer | Diagnosis) -> Iterator[ParameterScore]:
-    """Every number of a hidden effect that was named by its own name."""
+    """Score every fitted parameter of each hidden effect that was named by its own name."""
     selected = {fitted.effect: fitted for fitted in answer.selected}
     for entry in case.hidden:
         if entry.effect in case.names and entry.effect in selected:
@@ -124,7 +144,7 @@ def _parameters(case: Case, answer: Answer | Diagnosis) -> Iterator[ParameterSco
 
 
 def _parameter(declared: Parameter, truth: float, answer: FittedEffect) -> ParameterScore:
-    """The change from the default is what was hidden; a number left out says: the default."""
+    """Score one parameter; one that the answer leaves out counts as left at its default."""
     fitted = answer.parameters.get(declared.name)
     value, std = (fitted.value, fitted.std) if fitted else (declared.default, None)
     miss = abs(or_nan(value) - truth)

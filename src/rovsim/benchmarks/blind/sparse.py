@@ -2,7 +2,8 @@
 
 STLSQ: sequentially thresholded least squares (Brunton, Proctor & Kutz 2016). FROLS: forward
 regression, orthogonal least squares (Billings 2013). Each axis is one regression; an effect is
-named if a column of it is active on any axis. Neither can say that something is left unexplained.
+named if one of its columns is active on any axis. Neither method can say that something is left
+unexplained.
 """
 
 import warnings
@@ -35,17 +36,17 @@ LEAST_GAIN, MOST_TERMS = 0.05, 8
 
 
 def stlsq(campaign: Path, out: Path) -> Answer:
-    """What sequentially thresholded least squares selects."""
+    """Answer with what sequentially thresholded least squares selects; `out` is not used."""
     return answer(of_campaign(campaign), thresholded(THRESHOLD, RIDGE))
 
 
 def frols(campaign: Path, out: Path) -> Answer:
-    """What forward regression selects."""
+    """Answer with what forward regression selects; `out` is not used."""
     return answer(of_campaign(campaign), forward(LEAST_GAIN, MOST_TERMS))
 
 
 def thresholded(threshold: float, ridge: float) -> Regression:
-    """STLSQ: a term stays if it makes `threshold` of the usual acceleration."""
+    """Make STLSQ, which keeps terms of at least `threshold` times the RMS acceleration."""
 
     def coefficients(X: Array, y: Array) -> Array:
         from pysindy import STLSQ
@@ -57,10 +58,14 @@ def thresholded(threshold: float, ridge: float) -> Regression:
 
 
 def forward(least_gain: float, most: int) -> Regression:
-    """FROLS: terms are added while the next one removes `least_gain` of the variance.
+    """Make FROLS, which adds terms while the next one removes `least_gain` of the variance.
 
     That is Billings' rule, applied to the optimizer's path. PySINDy's own choice of the length
     (kappa) multiplies by the library's condition number, which is infinite for equivalent terms.
+
+    Args:
+        least_gain: share of the variance of the target.
+        most: number of terms.
     """
 
     def coefficients(X: Array, y: Array) -> Array:
@@ -79,7 +84,7 @@ def forward(least_gain: float, most: int) -> Regression:
 
 @contextmanager
 def _quietly() -> Iterator[None]:
-    """Without PySINDy's warnings that nothing is left, or that columns resemble one another."""
+    """Suppress PySINDy's warnings that nothing is left or that columns resemble one another."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Sparsity parameter is too big")
         warnings.filterwarnings("ignore", category=ConvergenceWarning)
@@ -88,7 +93,7 @@ def _quietly() -> Iterator[None]:
 
 
 def of_campaign(campaign: Path) -> Problem:
-    """Target and library of the train runs."""
+    """Make target and library of the train runs of a campaign."""
     loaded = load_campaign(campaign)
     loaded = mark_angles(loaded, load_campaign_vehicle(loaded))
     runs = [run for run in loaded.runs if run.split == "train"]
@@ -97,7 +102,7 @@ def of_campaign(campaign: Path) -> Problem:
 
 
 def answer(given: Problem, regression: Regression) -> Answer:
-    """Active columns as a diagnosis: effects in the order of the error they remove."""
+    """Turn active columns into an answer, effects in the order of the error that they remove."""
     coefficients = by_axis(given, regression)
     gains: dict[str, float] = {}
     for k, column in enumerate(given.columns):
@@ -115,7 +120,11 @@ def answer(given: Problem, regression: Regression) -> Answer:
 
 
 def by_axis(given: Problem, regression: Regression) -> Array:
-    """Coefficients (6, c), zero where a column does nothing on an axis."""
+    """Regress each axis by itself.
+
+    Returns:
+        Coefficients (6, c), zero where a column is not active on an axis.
+    """
     coefficients = np.zeros(given.matrix.shape[1:])
     n = np.sqrt(len(given.target))
     for axis in range(6):
@@ -130,9 +139,16 @@ def by_axis(given: Problem, regression: Regression) -> Array:
 
 
 def distinct(X: Array, size: Array) -> Array:
-    """Columns of X (n, c), of these lengths (c,), that act and are no multiple of an earlier one.
+    """Select columns that act on an axis and are no multiple of an earlier one.
 
-    PySINDy stops at dependent columns; on one axis two starts of an effect may do the same.
+    PySINDy stops at dependent columns, and on one axis two starts of an effect may do the same.
+
+    Args:
+        X: columns (n, c) of the axis.
+        size: Euclidean norms (c,) of the columns.
+
+    Returns:
+        Indices of the columns.
     """
     active = np.flatnonzero(size > 1e-6 * max(size.max(), 1e-12))
     normalized = X[:, active] / size[active]
@@ -141,7 +157,10 @@ def distinct(X: Array, size: Array) -> Array:
 
 
 def _parameters(given: Problem, coefficients: Array, name: str) -> dict[str, FittedValue]:
-    """Each parameter's value, linear from its default: of the axis where its column acts most."""
+    """Return the parameters of an effect, linear in its coefficients from the defaults.
+
+    A column's coefficient is taken from the axis on which the column acts most.
+    """
     declared = {p.name: p for p in built_in()[name].parameters}
     values: dict[str, FittedValue] = {}
     for k, column in enumerate(given.columns):

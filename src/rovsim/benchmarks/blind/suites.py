@@ -1,4 +1,4 @@
-"""The suites: which cases there are, as data. No case depends on its neighbours.
+"""The suites: which cases there are, as data. No case depends on the other cases of its suite.
 
 single     every effect at its standard strength
 weak       the same at 0.5, 0.25 and 0.1 of it: where does it vanish?
@@ -7,12 +7,12 @@ noisy      camera noise three times as large
 short      runs of 30 and 20 s
 pair, triple   effects of different families, none of which imitates another by construction
 many       four to eight of them
-workshop   a vehicle file that is wrong everywhere, and none to two special effects (field.py)
-camera     cameras that err slowly, or whose software smooths
+workshop   a vehicle file that is wrong everywhere, and up to two special effects (field.py)
+camera     cameras with coloured noise or with smoothing software (field.py)
 laboratory  a wrong file, such a camera, and three or five special effects (field.py)
-deviation  every coefficient of damping and inertia a few per cent off
+deviation  every coefficient of damping and added mass 2 or 5 % off
 none       nothing hidden
-outside    physics that no entry describes, alone or beside an effect
+outside    physics that no effect of the catalogue describes, alone or beside an effect
 law        a smooth law outside the catalogue, for which an equation should be found
 """
 
@@ -45,7 +45,7 @@ MANY = (4, 5, 6, 7, 8)  # effects at once
 DEVIATION = (0.02, 0.05)  # of each coefficient
 DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
 
-# Effects of one family push much alike, so that a set with two of them has no single answer.
+# Effects of one family push much alike, so that two of them together have no single right answer.
 FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"net_buoyancy", "payload", "constant_wrench", "buoyancy_center", "tether_tension",
                "world_tilt", "current", "current_drift"}),
@@ -60,17 +60,17 @@ FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"propeller_torque"}),
     frozenset({"onboard_control"}),
 )  # fmt: skip
-# Never in a set: another vehicle or log shows them, or they hide what else is wrong.
+# Never combined: they need another vehicle or log, or they hide what else is wrong.
 APART = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "thruster_order"})
 
 
 def suite(name: str, seeds: Range) -> list[Case]:
-    """All cases of a suite."""
+    """List all cases of a suite."""
     return list(SUITES[name](seeds))
 
 
 def quick(seeds: Range) -> Iterator[Case]:
-    """49 cases: every effect once, and a few of the other kinds."""
+    """Yield 49 cases: every effect once, and a few of the other kinds."""
     for name in RECIPES:
         yield hiding("single", (name,), 0, seeds)
     yield from (nothing(k, seeds) for k in range(3))
@@ -81,7 +81,7 @@ def quick(seeds: Range) -> Iterator[Case]:
 
 
 def standard(seeds: Range) -> Iterator[Case]:
-    """Some 170 cases: what is asked most often, often enough to count."""
+    """Yield `quick`, and enough cases of the common kinds for rates to mean something."""
     yield from quick(seeds)
     for name in RECIPES:
         yield hiding("single", (name,), 1, seeds)
@@ -98,7 +98,10 @@ def standard(seeds: Range) -> Iterator[Case]:
 
 
 def full(seeds: Range) -> Iterator[Case]:
-    """All kinds but laboratories, laws, recordings, strong ones; quick and standard are in it."""
+    """Yield all kinds except laboratories, laws, recordings and strong effects.
+
+    The cases of `quick` and `standard` are among them.
+    """
     for name, recipe in RECIPES.items():
         yield from (hiding("single", (name,), k, seeds) for k in range(6))
         if recipe.weak:
@@ -132,9 +135,17 @@ def hiding(
     strength: float = 1.0,
     tank: Mapping[str, Any] | None = None,
 ) -> Case:
-    """A case that hides these effects of the catalogue.
+    """Make a case that hides these effects of the catalogue.
 
-    The k-th case of an effect hides the same at every strength, so that only the strength differs.
+    The k-th case of an effect draws the same at every strength, so that only the strength differs.
+
+    Args:
+        kind: row of the table, without the strength.
+        names: ids of the effects.
+        k: number of the case.
+        seeds: range that the seed is from.
+        strength: factor of the sizes.
+        tank: further settings of the tank.
     """
     label = kind if strength == 1.0 else f"{kind} {strength:g}"
     case_id = f"{label}/{'+'.join(names)}/{k}"
@@ -152,7 +163,7 @@ def hiding(
 
 
 def combination(count: int, k: int, seeds: Range) -> Case:
-    """Effects of different families, drawn."""
+    """Make a case that hides `count` effects of different families."""
     random = random_of(f"combination/{count}/{k}", seeds)
     names = draw_apart(FAMILIES, count, random)
     return hiding({2: "pair", 3: "triple"}.get(count, "many"), names, k, seeds)
@@ -161,16 +172,16 @@ def combination(count: int, k: int, seeds: Range) -> Case:
 def nothing(
     k: int, seeds: Range, kind: str = "none", tank: Mapping[str, Any] | None = None
 ) -> Case:
-    """A tank in which the nominal model is right."""
+    """Make a case in which the nominal model is right."""
     case_id = f"{kind}/{k}"
     return Case(id=case_id, kind=kind, seed=seed_of(case_id, seeds), tank=dict(tank or {}))
 
 
 def deviation(k: int, seeds: Range) -> Case:
-    """A vehicle whose coefficients are a few per cent off, every one of them.
+    """Make a case in which every coefficient of the vehicle is a few per cent off.
 
-    Damping and added mass are changes from the nominal, so naming them is right where it can be
-    seen, and `adequate` where it cannot; a mass that is off enters as the same added mass on all
+    Damping and added mass are changes from the nominal model, so naming them is right where it can
+    be seen, and `adequate` where it cannot. A mass that is off enters as the same added mass on all
     three translations. Only another name, or `unexplained`, is wrong.
     """
     case_id = f"deviation/{k}"
@@ -197,7 +208,7 @@ def _off(
 
 
 def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
-    """Physics outside the catalogue, alone or beside an effect drawn from it."""
+    """Make a case with physics outside the catalogue, alone or beside one of its effects."""
     kind = "outside, beside an effect" if beside else "outside"
     case_id = f"{kind}/{name}/{k}"
     random = random_of(case_id, seeds)
@@ -218,7 +229,7 @@ EACH = 3  # cases of each law
 
 
 def equations(seeds: Range) -> Iterator[Case]:
-    """Laws outside the catalogue; what follows no law of the state; nothing."""
+    """Yield laws outside the catalogue, physics that follows no law of the state, and nothing."""
     for k in range(EACH):
         yield from (law(name, k, seeds) for name in LAWS)
     yield from (outside(name, 0, seeds) for name in LAWLESS)
@@ -226,19 +237,19 @@ def equations(seeds: Range) -> Iterator[Case]:
 
 
 def laboratories(seeds: Range) -> Iterator[Case]:
-    """Everything a little wrong, and much missing, at once."""
+    """Yield cases in which everything is a little wrong and several effects are missing."""
     yield from (laboratory(FAMILIES, k, seeds) for k in range(12))
 
 
 def strong(seeds: Range) -> Iterator[Case]:
-    """Every effect several times as strong as a laboratory would usually meet it."""
+    """Yield every effect at several times the strength that a laboratory would usually meet."""
     for name, recipe in RECIPES.items():
         if recipe.weak:
             yield from (hiding("strong", (name,), 0, seeds, strength) for strength in STRONG)
 
 
 def law(name: str, k: int, seeds: Range) -> Case:
-    """A smooth law outside the catalogue."""
+    """Make a case with a smooth law outside the catalogue."""
     case_id = f"law/{name}/{k}"
     effect = drawn_law(name, random_of(case_id, seeds))
     return Case(

@@ -1,4 +1,4 @@
-"""Many scores put together: rates by kind of case, by effect, and detection limits."""
+"""Summarize the scores of many cases: rates by kind of case and by effect, and detection limits."""
 
 from dataclasses import dataclass
 from typing import Callable, Iterable, Sequence
@@ -14,16 +14,24 @@ from rovsim.benchmarks.blind.score import Score, score
 from rovsim.results.blind_benchmark import EffectRates, MethodSummary, Rates
 from rovsim.results.diagnosis import Answer, Diagnosis
 
-WORSE = 1.02  # of the nominal error: what a user would call worse ; less is chance
-HALF = 0.5 - 1e-12  # a share of one half is one, however a mean of shares is rounded
+WORSE = 1.02  # of the nominal error: what a user would call worse; less is chance
+HALF = 0.5 - 1e-12  # one half, whichever way the mean of shares is rounded
 
 
 @dataclass(frozen=True)
 class Judged:
-    """A case as flown, what its answer was worth (None: it crashed), and how long that took.
+    """A case and the score of its answer.
 
-    `redrawn`: the vehicle left the tank at first, and was flown again with weaker effects;
-    `worse`: its model errs more than the nominal on test runs (None: it has none).
+    Attributes:
+        case: as it was flown.
+        redrawn: whether it was flown with weaker effects, or by another pilot, than it declares.
+        seconds: wall-clock time of the answer.
+        score: of the answer; None where the method crashed.
+        first: the first name; empty without one.
+        verdict: of the answer; `error` where the method crashed.
+        error: message of the crash.
+        cpu_seconds: processor time of the answer.
+        worse: whether its model errs more than the nominal one on test runs; None without a model.
     """
 
     case: Case
@@ -38,7 +46,7 @@ class Judged:
 
 
 def judge(answers: Sequence[KeptAnswer]) -> list[Judged]:
-    """Score the kept answers of one method."""
+    """Score the stored answers of one method."""
     return [_judge(answer) for answer in answers]
 
 
@@ -63,6 +71,7 @@ def _judge(one: KeptAnswer) -> Judged:
 
 
 def _is_worse(answer: Answer | Diagnosis) -> bool | None:
+    """Whether a diagnosis ends with a model that is worse than the nominal one on the test runs."""
     if not isinstance(answer, Diagnosis) or answer.error.nominal is None:
         return None
     with_effects = answer.error.with_effects
@@ -70,7 +79,7 @@ def _is_worse(answer: Answer | Diagnosis) -> bool | None:
 
 
 def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
-    """Rates of one method by kind of case, by effect, and outside the catalogue."""
+    """Rate one method by kind of case, by effect, and on physics outside the catalogue."""
     judged = judge(answers)
     outside = [j for j in judged if j.case.outside]
     return MethodSummary(
@@ -87,7 +96,7 @@ def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
 def _grouped(
     found: Sequence[Judged], key: Callable[[Judged], str]
 ) -> Iterable[tuple[str, list[Judged]]]:
-    """Groups in the order of their first member."""
+    """Group cases; groups are in the order of their first member."""
     groups: dict[str, list[Judged]] = {}
     for judged in found:
         groups.setdefault(key(judged), []).append(judged)
@@ -95,13 +104,16 @@ def _grouped(
 
 
 def _by_effect(found: Sequence[Judged]) -> Iterable[tuple[str, list[Judged]]]:
-    """Cases that hide one effect and nothing else, under usual noise and length, by effect."""
+    """Group by effect the cases that hide one effect alone, with usual noise and length."""
     single = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
     return _grouped(single, lambda j: j.case.hidden[0].effect)
 
 
 def rate(found: Sequence[Judged]) -> Rates:
-    """Shares of cases. An answer that crashed is wrong in every respect but false names."""
+    """Return the shares of cases in which answers are right.
+
+    A crash is wrong in every respect, except that it names nothing false.
+    """
     scores = [j.score for j in found]
     of_names = [s for j, s in zip(found, scores, strict=True) if j.case.names]
     parameters = [p for s in scores if s for p in s.parameters]
@@ -133,7 +145,7 @@ def rate(found: Sequence[Judged]) -> Rates:
 
 
 def share(flags: Sequence[bool]) -> float | None:
-    """Share of True; None of nothing."""
+    """Return the share of True; None without flags."""
     return float(np.mean(flags)) if len(flags) else None
 
 
@@ -146,6 +158,10 @@ def _mean(values: Sequence[float]) -> float | None:
 
 
 def _rate_effect(found: Sequence[Judged]) -> EffectRates:
+    """Rate the cases that hide one effect alone, and find its detection limit.
+
+    The rates are those at strength 1.
+    """
     full = [j for j in found if j.case.kind == "single"]
     first_right = [(j.case.strength, bool(j.score and j.score.first)) for j in found]
     wrong_answers = {j.first or j.verdict for j in full if not (j.score and j.score.first)}
@@ -155,9 +171,17 @@ def _rate_effect(found: Sequence[Judged]) -> EffectRates:
 
 
 def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:
-    """Strength at which half are named: where a rising fit to the shares passes one half.
+    """Return the strength at which half of the cases are named right.
 
-    None if not even the strongest half are; the weakest strength tried is the lowest answer.
+    That is where an isotonic fit to the shares by strength passes one half, interpolated in the
+    logarithm of the strength.
+
+    Args:
+        found: strength of each case, and whether the effect was named.
+
+    Returns:
+        The strength; the lowest tried if half are named even there. None if fewer than half are
+        named at the highest, or if only one strength was tried.
     """
     strengths = np.array(sorted({s for s, _ in found}))
     if len(strengths) < 2:

@@ -58,9 +58,9 @@ RANK_COLUMNS = {
     "said": "intervals are",
 }
 _FLOWN = {"tank": "tank", "independent": "independent simulator"}
-UNLIKELY = 0.01  # of a histogram of honest ranks
-RARE = 0.001  # chances below are not told apart
-NEARLY = 0.1  # of the width of an interval
+UNLIKELY = 0.01  # p-value of a rank histogram, below which intervals are not called honest
+RARE = 0.001  # p-values below are all written as below this
+NEARLY = 0.1  # of the width of an interval: less is of the right width
 CAPTIONS = {
     RANKS: "Rank histograms: where the truth lies in what was said of each parameter",
     RELIABILITY: "Reliability: share of right names against the probability that was claimed",
@@ -68,7 +68,7 @@ CAPTIONS = {
 
 
 def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
-    """Markdown of `summary.json`, with those of its pictures that were drawn."""
+    """Write a summary as Markdown, with those of the page's pictures that were drawn."""
     first, last = SEEDS[results.seeds]
     share = "" if results.share == 1.0 else f" SHARE={results.share:g}"
     parts = [
@@ -86,7 +86,7 @@ def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
 
 
 def _calibration(found: Calibration, pictures: Sequence[str]) -> list[str]:
-    """Intervals and probabilities; nothing of a method that gives none."""
+    """Write whether intervals and probabilities are honest; nothing without intervals."""
     if not found.ranks.values:
         return []
     images = {name: f"![{CAPTIONS[name]}](images/{name}.png)" for name in pictures}
@@ -108,7 +108,7 @@ def _table_ranks(rows: Mapping[str, Ranks], head: str) -> str:
 
 
 def _say(ranks: Ranks) -> str:
-    """Whether intervals are honest, in a word."""
+    """Say in a word whether intervals are honest."""
     if ranks.p_value is None or ranks.stretch is None:
         return "–"
     if ranks.p_value > UNLIKELY:
@@ -130,7 +130,13 @@ def _share_right(claims: Claims) -> list[str]:
 
 
 def table(rows: Mapping[str, Section], head: str, columns: Mapping[str, str]) -> str:
-    """One Markdown table; empty without rows."""
+    """Write a Markdown table; empty without rows.
+
+    Args:
+        rows: by name; columns are fields of theirs.
+        head: title of the column of names.
+        columns: titles by field.
+    """
     if not rows:
         return ""
     lines = [[name, *(shown(k, getattr(row, k)) for k in columns)] for name, row in rows.items()]
@@ -138,7 +144,7 @@ def table(rows: Mapping[str, Section], head: str, columns: Mapping[str, str]) ->
 
 
 def shown(key: str, value: float | Sequence[str] | Sequence[int] | None) -> str:
-    """One cell."""
+    """Write one cell of a table; `key` is the field that the value is of."""
     if value is None or value == ():
         return "–"
     if key == "counts" and isinstance(value, Sequence):

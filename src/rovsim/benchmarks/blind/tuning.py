@@ -1,7 +1,7 @@
 """Choose the thresholds of the sparse regressions: python -m rovsim.benchmarks.blind.tuning.
 
-On development seeds: each case of the quick suite that hides something of the catalogue, or
-nothing. The best setting names exactly what is hidden most often, and among equals has the right
+They are chosen on development seeds, by the cases of the quick suite that hide effects of the
+catalogue or nothing. The best setting is exact in the most cases, and among equals has the right
 first name most often.
 """
 
@@ -23,7 +23,7 @@ GAINS, LENGTHS = (0.4, 0.3, 0.2, 0.1, 0.05, 0.02), (2, 8)
 
 
 def settings() -> Iterator[tuple[str, Regression]]:
-    """Every setting that is tried."""
+    """Yield every setting that is tried, with its description."""
     for threshold in THRESHOLDS:
         for ridge in RIDGES:
             yield f"stlsq, threshold {threshold}, ridge {ridge}", thresholded(threshold, ridge)
@@ -33,20 +33,20 @@ def settings() -> Iterator[tuple[str, Regression]]:
 
 
 def prepared(case: Case) -> tuple[Case, Problem]:
-    """A case as flown, and its regression problem."""
+    """Fly a case; return it as flown, and its regression problem."""
     with tempfile.TemporaryDirectory() as folder:
         flown = fly(case, Path(folder, "campaign"))
         return flown, of_campaign(Path(folder, "campaign"))
 
 
 def worth(scores: list[Score]) -> tuple[float, float]:
-    """Shares of exact answers and of right first names."""
+    """Return the share of exact answers and that of right first names."""
     firsts = [s.first for s in scores if s.first is not None]
     return sum(s.exact_strict for s in scores) / len(scores), sum(firsts) / len(firsts)
 
 
 def tuned() -> dict[str, Any]:
-    """Worth of every setting, best first."""
+    """Score every setting: shares of exact answers and of right first names, best first."""
     cases = [c for c in suite("quick", "development") if not c.outside]
     scores: dict[str, list[Score]] = {}
     for case in counted(cases, "tuning"):

@@ -1,7 +1,7 @@
-"""Error against cost: what a correction leaves, where it was taught and where it was not.
+"""Error against cost: which share of the residual a correction leaves, on seen and unseen motion.
 
-Taught on 3-DoF runs, asked on 3-DoF test runs (seen) and on 6-DoF test runs (unseen: heave, roll
-and pitch hardly move in the former).
+Residuals are trained on 3-DoF runs, and predict 3-DoF test runs (seen) and 6-DoF test runs (unseen:
+heave, roll and pitch hardly move in the former).
 """
 
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ CALLS = 2_000
 
 
 def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
-    """One row for each way to learn: cost in us, and the share of the residual that is left."""
+    """Measure cost (us a prediction) and share of the residual left, for each way to learn."""
     train = pairs.of(SEEN)
     return tuple(
         Accuracy(
@@ -40,6 +40,7 @@ def _cost(residual: Residual, pairs: Pairs) -> float:
 
 
 def _ways(taught: Pairs) -> Iterator[tuple[str, bool, Residual]]:
+    """Yield name, whether the correction fades outside of the train data, and residual."""
     for points in (500, 2_000, 5_000, 20_000):
         yield "knn", False, fitted("knn", taught, max_points=points)
     for name, residual in _processes(taught):
@@ -56,7 +57,16 @@ def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
 
 
 def measure_left(residual: Residual, pairs: Pairs, control: str) -> Left:
-    """Root mean square of what is left over that of the residual: all axes, and the worst."""
+    """Measure the RMS of prediction errors over the RMS of the residual, on test runs.
+
+    Args:
+        residual: that predicts.
+        pairs: test rows.
+        control: of the test runs.
+
+    Returns:
+        The mean over the six axes, and the worst axis.
+    """
     rows = pairs.query_control == control
     error = residual.predict(pairs.queries[rows]) - pairs.answers[rows]
     share = np.sqrt((error**2).mean(0) / (pairs.answers[rows] ** 2).mean(0))

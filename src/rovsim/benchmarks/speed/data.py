@@ -1,4 +1,4 @@
-"""What is learnt and asked in the benchmark: residual features of the default campaign."""
+"""What is learned and predicted: features and residual accelerations of the default campaign."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,10 +19,15 @@ NEIGHBOURS = 5
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Features X (n, 12) and residual accelerations Y (n, 6) of train runs, queries of test runs.
+    """Features and residual accelerations of train runs, and queries of test runs.
 
-    `control` (n,) and `query_control` (q,) say which rows are of which kind of run; `answers`
-    (q, 6) what was true at the queries.
+    Attributes:
+        X: features (n, 12) of the train rows.
+        Y: residual accelerations (n, 6), m/s2 and rad/s2.
+        control: kind of run (n,) of each train row, such as `3dof`.
+        queries: features (q, 12) of the test rows.
+        answers: true residual accelerations (q, 6) at the queries.
+        query_control: kind of run (q,) of each query.
     """
 
     X: Array
@@ -33,21 +38,30 @@ class Pairs:
     query_control: Array
 
     def drawn(self) -> "Pairs":
-        """The train rows in a drawn order."""
+        """Shuffle the train rows."""
         order = np.random.default_rng(SEED).permutation(len(self.X))
         return replace(self, X=self.X[order], Y=self.Y[order], control=self.control[order])
 
     def first(self, rows: int) -> "Pairs":
-        """The first train rows."""
+        """Keep the first train rows."""
         return replace(self, X=self.X[:rows], Y=self.Y[:rows], control=self.control[:rows])
 
     def of(self, control: str) -> "Pairs":
-        """The train rows of one kind of run."""
+        """Keep the train rows of one kind of run."""
         rows = self.control == control
         return replace(self, X=self.X[rows], Y=self.Y[rows], control=self.control[rows])
 
     def exported(self, kind: str, rows: int, outputs: int) -> Array:
-        """A predictor for only the first so many outputs; a process with some hyperparameters."""
+        """Export a predictor of the first outputs only, for timing: hyperparameters are not fitted.
+
+        Args:
+            kind: `knn`, or a Gaussian process.
+            rows: number of train rows.
+            outputs: number of outputs, 1 to 6.
+
+        Returns:
+            The predictor, packed for the compiled loop.
+        """
         X, Y, features = self.X[:rows], self.Y[:rows, :outputs], FeatureSettings()
         scaling = fit_scaling("standard", X)
         Z = scaling.apply(X)
@@ -58,14 +72,14 @@ class Pairs:
 
 
 def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
-    """A residual of that kind."""
+    """Train a residual of a kind, with these settings of its learner."""
     settings = {"k": NEIGHBOURS, **more} if kind == "knn" else more
     trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **settings}), seed=0)
     return trained.residual("6dof")
 
 
 def unfading(residual: Residual) -> Residual:
-    """The same residual, as `extrapolation_quantile=null` would train it."""
+    """Return the same residual as `extrapolation_quantile=null` would train it: without fading."""
     data = residual.data.copy()
     data[FADING_RANK] = 0.0
     return replace(residual, data=data)

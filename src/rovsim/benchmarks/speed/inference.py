@@ -1,4 +1,4 @@
-"""Latency of every way to predict, ours and the libraries', one call at a time."""
+"""Latency of every way to predict, that of rovsim and of the libraries, one call at a time."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,16 +17,22 @@ from rovsim.evaluation.latency import time_calls
 from rovsim.learning.learner import library_of
 from rovsim.results.timing import Latency
 
-BUSY = 100  # us: about what the slowest of our own paths to be counted takes
+BUSY = 100  # us: about the time of the slowest of our ways to predict
 CHECKED = 500  # queries whose predictions are compared
-# What was timed, and how the process was scheduled.
+# Takes the latencies so far, and how the process was scheduled.
 Tell = Callable[[dict[str, Latency], str], None]
-GP = {"kernel": "shared"}  # the settings of `conf/residual/gp.yaml` but for this
+GP = {"kernel": "shared"}  # all else as in `conf/residual/gp.yaml`
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How many calls of ours, and how long a library's own calls may take in s."""
+    """How much is measured.
+
+    Attributes:
+        calls: timed calls of each way to predict.
+        warmup: calls before these.
+        seconds: longest time for a library's calls, s.
+    """
 
     calls: int
     warmup: int
@@ -34,18 +40,33 @@ class Effort:
 
 
 class Stopwatch:
-    """Times ways to predict and keeps what it found."""
+    """Times ways to predict.
+
+    Attributes:
+        pairs: what is learned and predicted.
+        effort: how much is measured.
+        scheduling: how the process was scheduled.
+        tell: called with the results so far and the scheduling, after each way to predict.
+        found: latencies by `name@points`.
+    """
 
     def __init__(self, pairs: Pairs, effort: Effort, tell: Tell = lambda *_: None) -> None:
         self.pairs, self.effort, self.scheduling, self.tell = pairs, effort, "", tell
         self.found: dict[str, Latency] = {}
 
     def time(self, name: str, call: Callable, points: int, seconds: float) -> Latency:
-        """Time one way under the name@points."""
+        """Time one way to predict, and keep the latency under `name@points`.
+
+        Args:
+            name: of the way.
+            call: predicts one query (1, d).
+            points: that the predictor looks at.
+            seconds: longest time.
+        """
         from threadpoolctl import threadpool_limits
 
         effort = self.effort
-        # one query has no work for two threads, and waiting for a second costs milliseconds
+        # one query has no work for two threads; waiting for the second one costs milliseconds
         with threadpool_limits(1), as_a_control_loop() as self.scheduling:
             stats = time_calls(
                 call,
@@ -64,7 +85,15 @@ class Stopwatch:
     def beside(
         self, name: str, own: Callable, points: int, theirs: dict[str, Callable], seconds: float
     ) -> None:
-        """Time our way and the libraries', with the largest difference of their predictions."""
+        """Time our way and those of the libraries; keep ratios and differences of the predictions.
+
+        Args:
+            name: of our way.
+            own: our way.
+            points: that all predictors look at.
+            theirs: ways of the libraries, by name.
+            seconds: longest time for each library.
+        """
         stats = self.time(name, own, points, 60.0)
         queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // CHECKED)]
         first_queries = queries[:3]  # a library may take seconds a call
@@ -81,24 +110,24 @@ class Stopwatch:
 
 
 def _difference(own: Callable, call: Callable, queries: Array) -> float:
-    """Largest difference of two ways over the queries, one at a time."""
+    """Return the largest difference of two ways over the queries, one at a time."""
     gaps = [np.abs(np.asarray(own(q[None])) - np.asarray(call(q[None]))).max() for q in queries]
     return float(max(gaps))
 
 
 def ours(residual: Residual | Array) -> Callable:
-    """Our prediction, as the compiled loop makes it."""
+    """Return our prediction (mean), as the compiled loop makes it."""
     data = residual.data if isinstance(residual, Residual) else residual
     return lambda x: evaluate_many(data, x)
 
 
 def both(residual: Residual) -> Callable:
-    """Our mean and variance."""
+    """Return our prediction of mean and variance."""
     return lambda x: posterior_many(residual.data, x)
 
 
 def busy(x: Array) -> Array:
-    """Nothing, for as long as a prediction takes: when this is late, the machine was elsewhere."""
+    """Do nothing for as long as a prediction takes; if it is late, the machine was elsewhere."""
     end = perf_counter_ns() + 1000 * BUSY
     while perf_counter_ns() < end:
         pass
@@ -108,9 +137,16 @@ def busy(x: Array) -> Array:
 def inference(
     pairs: Pairs, effort: Effort, sweep: float, tell: Tell = lambda *_: None
 ) -> tuple[dict[str, Latency], str]:
-    """The named sizes beside the libraries, then sweeps, in which a library gets `sweep` s.
+    """Time all ways to predict: some sizes beside the libraries for long, then sweeps over sizes.
 
-    `tell` is given what is known after each way that was timed.
+    Args:
+        pairs: what is learned and predicted.
+        effort: how much is measured.
+        sweep: longest time for a library's calls in the sweeps, s.
+        tell: called with the results so far and the scheduling, after each way to predict.
+
+    Returns:
+        Latencies by `name@points`, and how the process was scheduled.
     """
     stopwatch = Stopwatch(pairs, effort, tell)
     stopwatch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
@@ -129,13 +165,16 @@ def inference(
 
 
 def time_neighbours(stopwatch: Stopwatch, points: int, seconds: float) -> None:
-    """The nearest of that many points, by our search and by libraries."""
+    """Time the nearest neighbours among that many points, by our search and by the libraries'."""
     knn = fitted("knn", stopwatch.pairs.first(points))
     stopwatch.beside("knn", ours(knn), points, libraries.neighbours(knn), seconds)
 
 
 def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
-    """One kernel for six outputs: mean, mean and variance, and the faded correction."""
+    """Time a Gaussian process with one kernel for six outputs.
+
+    That is its mean, its mean and variance, and the correction that fades outside of the data.
+    """
     pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points, **GP)
     unfaded = unfading(gp)
@@ -146,6 +185,7 @@ def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
 
 
 def _six_kernels(stopwatch: Stopwatch, points: int, seconds: float) -> None:
+    """Time a Gaussian process with a kernel for each output."""
     pairs = stopwatch.pairs.first(points)
     gp = fitted("gp", pairs, max_points=points)
     unfaded = unfading(gp)
@@ -160,6 +200,7 @@ def _six_kernels(stopwatch: Stopwatch, points: int, seconds: float) -> None:
 
 
 def _inducing(stopwatch: Stopwatch, seconds: float) -> None:
+    """Time a sparse variational process, with inducing points."""
     svgp = unfading(fitted("svgp", stopwatch.pairs.first(2_000)))
     points = svgp.points
     stopwatch.beside("svgp", ours(svgp), points, {"gpytorch_svgp": library_of(svgp)}, seconds)
@@ -168,7 +209,7 @@ def _inducing(stopwatch: Stopwatch, seconds: float) -> None:
 
 
 def _variants(pairs: Pairs) -> Iterator[tuple[str, Callable, int]]:
-    """Ours by number of neighbours and of outputs."""
+    """Yield our predictors by number of neighbours, and by number of outputs."""
     for k in (1, 10, 20):
         yield f"knn_k{k}", ours(fitted("knn", pairs.first(20_000), k=k)), 20_000
     for outputs in range(1, 6):

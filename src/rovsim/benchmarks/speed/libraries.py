@@ -1,4 +1,4 @@
-"""The libraries' own calls: features (1, d) in, residual accelerations out, scaled as ours."""
+"""The libraries' own calls, scaled as ours: features (1, d) to residual accelerations (1, 6)."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,10 @@ Ways = dict[str, Predict]
 
 
 def neighbours(residual: Residual) -> Ways:
-    """scikit-learn, and the trees of SciPy and pykdtree with the same inverse-distance mean."""
+    """Return scikit-learn's prediction, and ours with the trees of SciPy and pykdtree.
+
+    The latter take the same inverse-distance mean of the k nearest points.
+    """
     from pykdtree.kdtree import KDTree
     from scipy.spatial import cKDTree
 
@@ -33,6 +36,8 @@ def _known(residual: Residual) -> tuple[Array, Array, Scaling]:
 
 
 def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int) -> Predict:
+    """Make a prediction from a query for neighbours: their mean, weighted by inverse distance."""
+
     def predict(X: Array) -> Array:
         distance, rows = query(scaling.apply(X), k=k)
         distance, rows = distance.reshape(-1, k), rows.reshape(-1, k)
@@ -46,7 +51,10 @@ def _mean_of(query: Callable[..., Any], targets: Array, scaling: Scaling, k: int
 
 
 def means(residual: Residual) -> Ways:
-    """GPyTorch, scikit-learn and NumPy with stored weights; all with the same hyperparameters."""
+    """Return the means of GPyTorch, and with one kernel those of scikit-learn and NumPy.
+
+    All have the same hyperparameters; NumPy multiplies stored weights.
+    """
     ways = {"gpytorch_mean": library_of(residual)}
     if len(residual.arrays["lengthscale"]) == 1:
         ways |= {"sklearn_gp_mean": _sklearn(residual), "numpy_gp_mean": _numpy(residual)}
@@ -54,7 +62,7 @@ def means(residual: Residual) -> Ways:
 
 
 def variances(residual: Residual) -> dict[str, Callable[[Array], tuple[Array, Array]]]:
-    """GPyTorch's exact mean and variance, and by LOVE."""
+    """Return GPyTorch's mean and variance, exact and by LOVE."""
     posterior = learner(residual.kind).posterior_from
     assert posterior is not None
     return {

@@ -1,4 +1,4 @@
-"""The plots of the speed benchmark."""
+"""The plots of docs/benchmark_speed.md."""
 
 from typing import Mapping, Sequence
 
@@ -35,7 +35,7 @@ COLORS = {"knn": VERMILION, "gp": BLUE, "gp_six_kernels": GREEN, "svgp": PURPLE}
 
 @styled()
 def draw_sizes(bench: Bench) -> Figure:
-    """Median (line) and p99.9 (thin, above it) against points, one panel a family."""
+    """Draw median (line) and p99.9 (dotted, above it) against points, one panel a family."""
     figure = sheet(110)
     for axes, (title, names) in zip(figure.subplots(1, 2), SIZES.items(), strict=True):
         for name, color in names.items():
@@ -59,6 +59,7 @@ def draw_sizes(bench: Bench) -> Figure:
 
 
 def _sizes(inference: Mapping[str, Latency], name: str) -> dict[int, Latency]:
+    """Return the latencies of one way to predict, by number of points."""
     by_points = {
         int(key.split("@")[1]): stats
         for key, stats in inference.items()
@@ -69,7 +70,7 @@ def _sizes(inference: Mapping[str, Latency], name: str) -> dict[int, Latency]:
 
 @styled()
 def draw_accuracy(bench: Bench) -> Figure:
-    """Share of the residual that is left against cost; 1 is no correction at all."""
+    """Draw the share of the residual that is left against cost; 1 is no correction at all."""
     figure = sheet(75)
     panels = figure.subplots(1, 2, sharey=True)
     for axes, where in zip(panels, ("seen", "unseen"), strict=True):
@@ -91,6 +92,7 @@ def draw_accuracy(bench: Bench) -> Figure:
 
 
 def _by_way(rows: Sequence[Accuracy]) -> dict[tuple[str, bool], list[Accuracy]]:
+    """Group rows by kind of residual, and by whether it fades."""
     by_way: dict[tuple[str, bool], list[Accuracy]] = {}
     for row in rows:
         by_way.setdefault((row.name, row.fades), []).append(row)

@@ -1,4 +1,4 @@
-"""Steps per second: one trajectory, many side by side, with a residual in the loop."""
+"""Integration steps per second: one trajectory, many side by side, with a residual in the loop."""
 
 from dataclasses import replace
 from time import perf_counter
@@ -20,7 +20,16 @@ REPEATS = 15  # the best of so many: what the machine can do when nothing else r
 
 
 def steps_per_second(model: Model, count: int, steps: int) -> float:
-    """RK4 steps per second of `count` trajectories side by side, driven by random thrust."""
+    """Time `count` trajectories side by side, driven by random thrust.
+
+    Args:
+        model: that is replayed.
+        count: of trajectories.
+        steps: RK4 steps of each.
+
+    Returns:
+        Steps of all trajectories per second.
+    """
     force = np.random.default_rng(0).uniform(-10, 10, (steps, len(model.body.directions)))
     thrust = Thrust(force, np.zeros((steps, 6)), np.full((steps, 6), np.nan))
     drive, batch = Drive.by(model, thrust, steps * STEP), Batch([model], Site.unknown())
@@ -32,7 +41,7 @@ def steps_per_second(model: Model, count: int, steps: int) -> float:
 
 
 def best(call: Callable[[], Any]) -> float:
-    """Shortest time in s of some calls, after one that may compile."""
+    """Return the shortest time in s of `REPEATS` calls, after one that may compile."""
     call()
     durations = []
     for _ in range(REPEATS):
@@ -43,7 +52,7 @@ def best(call: Callable[[], Any]) -> float:
 
 
 def numpy_steps_per_second(model: Model) -> float:
-    """The same equation written with NumPy matrices, as Python simulators usually are."""
+    """Time the same equation written with NumPy matrices, as Python simulators usually are."""
     c, B, steps = model.constants, model.body.B, 300
     force = np.random.default_rng(0).uniform(-10, 10, (steps, B.shape[1]))
 
@@ -83,7 +92,7 @@ def numpy_steps_per_second(model: Model) -> float:
 
 
 def replay_speeds(model: Model, residuals: Mapping[str, Residual]) -> dict[str, float]:
-    """Steps per second of the nominal model, and by name with a residual in the loop."""
+    """Return steps per second of the nominal model, and with each residual in the loop, by name."""
     return {
         "single_steps_per_s": steps_per_second(model, 1, 200_000),
         "batch_steps_per_s": steps_per_second(model, 400, 2_000),

@@ -18,7 +18,7 @@ PLOTS = {
 def write_page(path: Path, bench: Bench) -> None:
     """Put the results between the marks of a page, and the plots into images/ beside it.
 
-    A page that is not there, as outside of a checkout, is not made.
+    Nothing is written where the page does not exist, as outside of a checkout.
     """
     if not path.is_file():
         return
@@ -30,7 +30,7 @@ def write_page(path: Path, bench: Bench) -> None:
 
 
 def write_markdown(bench: Bench) -> str:
-    """Markdown of `bench.json`."""
+    """Write `bench.json` as Markdown."""
     plots = [f"![{caption}](images/{name}.png)" for name, caption in PLOTS.items()]
     parts = [
         f"{bench.machine}; {bench.scheduling}.",
@@ -75,7 +75,7 @@ def _inference(inference: Mapping[str, Latency]) -> str:
 
 
 def _by_library(said: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
-    """What our entries say of the libraries', by the libraries' entry."""
+    """Return a number that our entries have for each library, by the library's `name@points`."""
     return {
         f"{other}@{key.split('@')[1]}": value
         for key, others in said.items()

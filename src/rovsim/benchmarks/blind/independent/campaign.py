@@ -1,4 +1,4 @@
-"""A campaign of the second simulator: raw exports and `campaign.yaml`, nothing of the truth."""
+"""Campaigns of the second simulator: raw exports and `campaign.yaml`, nothing of the truth."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -17,8 +17,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.shipped import conf_file
 from rovsim.core.yaml_files import read_yaml, write_yaml
 
-# Effects of the catalogue that are stated here once more. Not a loop on board, whose set-points
-# the log would hold, nor a current that wanders, with which no observer can drift.
+# Effects of the catalogue that this simulator has. Missing are a loop on board, whose set-points
+# the log would hold, and a current that wanders, since no observer can drift with it.
 STATED = frozenset({
     "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
     "quadratic_damping", "cubic_damping", "dry_friction", "coupled_damping", "added_mass",
@@ -35,10 +35,14 @@ class OutOfTank(BadInput):
 
 
 def record_campaign(settings: Mapping[str, Any], out: Path) -> None:
-    """Fly all runs of a tank's settings, given as plain data, and write the campaign to `out`.
+    """Fly all runs of a campaign and write their exports.
+
+    Args:
+        settings: of the tank, as plain data.
+        out: folder of the campaign.
 
     Raises:
-        OutOfTank: what is hidden is stronger than the pilot.
+        OutOfTank: the pilot cannot hold the vehicle against what is hidden.
     """
     out.mkdir(parents=True, exist_ok=True)
     seeds = np.random.SeedSequence(settings["seed"]).spawn(len(settings["runs"]))
@@ -50,6 +54,7 @@ def record_campaign(settings: Mapping[str, Any], out: Path) -> None:
 def _record(
     settings: Mapping[str, Any], run: Mapping[str, Any], out: Path, random: np.random.Generator
 ) -> None:
+    """Fly one run, and write its exports."""
     file = read_yaml(conf_file(f"vehicle/{settings['vehicle']}.yaml") or Path(settings["vehicle"]))
     hidden = _list_hidden(settings)
     tank = np.sort(np.array([settings["tank"][k] for k in "xyz"]) * UPSIDE[:, None], axis=1)
@@ -81,7 +86,17 @@ def _record(
 
 
 class Flight:
-    """One run, tick by tick; remembers what was commanded."""
+    """One run, flown tick by tick of the command log.
+
+    Attributes:
+        mover: integrates the motion.
+        pilot: steers.
+        tick: period of the command log, s.
+        frame: period of the camera, s.
+        stamps: time of each command by its log, s.
+        acts: time from which each command acts, s.
+        commands: that were given, (n,) each.
+    """
 
     def __init__(self, mover: Mover, pilot: Pilot, tick: float, frame: float) -> None:
         self.mover, self.pilot, self.tick, self.frame = mover, pilot, tick, frame
@@ -90,10 +105,14 @@ class Flight:
         self.commands: list[Array] = []
 
     def fly(self, pushes: Sequence[Array], tank: Array) -> Iterator[Vehicle]:
-        """The vehicle at every frame, the first at the start, under pushes of one tick each.
+        """Yield the vehicle at every frame, the first at the start of the run.
+
+        Args:
+            pushes: wrench (6,) of turbulence over each tick, body axes, N and N m.
+            tank: least and largest coordinates (3, 2), m, NED.
 
         Raises:
-            OutOfTank: the pilot lost it.
+            OutOfTank: the vehicle left the tank.
         """
         thrusters = self.mover.thrusters
         vehicle = self.pilot.begin(len(self.mover.own.position))
@@ -119,7 +138,11 @@ class Flight:
     def _advance(
         self, now: Vehicle, push: Array, begin: float, end: float
     ) -> tuple[Vehicle, list[Vehicle]]:
-        """Over one tick; commands change wherever they act inside it."""
+        """Carry the vehicle over one tick; the commands change wherever one acts inside it.
+
+        Returns:
+            The vehicle at the end, and at the frames inside the tick.
+        """
         changes = [t for t in self.acts if begin < t < end]
         times = [
             k * self.frame
@@ -145,7 +168,7 @@ def _lost(t: float) -> OutOfTank:
 
 
 def _list_hidden(settings: Mapping[str, Any]) -> Hidden:
-    """Parameters given, by effect."""
+    """Return the parameters of the hidden effects, by effect and name."""
     return {
         entry["effect"]: {k: float(v["value"]) for k, v in entry["parameters"].items()}
         for entry in settings["effects"]
@@ -153,6 +176,7 @@ def _list_hidden(settings: Mapping[str, Any]) -> Hidden:
 
 
 def _describe(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the content of `campaign.yaml`."""
     count = 8
     return {
         "name": settings["name"],

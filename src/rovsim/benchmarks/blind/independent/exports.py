@@ -1,4 +1,4 @@
-"""What the cameras and the log make of a run: a QTM export and a CSV of commands."""
+"""The exports of a run: poses as a QTM file, and commands as a CSV file."""
 
 from pathlib import Path
 from typing import Any, Mapping, Sequence
@@ -22,7 +22,16 @@ def write_poses(
     hidden: Hidden,
     random: np.random.Generator,
 ) -> None:
-    """Poses (n, 3) NED and n attitudes, one a frame, as Qualisys Track Manager exports them."""
+    """Write poses as Qualisys Track Manager exports them, with the errors of the cameras.
+
+    Args:
+        path: of the tsv file.
+        places: (n, 3) of CO at each frame, m, NED.
+        attitudes: n rotations from body (FRD) to world.
+        camera: its settings.
+        hidden: parameters of the hidden effects.
+        random: from which errors are drawn.
+    """
     rate, count = float(camera["rate"]), len(places)
     places, attitudes = _sense(places, attitudes, hidden)
     coloured = _draw_lasting(count, 1.0 / (rate * camera["colour_time"]), random)
@@ -46,7 +55,7 @@ def write_poses(
 
 
 def _sense(places: Array, attitudes: Rotation, hidden: Hidden) -> tuple[Array, Rotation]:
-    """Another body point, other body axes, a world that is not level."""
+    """Apply marker offset, marker misalignment and a tilted world to true poses."""
     offset, turn = hidden.get("marker_offset", {}), hidden.get("marker_misalignment", {})
     tilt = hidden.get("world_tilt", {})
     level = Rotation.from_rotvec([tilt.get("roll", 0.0), tilt.get("pitch", 0.0), 0.0])
@@ -58,7 +67,7 @@ def _sense(places: Array, attitudes: Rotation, hidden: Hidden) -> tuple[Array, R
 def _smooth(
     places: Array, attitudes: Rotation, rate: float, hidden: Hidden
 ) -> tuple[Array, Rotation]:
-    """Two equal first-order low-passes, on the place and along the geodesic of the attitude."""
+    """Apply the pose filter: two equal first-order low-passes, attitudes along the geodesic."""
     if "pose_filter" not in hidden:
         return places, attitudes
     pole = float(np.exp(-2.0 * np.pi * hidden["pose_filter"]["cutoff"] / rate))
@@ -74,7 +83,13 @@ def _smooth(
 
 
 def _draw_lasting(count: int, step: float, random: np.random.Generator) -> Array:
-    """Six errors (count, 6) that last, of unit variance; `step` in time constants."""
+    """Draw six stationary Ornstein-Uhlenbeck errors (count, 6) of unit variance.
+
+    Args:
+        count: samples.
+        step: between samples, in time constants.
+        random: from which they are drawn.
+    """
     pole = np.exp(-step)
     innovations = np.sqrt(1.0 - pole**2) * random.normal(size=(count, 6))
     innovations[0] /= np.sqrt(1.0 - pole**2)
@@ -82,7 +97,11 @@ def _draw_lasting(count: int, step: float, random: np.random.Generator) -> Array
 
 
 def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> Array:
-    """Millimetres, degrees, residual, and body to world column by column: z up, x y z forward."""
+    """Return the numbers (n, 16) of a QTM file, in its axes: z up, body axes forward, left, up.
+
+    These are position in mm, roll, pitch and yaw in degrees, the residual, and the rotation matrix
+    column by column.
+    """
     flip = np.diag(UPSIDE)
     R = flip @ attitudes.as_matrix() @ flip
     yaw_pitch_roll = Rotation.from_matrix(R).as_euler("ZYX", degrees=True)
@@ -128,7 +147,7 @@ def write_commands(
     log: Mapping[str, Any],
     random: np.random.Generator,
 ) -> None:
-    """Pulse widths in whole microseconds; some lines are lost."""
+    """Write commands as pulse widths in whole microseconds, without the lines that get lost."""
     times = np.array(stamps) + log["jitter"] * random.normal(size=len(stamps))
     logged = random.random(len(times)) >= log["missing"]
     logged[0] = True

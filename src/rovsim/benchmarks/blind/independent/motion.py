@@ -1,10 +1,10 @@
 """The motion of the vehicle from its momentum in the world (Kirchhoff; Lamb 1932, art. 120-124).
 
-In water that moves steadily everything is as in still water, seen by someone who drifts along. For
+In water that moves steadily, everything is as in still water for an observer who drifts along. For
 that observer the momentum P of vehicle and water, and its moment L about a fixed point, change by
 the forces alone: P' = F, L' = M + x x F. Velocity follows from (R^T P, R^T (L - x x P)) = M nu, and
 there is no Coriolis matrix. Attitude is the rotation matrix itself, R' = R [omega]x, made
-orthogonal again after every tick.
+orthogonal again after every span.
 """
 
 from dataclasses import dataclass
@@ -24,9 +24,14 @@ TOLERANCE = 1e-7  # of one step of some 20 ms, relative; a tenth of it absolute,
 
 @dataclass(frozen=True, eq=False)
 class Vehicle:
-    """Place (3,) NED, attitude R (3, 3) body to world, velocity (6,) in the body's axes.
+    """The state of the vehicle.
 
-    `thrust` (n,) N and `memory` (6,) of the water are states as well.
+    Attributes:
+        place: of CO (3,), m, NED.
+        R: rotation matrix (3, 3) from body to world.
+        velocity: (6,) over ground in body axes, m/s and rad/s.
+        thrust: force (n,) of each thruster, N.
+        memory: of the water (6,), the velocity that its wake follows with a lag.
     """
 
     place: Array
@@ -37,7 +42,24 @@ class Vehicle:
 
 
 class Mover:
-    """Carries a vehicle through time under static forces that are held."""
+    """Integrates the motion while the static forces of the thrusters are held.
+
+    Attributes:
+        own: constants of the vehicle.
+        thrusters: of the vehicle; their battery may sag.
+        tolerance: relative, of the integration.
+        pushes: forces on the hull.
+        M_inv: inverse (6, 6) of the inertia with added mass.
+        weight: weight less buoyancy, N.
+        hang: sum (3,) of weights and buoyancy times where they act, N m, body axes.
+        current: velocity (3,) of the water, m/s, NED.
+        lag: time constant of the thrusters, s; 0: none.
+        sags: whether the battery sags.
+        wake: coefficients (6,) of the fluid memory.
+        wake_time: its time constant, s; 0: none.
+        loss: of thrust with the speed of the inflow, s/m.
+        wrenches: body wrench (n, 6) of one newton of each thruster.
+    """
 
     def __init__(
         self,
@@ -72,14 +94,17 @@ class Mover:
         span: tuple[float, float],
         wanted: Sequence[float] = (),
     ) -> tuple[Vehicle, list[Vehicle]]:
-        """The vehicle at the end of a span of time, and at the wanted instants inside it.
+        """Integrate over a span of time.
 
         Args:
             start: the vehicle at its beginning.
-            static: static forces (n,) that are held, of a full battery.
-            push: wrench (6,) in body axes that nothing explains, held.
+            static: static forces (n,) of the thrusters with a full battery, held, N.
+            push: wrench (6,) of turbulence in body axes, held, N and N m.
             span: begin and end, s.
-            wanted: rising, s.
+            wanted: instants inside the span, ascending, s.
+
+        Returns:
+            The vehicle at the end, and at the wanted instants.
         """
         flow, (begin, end) = _Flow(self, start, static, push, span[0]), span
         solver = DOP853(
@@ -107,8 +132,8 @@ class Mover:
 class _Flow:
     """The differential equation over one span, about the place where it begins.
 
-    y = place less that of the start, for an observer who drifts; R row by row; P; L; thrust where
-    it lags; memory where there is one.
+    Its state y is, for an observer who drifts with the current: place less that of the start (3); R
+    row by row (9); P (3); L (3); thrust (n) if it lags; memory (6) if there is any.
     """
 
     def __init__(
@@ -126,7 +151,7 @@ class _Flow:
         self.thrust = static @ mover.wrenches
 
     def see(self, t: float, y: Array) -> Vehicle:
-        """The vehicle over ground."""
+        """Return the vehicle over ground from the state at time t."""
         R, v = self._motion(y)
         place = self.start.place + y[:3] + (t - self.t0) * self.mover.current
         velocity = np.concatenate([v[:3] + R.T @ self.mover.current, v[3:]])
@@ -134,6 +159,7 @@ class _Flow:
         return Vehicle(place, R, velocity, thrust, y[-6:] if self.remembers else np.zeros(6))
 
     def _motion(self, y: Array) -> tuple[Array, Array]:
+        """Return attitude R (3, 3) and velocity (6,) through the water, body axes."""
         R, momentum = y[3:12].reshape(3, 3), y[12:18].copy()
         momentum[3:] -= cross(y[:3], momentum[:3])
         return R, self.mover.M_inv @ (momentum.reshape(2, 3) @ R).ravel()
@@ -142,7 +168,7 @@ class _Flow:
         return self.mover.thrusters.battery(t) if self.mover.sags else 1.0
 
     def change(self, t: float, y: Array) -> Array:
-        """y'."""
+        """Return the derivative of the state."""
         mover, (R, v) = self.mover, self._motion(y)
         place = self.start.place + y[:3] + (t - self.t0) * mover.current
         instant, wrench, rates = Instant(place, R, v), self.push, []
@@ -167,6 +193,7 @@ class _Flow:
         return np.concatenate([R @ v[:3], (R @ skew(v[3:])).ravel(), forces.ravel(), *rates])
 
     def _thrust(self, force: Array, v: Array) -> Array:
+        """Return the body wrench (6,) of the thrusters, less what they lose to their inflow."""
         if self.mover.loss:
             inflow = self.mover.own.direction @ v[:3]
             force = force * (1.0 - self.mover.loss * np.sign(force) * inflow)

@@ -1,4 +1,4 @@
-"""A pilot of another school: sines on the sticks around slow journeys from place to place."""
+"""A pilot unlike that of the tank: sines on the sticks around slow journeys between places."""
 
 from typing import Sequence
 
@@ -7,14 +7,14 @@ from numpy import ndarray as Array
 
 from rovsim.benchmarks.blind.independent.motion import Vehicle
 
-SINES, SLOWEST, FASTEST = 8, 0.04, 0.7  # on each stick; Hz: what a hand does
-# RMS of the sticks: demands in surge, sway, heave and yaw, angles in rad in roll and pitch
+SINES, SLOWEST, FASTEST = 8, 0.04, 0.7  # sines on each stick; Hz: what a hand does
+# RMS of the sticks: demands in surge, sway, heave and yaw; angles in rad in roll and pitch
 STICKS = {
     "3dof": np.array([0.15, 0.15, 0.10, 0.0, 0.0, 0.0]),
     "6dof": np.array([0.15, 0.14, 0.10, 0.25, 0.25, 0.12]),
 }
 JOURNEY = 12.0  # s from place to place
-ROOM = np.array([1.4, 1.1, 0.4])  # m about the middle, and half of what the tank leaves
+ROOM = np.array([1.4, 1.1, 0.4])  # m about the middle, or half of what the walls leave if less
 PLACE, SPEED, TRIM = 0.2, 0.25, 0.025  # demand per m, per m/s, per m s
 UPRIGHT, RATE = 0.3, 0.12  # demand per rad, per rad/s
 MOST = 0.4  # demand of an axis
@@ -22,7 +22,17 @@ LATE = 10  # ticks of 20 ms: the reaction time of an eye and a hand
 
 
 class Pilot:
-    """Steers by what was seen a moment ago."""
+    """Steers by the place and velocity of a reaction time ago, and by the present attitude.
+
+    Attributes:
+        places: (n, 3) that are headed for, one after the other, m, NED.
+        hertz: frequencies (SINES, 6) of the sticks, Hz.
+        phase: (SINES, 6) of the sticks, rad.
+        size: amplitude (6,) of each sine.
+        heading: yaw at the start, rad.
+        trim: integral part (3,) of the position control.
+        seen: states so far.
+    """
 
     def __init__(
         self, control: str, tank: Array, seconds: float, random: np.random.Generator
@@ -38,13 +48,13 @@ class Pilot:
         self.trim, self.seen = np.zeros(3), []  # type: tuple[Array, list[Vehicle]]
 
     def begin(self, thrusters: int) -> Vehicle:
-        """At rest at the first place."""
+        """Return the vehicle at rest at the first place."""
         c, s = np.cos(self.heading), np.sin(self.heading)
         R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         return Vehicle(self.places[0], R, np.zeros(6), np.zeros(thrusters), np.zeros(6))
 
     def steer(self, t: float, now: Vehicle, tick: float) -> Array:
-        """Demand (6,) at time t."""
+        """Return the demand (6,) at time t, from the present state and the states so far."""
         self.seen.append(now)
         delayed = self.seen[max(0, len(self.seen) - 1 - LATE)]
         k, fraction = divmod(t / JOURNEY, 1.0)
@@ -66,7 +76,19 @@ def draw_pushes(
     count: int,
     random: np.random.Generator,
 ) -> Sequence[Array]:
-    """A force that nobody logs: Ornstein-Uhlenbeck (count, 6), N and N m, held over each tick."""
+    """Draw turbulence: an Ornstein-Uhlenbeck wrench that no log contains.
+
+    Args:
+        force: standard deviation, N.
+        moment: standard deviation, N m.
+        time: time constant, s.
+        tick: over which a wrench is held, s.
+        count: of ticks.
+        random: from which they are drawn.
+
+    Returns:
+        A wrench (6,) for each tick, body axes.
+    """
     decay = np.exp(-tick / time)
     std = np.repeat([force, moment], 3)
     pushes = [std * random.normal(size=6)]

@@ -1,6 +1,6 @@
-"""Forces on the hull: what the catalogue says of each effect, stated once more.
+"""Forces on the hull: the catalogue's effects, stated once more.
 
-Each is a function of one instant and returns a body wrench (6,) about CO.
+Each is a function of one instant and returns a body wrench (6,) about CO, N and N m.
 """
 
 from dataclasses import dataclass
@@ -14,12 +14,18 @@ from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Constants, Hidde
 
 Given = Mapping[str, float]
 CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (docs/catalogue.md)
-ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # kappa, m2, of the water (docs/catalogue.md)
+ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # 1 and kappa, m2, of fluid_memory (catalogue.md)
 
 
 @dataclass(frozen=True, eq=False)
 class Instant:
-    """Place (3,) NED, attitude R (3, 3) body to world, velocity (6,) through the water."""
+    """Where the vehicle is, and how it moves through the water.
+
+    Attributes:
+        place: of CO (3,), m, NED.
+        R: rotation matrix (3, 3) from body to world.
+        v: velocity (6,) through the water, body axes, m/s and rad/s.
+    """
 
     place: Array
     R: Array
@@ -30,14 +36,14 @@ Push = Callable[[Instant], Array]
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a x b of two triples; NumPy's takes ten times as long for one pair."""
+    """Return a x b (3,); NumPy's takes ten times as long for one pair."""
     ax, ay, az = a.tolist()
     bx, by, bz = b.tolist()
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def list_pushes(own: Constants, hidden: Hidden, tank: Array) -> list[Push]:
-    """Every force of the water and of the tether; `tank` (3, 2) low and high in NED."""
+    """List the forces of water and tether; `tank` (3, 2) is low and high, m, NED."""
     pushes: list[Push] = [partial(drag, own, hidden, tank)]
     pushes += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
     if "tether_drag" in hidden:
@@ -46,7 +52,7 @@ def list_pushes(own: Constants, hidden: Hidden, tank: Array) -> list[Push]:
 
 
 def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
-    """Diagonal damping, more of it near walls and surface; couplings and cubic drag beside it."""
+    """Return damping: diagonal, larger near walls and surface, and coupled and cubic."""
     speed = np.abs(at.v)
     diagonal = (own.linear + own.quadratic * speed) * _near(hidden, tank, at.place)
     push = -(diagonal + own.cubic * speed * speed) * at.v
@@ -56,6 +62,7 @@ def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
 
 
 def _near(hidden: Hidden, tank: Array, place: Array) -> float:
+    """Return the factor of linear and quadratic damping near walls and surface."""
     factor = 1.0
     if "wall_proximity" in hidden:
         parameters = hidden["wall_proximity"]
@@ -69,23 +76,23 @@ def _near(hidden: Hidden, tank: Array, place: Array) -> float:
 
 
 def friction(given: Given, at: Instant) -> Array:
-    """-c tanh(v / creep) on each axis."""
+    """Return dry friction, -c tanh(v / CREEP) on each axis."""
     return -_axes(given) * np.tanh(at.v / CREEP)
 
 
 def trim(given: Given, at: Instant) -> Array:
-    """A constant body wrench."""
+    """Return a constant body wrench."""
     return _axes(given)
 
 
 def lift(given: Given, at: Instant) -> Array:
-    """Across the flow in surge: -c |u| v and -c |u| w."""
+    """Return forces across a flow in surge, -c |u| v and -c |u| w."""
     c = given["coefficient"] * abs(at.v[0])
     return np.array([0.0, -c * at.v[1], -c * at.v[2], 0.0, 0.0, 0.0])
 
 
 def pull(given: Given, at: Instant) -> Array:
-    """An elastic tether from its attachment to its anchor."""
+    """Return the tension of an elastic tether, from its attachment towards its anchor."""
     attachment = _attachment(given)
     line = at.R.T @ (_anchor(given, np.zeros(3)) - at.place) - attachment
     length = float(np.sqrt(line @ line))
@@ -94,7 +101,7 @@ def pull(given: Given, at: Instant) -> Array:
 
 
 def tow(given: Given, tank: Array, at: Instant) -> Array:
-    """A wet tether in tow, the longer the farther from its anchor."""
+    """Return the drag of a wet tether in tow, which grows with the distance to its anchor."""
     middle = np.array([*tank[:2].mean(axis=1), tank[2, 0]])
     reach = _anchor(given, UPSIDE * middle) - at.place
     v = at.v[:3]
@@ -111,20 +118,23 @@ LAWS: Mapping[str, Callable[[Given, Instant], Array]] = {
 
 
 def _axes(given: Given) -> Array:
+    """Return the parameters of an effect that has one for each axis (6,)."""
     names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
     return np.array([given.get(name, 0.0) for name in names])
 
 
 def _attachment(given: Given) -> Array:
+    """Return where the tether is attached (3,), m, FRD."""
     default = {"x": -0.2, "y": 0.0, "z": 0.0}  # docs/catalogue.md
     return np.array([given.get(f"attachment_{k}", v) for k, v in default.items()])
 
 
 def _anchor(given: Given, otherwise: Array) -> Array:
-    """Where the anchor is, NED; given in MoCap axes."""
+    """Return where the anchor is (3,), m, NED; parameters and `otherwise` are in MoCap axes."""
     anchor = [given.get(f"anchor_{k}", v) for k, v in zip("xyz", otherwise, strict=True)]
     return UPSIDE * np.array(anchor)
 
 
 def _hung(force: Array, place: Array) -> Array:
+    """Return the wrench (6,) of a force at a place of the body."""
     return np.concatenate([force, cross(place, force)])

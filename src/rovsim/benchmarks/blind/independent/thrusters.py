@@ -9,7 +9,17 @@ from rovsim.benchmarks.blind.independent.vehicle import Hidden
 
 
 class Thrusters:
-    """Commands c in [-1, 1] to forces in newtons, and when a command given at t acts."""
+    """Forces of the thrusters by command, and when commands act.
+
+    Attributes:
+        limit: of the absolute command.
+        mixer: matrix (n, 6) from demands to commands.
+        curve: force in N of a command in [-1, 1].
+        full: forces at the commands 1 and -1, N, both positive.
+        hidden: parameters of the hidden effects.
+        seconds: duration of the run.
+        gain: factor (n,) of each thruster's force.
+    """
 
     def __init__(self, file: Mapping[str, Any], hidden: Hidden, seconds: float) -> None:
         section = file["thrusters"]
@@ -29,11 +39,11 @@ class Thrusters:
         )
 
     def command(self, demand: Array) -> Array:
-        """Thruster commands (n,) of a demand (6,), as a log in whole microseconds has them."""
+        """Return the commands (n,) to a demand (6,), rounded as a log in whole microseconds is."""
         return np.round(400.0 * np.clip(self.mixer @ demand, -self.limit, self.limit)) / 400.0
 
     def force(self, command: Array) -> Array:
-        """Static force (n,), but for the battery."""
+        """Return the static forces (n,) to commands (n,), N, with a full battery."""
         width = self.hidden.get("thruster_deadband", {}).get("width", 0.0)
         force = self.curve(np.where(np.abs(command) > width, command, 0.0))
         exponent = self.hidden.get("force_curve", {}).get("exponent", 1.0)
@@ -45,16 +55,16 @@ class Thrusters:
         return np.where(force < 0.0, ratio * force, force)
 
     def battery(self, t: float) -> float:
-        """What is left of every force after t seconds."""
+        """Return the share of each force that the battery leaves after t seconds."""
         sag = self.hidden.get("voltage_sag", {})
         share, rate = sag.get("fraction", 0.0) / self.seconds, sag.get("rate", 0.0)
         return max(0.0, 1.0 - (share + rate) * t)
 
     def log(self, t: float) -> tuple[float, float]:
-        """When the log says that a command given at t was given, and when it acts.
+        """Return the logged time of a command given at t, and the time from which it acts, s.
 
-        The command's clock runs at 1 + rate, and a line acts `delay` after its stamp. Nothing acts
-        before it is given: where the clocks say so, the stamp is what is late.
+        The clock of the commands runs at 1 + rate, and a line acts `delay` after its stamp. No
+        command acts before it is given; where clock and delay would have it so, the stamp is later.
         """
         pace = 1.0 + self.hidden.get("clock_drift", {}).get("rate", 0.0)
         delay = self.hidden.get("input_delay", {}).get("delay", 0.0)

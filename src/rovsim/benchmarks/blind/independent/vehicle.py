@@ -8,18 +8,26 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 
-Hidden = Mapping[str, Mapping[str, float]]  # parameters given by effect
+Hidden = Mapping[str, Mapping[str, float]]  # values by effect and parameter
 
-UPSIDE = np.array([1.0, -1.0, -1.0])  # MoCap axes z up, and NED
+UPSIDE = np.array([1.0, -1.0, -1.0])  # between MoCap axes (z up) and NED, either way
 
 
 @dataclass(frozen=True, eq=False)
 class Constants:
-    """What does not change during a run; SI, FRD at CO, axes surge … yaw.
+    """What does not change during a run, in SI units, FRD at CO; axes are surge to yaw.
 
-    `M` (6, 6) inertia with that of the water; `weights` (w, 4): newtons down and where they hang,
-    buoyancy negative; `linear`, `quadratic`, `cubic` (6,), `coupled` (2, 6, 6) damping, the row
-    pushed by the column; `position`, `direction` (n, 3), `spin` (n,) of the thrusters.
+    Attributes:
+        M: inertia (6, 6) with added mass.
+        weights: (w, 4), each a force down in N, negative for buoyancy, and where it acts.
+        linear: damping (6,).
+        quadratic: damping (6,).
+        cubic: damping (6,).
+        coupled: linear and quadratic damping (2, 6, 6) on the axis of the row by the velocity of
+            the column.
+        position: of the thrusters (n, 3).
+        direction: of their force (n, 3).
+        spin: of their propellers (n,), 1 or -1; 0: none.
     """
 
     M: Array
@@ -34,13 +42,19 @@ class Constants:
 
 
 def skew(r: Array) -> Array:
-    """The matrix of a cross product, r x."""
+    """Return the matrix (3, 3) of the cross product r x."""
     x, y, z = r.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def kinetic(mass: float, place: Array, inertia: Array) -> Array:
-    """Inertia (6, 6) of a body from its kinetic energy: of its centre, and about it."""
+    """Return the inertia matrix (6, 6) of a body about CO.
+
+    Args:
+        mass: of the body, kg.
+        place: of its centre (3,), m.
+        inertia: (3, 3) about its centre, kg m2.
+    """
     of_centre = np.hstack([np.eye(3), -skew(place)])
     M = mass * of_centre.T @ of_centre
     M[3:, 3:] += inertia
@@ -48,7 +62,7 @@ def kinetic(mass: float, place: Array, inertia: Array) -> Array:
 
 
 def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
-    """Constants of a vehicle file with what is hidden in them."""
+    """Return the constants of a vehicle file, changed by the hidden effects."""
     body, water, g = file["rigid_body"], file["hydrodynamics"], float(file["fluid"]["gravity"])
     inertia = np.diag([float(body["inertia"][name]) for name in ("Ixx", "Iyy", "Izz")])
     masses = [(float(body["mass"]), np.array(body["center_of_gravity"], float), inertia)]
@@ -76,16 +90,18 @@ def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
 
 
 def _six(hidden: Hidden, effect: str) -> Array:
+    """Return the parameters (6,) of an effect, one for each axis."""
     parameters = hidden.get(effect, {})
     return np.array([parameters.get(axis, 0.0) for axis in AXES])
 
 
 def _triple(given: Mapping[str, float]) -> Array:
+    """Return the parameters x, y, z (3,)."""
     return np.array([given.get(axis, 0.0) for axis in "xyz"])
 
 
 def _pairs(given: Mapping[str, float]) -> Array:
-    """A symmetric matrix (6, 6) of named pairs, `surge_pitch`."""
+    """Return the symmetric matrix (6, 6) of pairs of axes, such as `surge_pitch`."""
     M = np.zeros((6, 6))
     for name, value in given.items():
         i, j = (AXES.index(axis) for axis in name.split("_"))
@@ -94,7 +110,10 @@ def _pairs(given: Mapping[str, float]) -> Array:
 
 
 def _couplings(given: Mapping[str, float]) -> Array:
-    """Damping (2, 6, 6) of named ordered pairs, `yaw_from_sway`, `yaw_from_sway_quadratic`."""
+    """Return linear and quadratic damping (2, 6, 6) of ordered pairs of axes.
+
+    They are called for example `yaw_from_sway` and `yaw_from_sway_quadratic`.
+    """
     D = np.zeros((2, 6, 6))
     for name, value in given.items():
         row, column = name.removesuffix("_quadratic").split("_from_")
