@@ -2,7 +2,7 @@
 
 snakemake -s workflow/blind.smk --cores 2 [--config overrides="blind.suite=standard"]
 
-Cases that this code has answered are left out; in the end `rovsim blind` scores them all.
+Cases that this code has answered before are left out. In the end `rovsim blind` scores all.
 """
 
 import sys
@@ -12,18 +12,16 @@ from rovsim.benchmarks.blind.run import Benchmark, file_name
 from rovsim.core.errors import RovsimError
 
 try:
-    told = SnakemakeConfig(config, keys=("overrides",))
-    told.check()
-    words, settings = told.overrides, told.settings
+    snakemake_config = SnakemakeConfig(config, keys=("overrides",))
+    snakemake_config.check()
+    words, settings = snakemake_config.overrides, snakemake_config.settings
     benchmark = Benchmark.of(settings.blind, settings.out)
     jobs = benchmark.pending()
 except RovsimError as error:
     print(f"rovsim: {error}", file=sys.stderr)
     sys.exit(2)
 
-ASKED = (
-    f"{benchmark.out}/.asked/{{case}}.{{mark}}"  # mark: of what the answers depend on
-)
+ASKED = f"{benchmark.out}/.asked/{{case}}.{{mark}}"  # mark: digest of what the answers depend on
 
 
 wildcard_constraints:
@@ -46,7 +44,7 @@ rule score:
 
 
 rule case:
-    "Fly a case, and ask every method."
+    "Fly a case, and let every method answer it."
     output:
         temp(touch(ASKED)),
     log:

@@ -1,4 +1,4 @@
-"""What several chapters of the workflow name alike."""
+"""Names and helper functions that several rule files share."""
 
 from pathlib import Path
 
@@ -10,13 +10,13 @@ F = f"{R}/folds/{{fold}}"
 
 
 def code_of(script, *more, without=""):
-    """Digest of what a script imports: an edit re-runs what it touches."""
+    """Digest what a script imports, so that an edit re-runs what depends on it."""
     path = Path(workflow.basedir, "workflow", "scripts", f"{script}.py")
     return depends.code(path, *more, without=without)
 
 
 def clean_runs():
-    """Every run as a motion, and as poses before the filter."""
+    """Return files of every run, as motion and as poses before the filter."""
     return {
         "motions": expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
         "stages": expand(f"{R}/resampled/{{run}}.npz", run=study.runs()),
@@ -24,13 +24,13 @@ def clean_runs():
 
 
 def model_files(wildcards):
-    """A model's file; the baselines have none."""
-    written = wildcards.model in models.with_files
-    return [f"{R}/models/{wildcards.model}/model.yaml"] if written else []
+    """Return a model's file; the baselines have none."""
+    has_file = wildcards.model in models.with_files
+    return [f"{R}/models/{wildcards.model}/model.yaml"] if has_file else []
 
 
 def fold_runs():
-    """Every run of a fold, as motion and as poses before the filter, its split changed."""
+    """Return files of every run as `clean_runs` does, with the splits of a fold."""
     return {
         kind: expand(f"{F}/{kind}/{{run}}.npz", run=study.runs(), allow_missing=True)
         for kind in ("motions", "stages")

@@ -1,5 +1,5 @@
 rule diagnose:
-    "Which effects the nominal model lacks on the train runs; their worth on the test runs."
+    "Diagnose the nominal model on the train runs; measure the improvement on the test runs."
     input:
         **clean_runs(),
         campaign=lambda w: study.campaign_file,
@@ -18,7 +18,7 @@ rule diagnose:
 
 
 rule add:
-    "The nominal model and the effects that were found."
+    "Add the effects that the diagnosis selected to the nominal model."
     input:
         diagnosis=f"{R}/diagnosis.json",
     output:
@@ -34,7 +34,7 @@ rule add:
 
 
 rule refit:
-    "The nominal model with its own parameters refitted on the train runs."
+    "Refit the nominal model's own parameters to the train runs."
     input:
         **clean_runs(),
         campaign=lambda w: study.campaign_file,

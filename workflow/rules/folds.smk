@@ -1,5 +1,5 @@
 rule split:
-    "All runs once more, one of them held out: the only test run of its fold."
+    "Copy all runs, with one of them held out as the only test run of its fold."
     input:
         **clean_runs(),
     output:
@@ -95,7 +95,7 @@ rule fold:
 if folds.published:
 
     rule against_published:
-        "The folds beside what others published for the same runs."
+        "Compare the errors on held-out runs with those that others published for them."
         input:
             comparisons=expand(f"{F}/comparison.json", fold=folds.runs),
             motions=expand(f"{R}/motions/{{run}}.npz", run=folds.runs),
@@ -118,7 +118,7 @@ if folds.published:
 if folds.pitfalls:
 
     rule pitfalls:
-        "What four mistakes of the thesis' public code cost, on each held-out run."
+        "Measure what four mistakes of the thesis' public code cost, on each held-out run."
         input:
             motions=expand(f"{R}/motions/{{run}}.npz", run=folds.runs),
             models=expand(f"{F}/models/effects/model.yaml", fold=folds.runs),

@@ -16,7 +16,7 @@ if study.synthetic:
 
 
 rule read:
-    "Read one raw export: axes to NED and FRD, quality told, nothing filtered."
+    "Read one raw export: convert axes to NED and FRD, assess its quality, filter nothing."
     input:
         raw=lambda wildcards: study.raw(wildcards.run),
     output:

@@ -18,7 +18,7 @@ rule replay:
 
 
 rule search:
-    "Under which conditions one model fails, on all runs it may be judged on."
+    "Find under which conditions one model fails, on the runs that it may be judged on."
     input:
         motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
         campaign=lambda w: study.campaign_file,
@@ -37,7 +37,7 @@ rule search:
 
 
 rule budget:
-    "Who pushes how much in one run, by the nominal model, and what is missing."
+    "Balance the forces of the nominal model over one run: those of each effect, and the rest."
     input:
         motion=f"{R}/motions/{{run}}.npz",
         campaign=lambda w: study.campaign_file,
@@ -55,7 +55,7 @@ rule budget:
 
 
 rule score:
-    "Errors of one model on all runs: a job a run would take longer to start than to score."
+    "Score one model on all runs; a job for each run would take longer to start than to score."
     input:
         motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
         replays=expand(f"{R}/replay/{{{{model}}}}/{{run}}.npz", run=study.runs()),

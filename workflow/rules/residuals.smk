@@ -1,5 +1,5 @@
 rule train:
-    "Learn what the acceleration of a model misses, on the train runs of one control."
+    "Learn the acceleration residual of a model, on the train runs of one control."
     input:
         motions=lambda w: expand(
             f"{R}/motions/{{run}}.npz", run=study.train_runs(w.control)
@@ -21,7 +21,7 @@ rule train:
 
 
 rule timing:
-    "Time one prediction after the other, library call and exported predictor, alone on the machine."
+    "Time single predictions by library call and exported predictor, alone on the machine."
     input:
         motion=f"{R}/motions/{study.runs('test')[0]}.npz",
         campaign=lambda w: study.campaign_file,

@@ -1,12 +1,12 @@
 from rovsim.reporting.report_data import list_run_figures
 
-# Only where somebody published errors of the same runs.
+# Only where errors of the same runs have been published.
 PUBLISHED_ERRORS = [f"{R}/published_errors.json"] if folds.published else []
 FIGURES = [figure.name for figure in folds.figures]
 
 
 rule compare:
-    "All scores in one file, the ladder, and how errors grow."
+    "Merge all scores; write the ladder, the growth of errors and the error conditions."
     input:
         scores=expand(f"{R}/scores/{{model}}.json", model=models.all),
         replays=expand(
@@ -30,7 +30,7 @@ rule compare:
         "../scripts/compare.py"
 
 
-# One rule a figure, so that each has its own caption and re-runs on its own edits.
+# One rule for each figure, so that each has its own caption and re-runs on its own edits.
 for figure in folds.figures:
 
     rule:
@@ -98,7 +98,7 @@ for figure in list_run_figures():
 
 
 rule tables:
-    "The numbers as LaTeX and CSV."
+    "Write the tables as LaTeX and CSV."
     input:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
@@ -119,7 +119,7 @@ rule tables:
 
 
 rule report:
-    "Everything on one page."
+    "Write the report of the study, on one page."
     input:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",
@@ -146,7 +146,7 @@ rule report:
 
 
 rule track:
-    "Tell MLflow, once, after everything is written."
+    "Log the study to MLflow, once everything else is written."
     input:
         comparison=f"{R}/comparison.json",
         ladder=f"{R}/ladder.json",

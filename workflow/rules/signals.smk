@@ -33,7 +33,7 @@ rule filter:
 
 
 rule differentiate:
-    "Velocities and accelerations in body axes."
+    "Derive velocities and accelerations in body axes."
     input:
         poses=f"{R}/filtered/{{run}}.npz",
         quality=f"{R}/quality/{{run}}.json",

@@ -1,4 +1,4 @@
-"""Add the effects that were found to the nominal model."""
+"""Write the nominal model with the effects that its diagnosis selected."""
 
 from rovsim.application.pipeline.models import write_with_effects
 from rovsim.application.snakemake_job import job

@@ -1,4 +1,4 @@
-"""Set the folds beside what others published for the same runs."""
+"""Compare the errors on held-out runs with those that others published for the same runs."""
 
 from rovsim.application.pipeline.held_out import compare_with_published
 from rovsim.application.snakemake_job import job

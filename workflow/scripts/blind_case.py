@@ -1,4 +1,4 @@
-"""Fly a case of the blind benchmark, and ask every method."""
+"""Fly a case of the blind benchmark, and let every method answer it."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Budget of forces of the nominal model over one run."""
+"""Balance the forces of the nominal model over one run."""
 
 from rovsim.application.sections import SimulationSections
 from rovsim.application.snakemake_job import job

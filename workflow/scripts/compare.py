@@ -1,4 +1,4 @@
-"""Bring all scores together."""
+"""Write the scores, the ladder, the growth of errors and the error conditions of all models."""
 
 from rovsim.application.pipeline.summary import summarize
 from rovsim.application.snakemake_job import job

@@ -1,4 +1,4 @@
-"""Diagnose the nominal model."""
+"""Diagnose which effects the nominal model lacks."""
 
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.provenance import digest_recordings

@@ -1,4 +1,4 @@
-"""Derive velocities and accelerations; an unusable run keeps none."""
+"""Derive velocities and accelerations; no row of an unusable run counts."""
 
 from rovsim.application.pipeline.recordings import derive_motion
 from rovsim.application.snakemake_job import job

@@ -1,4 +1,4 @@
-"""Smooth poses."""
+"""Smooth the poses of one run."""
 
 from rovsim.application.snakemake_job import job
 from rovsim.measurement.signals.chain import SignalSettings, filtered, read_stage

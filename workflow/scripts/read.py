@@ -1,4 +1,4 @@
-"""Read one raw export."""
+"""Read one raw export, and assess its quality."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Write the report."""
+"""Write the report of the study."""
 
 from rovsim.application.pipeline.presentation import write_report
 from rovsim.application.snakemake_job import job

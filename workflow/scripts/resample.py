@@ -1,4 +1,4 @@
-"""Put poses on a uniform clock."""
+"""Put the poses of one run on a uniform clock."""
 
 from rovsim.application.snakemake_job import job
 from rovsim.measurement.recording.recording import Recording

@@ -1,4 +1,4 @@
-"""Search one model's errors for what they vary with."""
+"""Find the conditions under which one model's errors are large."""
 
 from rovsim.application.pipeline.error_conditions import find_error_conditions
 from rovsim.application.sections import SimulationSections

@@ -1,4 +1,4 @@
-"""Split all runs anew: one for test, all others to train on."""
+"""Split all runs anew: one to test on, all others to train on."""
 
 from rovsim.application.snakemake_job import job
 from rovsim.evaluation.held_out.folds import held_out

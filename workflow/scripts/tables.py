@@ -1,4 +1,4 @@
-"""Write the tables."""
+"""Write the tables of the study."""
 
 from rovsim.application.pipeline.presentation import write_tables
 from rovsim.application.snakemake_job import job

@@ -1,4 +1,4 @@
-"""Log the study to MLflow: one parent run; in it one run a model, and the diagnosis."""
+"""Log the study to MLflow: a parent run, and in it a run for each model and the diagnosis."""
 
 import json
 
