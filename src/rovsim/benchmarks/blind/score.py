@@ -74,19 +74,17 @@ def score(case: Case, answer: Answer | Diagnosis) -> Score:
     selected = [fitted.effect for fitted in answer.selected]
     names = [s for s in selected if s not in case.forgiven]
     groups = [set(group) for group in answer.indistinguishable]
-    verdict_right = answer.verdict in case.verdicts and set(case.silent) <= set(
-        answer.not_observable
-    )
+    right = answer.verdict in case.verdicts and set(case.silent) <= set(answer.not_observable)
     matches = matching(names, case.names, groups)
     hits = set(names) & set(case.names)
     as_many = len(names) == len(case.names)
     return Score(
-        verdict=verdict_right,
+        verdict=right,
         flagged=answer.verdict == "unexplained",
         first_strict=_first(selected, case.names, []),
         first=_first(selected, case.names, groups),
-        exact_strict=verdict_right and as_many and set(names) == set(case.names),
-        exact=verdict_right and as_many and matches == len(case.names),
+        exact_strict=right and as_many and set(names) == set(case.names),
+        exact=right and as_many and matches == len(case.names),
         false_strict=len(names) - len(hits),
         false=len(names) - matches,
         alike=max((len(g) for g in groups if g & set(case.names)), default=1),

@@ -94,7 +94,7 @@ def standard(seeds: Range) -> Iterator[Case]:
             yield hiding("weak", (name,), 0, seeds, 0.25)
     yield from workshops(0, seeds)
     yield from (combination(count, 0, seeds) for count in MANY)
-    yield from (camera(how, k, seeds) for how in CAMERAS for k in range(4))
+    yield from (camera(kind, k, seeds) for kind in CAMERAS for k in range(4))
 
 
 def full(seeds: Range) -> Iterator[Case]:
@@ -121,7 +121,7 @@ def full(seeds: Range) -> Iterator[Case]:
         )
     yield from (case for k in range(2) for case in workshops(k, seeds))
     yield from (combination(count, k, seeds) for count in MANY for k in range(4))
-    yield from (camera(how, k, seeds) for how in CAMERAS for k in range(10))
+    yield from (camera(kind, k, seeds) for kind in CAMERAS for k in range(10))
     for name in OUTSIDE:
         yield from (outside(name, k, seeds) for k in range(4))
         yield outside(name, 0, seeds, beside=True)
