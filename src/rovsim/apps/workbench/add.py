@@ -102,8 +102,8 @@ class Add:
 
     def _replayed(self, model: Model) -> tuple[Any, float | None]:
         """Prediction and error of the run shown."""
-        found = self.bench.replays.prediction(model, self.run, self.chosen["horizon"])
-        return found, self.bench.replays.run_error(model, self.run)
+        prediction = self.bench.replays.prediction(model, self.run, self.chosen["horizon"])
+        return prediction, self.bench.replays.run_error(model, self.run)
 
     def _remark(self, predicted: Mapping[str, Prediction]) -> str:
         """What is wrong with replays of the run shown."""
@@ -120,7 +120,7 @@ class Add:
         self.area.clear()
         self.traces, self.wanted = None, False
         self.drawn += 1
-        mine = self.drawn
+        number = self.drawn
         model = self._model()
         self.missing = model is None
         if model is None:
@@ -128,18 +128,20 @@ class Add:
         with self.area:  # outlives the control that was used
             waiting = ui.spinner()  # the first replay with a new force compiles it
             base, before = await computed(self._replayed, self.bench.base)
-            new, now = await computed(self._replayed, model)
-            if mine != self.drawn:  # something else was chosen meanwhile
+            prediction, error = await computed(self._replayed, model)
+            if number != self.drawn:  # something else was chosen meanwhile
                 return
             waiting.delete()
             motion = self.bench.data.motions[self.run]
             self.base = base
-            shown = panels(motion, {self.bench.base.name: base, "new": new}, self.chosen["axes"])
+            run_panels = panels(
+                motion, {self.bench.base.name: base, "new": prediction}, self.chosen["axes"]
+            )
             about = f"Run {self.run}, before and with the effects"
-            remark = self._remark({self.bench.base.name: base, "the new model": new})
-            self.traces = Traces(motion.time, shown, about, remark=remark)
+            remark = self._remark({self.bench.base.name: base, "the new model": prediction})
+            self.traces = Traces(motion.time, run_panels, about, remark=remark)
         self._tell(self.before, "before", before)
-        self._tell(self.after, "now", now)
+        self._tell(self.after, "now", error)
         if self.wanted:  # a slider was moved meanwhile
             await self.update()
 
@@ -163,14 +165,14 @@ class Add:
     async def _follow(self, model: Model, traces: Traces) -> None:
         """New curves in the chart shown, then their error."""
         with self.area:
-            new, now = await computed(self._replayed, model)
+            prediction, error = await computed(self._replayed, model)
         if traces is not self.traces:  # another chart is drawn, with the draft as it is then
             return
         motion = self.bench.data.motions[self.run]
-        remark = self._remark({self.bench.base.name: self.base, "the new model": new})
-        traces.redraw(panels(motion, {"new": new}, self.chosen["axes"]), remark)
+        remark = self._remark({self.bench.base.name: self.base, "the new model": prediction})
+        traces.redraw(panels(motion, {"new": prediction}, self.chosen["axes"]), remark)
         await asyncio.sleep(SENT)
-        self._tell(self.after, "now", now)
+        self._tell(self.after, "now", error)
 
 
 async def show(bench: Workbench, place: Place) -> None:

@@ -52,9 +52,11 @@ class Effects:
             for name in offered[:FIRST] + [n for n in offered[FIRST:] if n in self.draft.ticked]:
                 self._card(name)
             rest = [name for name in self.bench.catalogue if name not in offered[:FIRST]]
-            more = ui.select(rest, label="Another effect", with_input=True).classes("control wide")
-            more.props("outlined dense")
-            more.on_value_change(lambda e: self._another(e.value))
+            select = ui.select(rest, label="Another effect", with_input=True).classes(
+                "control wide"
+            )
+            select.props("outlined dense")
+            select.on_value_change(lambda e: self._another(e.value))
             undo = ui.button("Undo", icon="undo", on_click=self._undo).props("flat dense no-caps")
             undo.bind_enabled_from(self.draft, "changed")
 
@@ -71,38 +73,38 @@ class Effects:
     def _card(self, name: str) -> None:
         with ui.column().classes("card"):
             ticked = name in self.draft.ticked
-            box = ui.checkbox(name, value=ticked)
-            box.on_value_change(lambda e: self._tick(name, e.value))
+            checkbox = ui.checkbox(name, value=ticked)
+            checkbox.on_value_change(lambda e: self._tick(name, e.value))
             self.failures[name] = Failure()
-            known = self.bench.catalogue[name]
+            cls = self.bench.catalogue[name]
             if ticked and (doubt := tell_doubt(name, self.draft)):
                 ui.html(alarm(doubt), sanitize=False).classes("text")
             if not ticked:
-                text((known.__doc__ or "").split("\n")[0], "soft")
+                text((cls.__doc__ or "").split("\n")[0], "soft")
                 return
-            units = {p.name: p for p in known.parameters}
+            units = {p.name: p for p in cls.parameters}
             for parameter, value in self.draft.entry(name).parameters.items():
                 self._slider(name, units[parameter], value.value)
 
     def _slider(self, effect: str, parameter: Any, value: float) -> None:
         low, high = reach(parameter, value)
-        shown = unit(parameter.unit)
+        unit_text = unit(parameter.unit)
         names = self.bench.base.vehicle.thruster_names
-        called = name_parameter(effect, parameter.name, names).replace('"', "'")
+        label = name_parameter(effect, parameter.name, names).replace('"', "'")
 
         def told(now: float) -> str:
-            total = tell_total(self.bench.base.body, effect, parameter.name, now, shown)
+            total = tell_total(self.bench.base.body, effect, parameter.name, now, unit_text)
             return f"{escape(total.told)} {alarm(total.wrong)}".strip()
 
         with ui.row().classes("slider"):
-            ui.label(called).classes("name")
+            ui.label(label).classes("name")
             step = 1.0 if parameter.discrete else (high - low) / STEPS
             slider = Slider(min=low, max=high, step=step, value=value)
-            slider.props(f'aria-label="{effect}, {called}"')
-            number = ui.number(value=rounded(value), suffix=shown).classes("value")
-            number.props(f'dense borderless aria-label="{effect}, {called}, number"')
+            slider.props(f'aria-label="{effect}, {label}"')
+            number = ui.number(value=rounded(value), suffix=unit_text).classes("value")
+            number.props(f'dense borderless aria-label="{effect}, {label}, number"')
             back = ui.button(icon="settings_backup_restore").classes("reset")
-            about = f"{effect}, {called}: back to where it began"
+            about = f"{effect}, {label}: back to where it began"
             back.props(f'flat dense aria-label="{about}" title="{about}"')
             total = ui.html(told(value), sanitize=False).classes("total")
 
@@ -150,10 +152,10 @@ class Effects:
 
 def tell_doubt(effect: str, draft: Draft) -> str:
     """That the diagnosis did not select an effect, and how likely it is; empty if it did."""
-    if draft.diagnosis is None or effect in {one.effect for one in draft.chosen}:
+    if draft.diagnosis is None or effect in {fitted.effect for fitted in draft.chosen}:
         return ""
-    known = {one.effect: one.probability for one in draft.diagnosis.ranking}
-    if known.get(effect) is None:
+    probabilities = {fitted.effect: fitted.probability for fitted in draft.diagnosis.ranking}
+    if probabilities.get(effect) is None:
         return "the diagnosis did not select it; it may fit noise"
-    odds = tell_probability(known[effect])
+    odds = tell_probability(probabilities[effect])
     return f"the diagnosis did not select it: probability {odds}, were it missing alone"

@@ -131,15 +131,15 @@ class Page:
         if session is None:
             return
         self.sessions.settle(session)
-        work = next((one.now for one in session.works if one.now), None)
+        work = next((w.now for w in session.works if w.now), None)
         self.strip.visible = work is not None
-        self.failed.text = next((one.trouble for one in session.works if one.trouble), "")
+        self.failed.text = next((w.trouble for w in session.works if w.trouble), "")
         self.trouble.visible = bool(self.failed.text)
         if work is not None:
             self.what.text = f"{work.title}: {work.what.partition(': ')[2] or work.what}"
             self.bar.value = work.share or 0.0
-            left = "" if work.left is None else f", about {work.left:.0f} s left"
-            self.left.text = f"{work.elapsed:.0f} s{left}"
+            remaining = "" if work.left is None else f", about {work.left:.0f} s left"
+            self.left.text = f"{work.elapsed:.0f} s{remaining}"
         if self.seen != session.changes:
             self._tell(session)
             self._note(session)
@@ -162,9 +162,9 @@ class Page:
     def _key(self, event: Any) -> None:
         """Digits change the screen."""
         names = list(self.links)
-        at = event.key.number or 0
-        if event.action.keydown and not event.modifiers.alt and 1 <= at <= len(names):
-            ui.navigate.to(f"/{names[at - 1]}")
+        number = event.key.number or 0
+        if event.action.keydown and not event.modifiers.alt and 1 <= number <= len(names):
+            ui.navigate.to(f"/{names[number - 1]}")
 
     def _active(self, name: str) -> None:
         self.name = name
@@ -185,16 +185,16 @@ class Page:
 
     async def _opened(self, session: Session) -> Any:
         """The campaign, read now if need be; None, and the way to another, if that fails."""
-        new = session.unread
-        if new:
+        unread = session.unread
+        if unread:
             waiting = ui.label(f"Reading the recordings of {session.name} …").classes("waiting")
         bench = await session.opened()
-        if new:
+        if unread:
             waiting.delete()
         self._note(session)
         if bench is None:
             self._choose(session)
-        elif new and session.problem:  # the one before is open still
+        elif unread and session.problem:  # the one before is open still
             ui.navigate.to("/open")
             return None
         return bench

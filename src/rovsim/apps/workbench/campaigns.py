@@ -14,8 +14,8 @@ PLACES = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaig
 
 def known() -> list[Path]:
     """Folders of campaigns near here."""
-    found = {path.parent for place in PLACES for path in Path().glob(place)}
-    return sorted(found)
+    folders = {path.parent for place in PLACES for path in Path().glob(place)}
+    return sorted(folders)
 
 
 def _list(title: str, paths: list[Path], choose: Callable[[str], None]) -> None:
@@ -68,14 +68,14 @@ class Browser:
         with self.area:
             if listing.problem:
                 text(f"This folder cannot be read: {listing.problem}.", "warning")
-            for one in listing.inside:
-                self._entry(one)
+            for entry in listing.inside:
+                self._entry(entry)
             if listing.more:
                 text(f"{listing.more} more are not listed: type a part of the name.", "soft")
             if listing.campaign or listing.files:
-                several = "1 file" if listing.files == 1 else f"{listing.files} files"
-                what = "the campaign" if listing.campaign else several
-                _button(f"Open this folder ({what})", lambda: self.choose(str(listing.folder)))
+                files = "1 file" if listing.files == 1 else f"{listing.files} files"
+                contents = "the campaign" if listing.campaign else files
+                _button(f"Open this folder ({contents})", lambda: self.choose(str(listing.folder)))
 
     def _entry(self, one: Inside) -> None:
         name = shown(Path(one.path.name))

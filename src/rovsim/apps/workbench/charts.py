@@ -37,13 +37,13 @@ class Panel:
 
 def with_minus(options: Options) -> Options:
     """The same chart, its numbers on axes and at the pointer with a true minus (charts.js)."""
-    found = dict(options)
-    for name in {"xAxis", "yAxis"} & found.keys():
-        axes = found[name] if isinstance(found[name], list) else [found[name]]
-        found[name] = [_axis_with_minus(axis) for axis in axes]
-    if "tooltip" in found:
-        found["tooltip"] = {":valueFormatter": "tellNumber", **found["tooltip"]}
-    return found
+    chart = dict(options)
+    for name in {"xAxis", "yAxis"} & chart.keys():
+        axes = chart[name] if isinstance(chart[name], list) else [chart[name]]
+        chart[name] = [_axis_with_minus(axis) for axis in axes]
+    if "tooltip" in chart:
+        chart["tooltip"] = {":valueFormatter": "tellNumber", **chart["tooltip"]}
+    return chart
 
 
 def _axis_with_minus(axis: Options) -> Options:
@@ -68,8 +68,8 @@ def styles(names: Sequence[str]) -> dict[str, Look]:
 
 def points(time: Array, values: Array) -> list[list[float]]:
     """Pairs for ECharts, thinned to what a screen can show; NaN (in JSON: null) leaves a gap."""
-    every = max(1, len(time) // POINTS)
-    return np.stack([np.round(time[::every], 3), np.round(values[::every], 5)], axis=1).tolist()
+    step = max(1, len(time) // POINTS)
+    return np.stack([np.round(time[::step], 3), np.round(values[::step], 5)], axis=1).tolist()
 
 
 def line_style(look: Look) -> Options:
@@ -108,15 +108,15 @@ def columns(panels: Sequence[Panel]) -> Options:
 
 def _ends(panel: Panel) -> list[tuple[str, Array]]:
     """Lower ends of bands, and what is stacked on these."""
-    each = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
-    return [one for name, low, wide in each for one in ((name + LOW, low), (name + WIDTH, wide))]
+    bands = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
+    return [s for name, low, wide in bands for s in ((name + LOW, low), (name + WIDTH, wide))]
 
 
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
     """Panels one above the other; zoom and pointer move all of them together."""
-    every = list(range(len(panels)))
+    indices = list(range(len(panels)))
     titles = [f"{panel.title} ({panel.unit})" for panel in panels]
-    found: Options = {
+    options: Options = {
         "legend": {
             "type": "scroll",
             "top": 0,
@@ -142,7 +142,7 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         "dataZoom": [
             {
                 "type": "inside",
-                "xAxisIndex": every,
+                "xAxisIndex": indices,
                 "filterMode": "none",
                 "zoomOnMouseWheel": "ctrl",
                 "moveOnMouseMove": "shift",
@@ -150,14 +150,14 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
             }
         ],
         "grid": _grids(panels),
-        "xAxis": [_time_axis(k, time, k == every[-1]) for k in every],
+        "xAxis": [_time_axis(k, time, k == indices[-1]) for k in indices],
         "yAxis": [_value_axis(k, panel) for k, panel in enumerate(panels)],
         "series": [],
     }
-    ready = {one["id"]: one["data"] for one in series_data(time, panels)}
+    data = {series["id"]: series["data"] for series in series_data(time, panels)}
     for k, panel in enumerate(panels):
         for name in panel.curves:
-            found["series"].append(
+            options["series"].append(
                 {
                     "id": f"{k}/{name}",
                     "name": told(name),
@@ -167,14 +167,14 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
                     "yAxisIndex": k,
                     "lineStyle": line_style(look[name]),
                     "itemStyle": {"color": look[name].color},
-                    "data": ready[f"{k}/{name}"],
+                    "data": data[f"{k}/{name}"],
                     "z": 3 if name == "measured" else 2,
                 }
             )
         for name in panel.bands:
-            found["series"] += [_area(k, name, end, look[name], ready) for end in (LOW, WIDTH)]
-        found["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
-    return found
+            options["series"] += [_area(k, name, end, look[name], data) for end in (LOW, WIDTH)]
+        options["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
+    return options
 
 
 def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> Options:
@@ -200,7 +200,7 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
 
 def cursor(panel: int, time: float | None) -> Options:
     """A series that is nothing but a line at an instant."""
-    at = [] if time is None else [{"xAxis": time}]
+    marks = [] if time is None else [{"xAxis": time}]
     look = {"color": MARK, "width": 1.5, "type": "solid"}
     return {
         "id": f"{panel}/cursor",
@@ -210,7 +210,7 @@ def cursor(panel: int, time: float | None) -> Options:
         "markLine": {
             "symbol": "none",
             "label": {"show": False},
-            "data": at,
+            "data": marks,
             "lineStyle": look,
             "animation": False,
         },

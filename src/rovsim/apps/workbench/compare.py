@@ -108,11 +108,11 @@ class Compare:
 
     async def _horizon(self, horizon: float | None) -> None:
         self.chosen.put("horizon", horizon)
-        shown, predicted = await self._predicted()
+        all_panels, predicted = await self._predicted()
         if self.chosen["horizon"] != horizon:  # moved on meanwhile
             return
         if self.traces:
-            self.traces.redraw(shown, self._remark(predicted))
+            self.traces.redraw(all_panels, self._remark(predicted))
         self._numbers(predicted)
 
     @property
@@ -122,15 +122,15 @@ class Compare:
 
     async def _predicted(self) -> tuple[list[Panel], Predicted]:
         """Panels and predictions, by run and model, of what is chosen."""
-        chosen = self.chosen
-        found: Predicted = {run: {} for run in self.runs}
-        for run, predicted in found.items():
-            for name in chosen["models"]:
+        choices = self.chosen
+        predictions: Predicted = {run: {} for run in self.runs}
+        for run, predicted in predictions.items():
+            for name in choices["models"]:
                 predicted[name] = await computed(
-                    self.bench.replays.prediction, self.bench.models[name], run, chosen["horizon"]
+                    self.bench.replays.prediction, self.bench.models[name], run, choices["horizon"]
                 )
-        first, *others = [await self._panels(run, p) for run, p in found.items()]
-        return beside(first, others), found
+        first, *others = [await self._panels(run, p) for run, p in predictions.items()]
+        return beside(first, others), predictions
 
     async def _panels(self, run: str, predicted: dict[str, Prediction]) -> Drawn:
         """One run and its panels; bands are those of the run shown."""
@@ -147,12 +147,14 @@ class Compare:
 
     def _remark(self, predicted: Predicted) -> str:
         """Which replays diverge."""
-        told = []
+        remarks = []
         for run, models in predicted.items():
             several = len(predicted) > 1
-            named = {f"{title(n)}, {run}," if several else title(n): p for n, p in models.items()}
-            told.append(tell_divergence(self.bench.data.motions[run].time, named))
-        return " ".join(filter(None, told))
+            by_title = {
+                f"{title(n)}, {run}," if several else title(n): p for n, p in models.items()
+            }
+            remarks.append(tell_divergence(self.bench.data.motions[run].time, by_title))
+        return " ".join(filter(None, remarks))
 
     def _tell_missing_bands(self) -> None:
         """Say which models have none, and why."""
@@ -168,7 +170,7 @@ class Compare:
 
     async def draw(self) -> None:
         """Everything below the controls."""
-        shown, predicted = await self._predicted()
+        all_panels, predicted = await self._predicted()
         self.chosen.tell()
         self.area.clear()
         with self.area:
@@ -176,7 +178,7 @@ class Compare:
             self._tell_missing_bands()
             remark = self._remark(predicted)
             span, zoom = self.chosen.span, self.chosen.zoom
-            self.traces = Traces(self.motion.time, shown, about, span, zoom, remark=remark)
+            self.traces = Traces(self.motion.time, all_panels, about, span, zoom, remark=remark)
             self.numbers = ui.column().classes("area")
             self._numbers(predicted)
             await self._path(self.traces)
@@ -193,8 +195,8 @@ class Compare:
                 key = "" if run == self.chosen["run"] else f"{run}/"
                 cells = [cell(errors.velocity_rmse[a], f"{key}velocity_rmse/{a}") for a in AXES]
                 cells += [cell(getattr(errors, k), f"{key}{k}") for k in POSE_ERRORS]
-                called = title(name)
-                rows.append((f"{called}, {run}" if len(found) > 1 else called, cells))
+                label = title(name)
+                rows.append((f"{label}, {run}" if len(found) > 1 else label, cells))
             units = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
             table(
                 f"Velocity error (root mean square) on run {', '.join(found)}, "

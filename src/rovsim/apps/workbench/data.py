@@ -53,7 +53,7 @@ def list_remarks(quality: Mapping[str, Quality]) -> list[str]:
 def _notes(file: Path) -> None:
     """What people write down beside the campaign, kept as they type: a page may be left at once."""
     section("Notes")
-    known = read_text(file) if file.exists() else ""
+    content = read_text(file) if file.exists() else ""
 
     def keep() -> None:
         try:
@@ -63,7 +63,7 @@ def _notes(file: Path) -> None:
         else:
             failure.forget()
 
-    box = ui.textarea(f"Kept in {file}", value=known, on_change=keep).classes("notes")
+    box = ui.textarea(f"Kept in {file}", value=content, on_change=keep).classes("notes")
     box.props("outlined autogrow")
     failure = Failure()
 
@@ -170,9 +170,9 @@ def _excitation(quality: Mapping[str, Quality]) -> None:
     for run, report in quality.items():
         cells = []
         for axis in AXES:
-            one = report.excitation.get(axis)
-            shown = cell(one.std if one else None, f"{run}/excitation/{axis}")
-            quiet = one is not None and not one.excited
-            cells.append(shown.replace("number", "number quiet") if quiet else shown)
+            excitation = report.excitation.get(axis)
+            markup = cell(excitation.std if excitation else None, f"{run}/excitation/{axis}")
+            quiet = excitation is not None and not excitation.excited
+            cells.append(markup.replace("number", "number quiet") if quiet else markup)
         rows.append((run, cells))
     table("Standard deviation of the body velocity", heads, rows)

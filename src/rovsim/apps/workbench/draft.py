@@ -36,7 +36,7 @@ class Draft:
     _found: dict[str, Model] = field(default_factory=dict)  # by what they lack
 
     def __post_init__(self) -> None:
-        self.ticked = [one.effect for one in self.chosen if one.effect in self.catalogue]
+        self.ticked = [fitted.effect for fitted in self.chosen if fitted.effect in self.catalogue]
 
     @property
     def chosen(self) -> tuple[FittedEffect, ...]:
@@ -46,15 +46,15 @@ class Draft:
     @property
     def fitted(self) -> dict[str, FittedEffect]:
         """What is known here and has values in the diagnosis, those first that are chosen."""
-        found = {one.effect: one for one in self.chosen}
-        for name, one in (self.diagnosis.fitted if self.diagnosis else {}).items():
-            found.setdefault(name, one)
-        return {name: one for name, one in found.items() if name in self.catalogue}
+        by_name = {fitted.effect: fitted for fitted in self.chosen}
+        for name, fitted in (self.diagnosis.fitted if self.diagnosis else {}).items():
+            by_name.setdefault(name, fitted)
+        return {name: fitted for name, fitted in by_name.items() if name in self.catalogue}
 
     @property
     def unknown(self) -> list[str]:
         """Effects that the diagnosis selected, and that the catalogue does not know."""
-        return [one.effect for one in self.chosen if one.effect not in self.catalogue]
+        return [fitted.effect for fitted in self.chosen if fitted.effect not in self.catalogue]
 
     def _remember(self, change: object) -> None:
         """Keep what is there; a value that goes on moving is one change."""
@@ -99,10 +99,10 @@ class Draft:
             (entry,) = list_entries([self.fitted[effect]], Path("diagnosis.json"))
         else:
             cls = self.catalogue[effect]
-            known = {
+            defaults = {
                 p.name: p.default for p in cls.parameters if p.fitted and p.default == p.default
             }
-            start = {**known, **cls.starts[0]}
+            start = {**defaults, **cls.starts[0]}
             entry = EffectEntry.model_validate({"effect": effect, "parameters": start})
         moved = {k: Value(value=v) for k, v in self.values.get(effect, {}).items()}
         return entry.model_copy(update={"parameters": {**entry.parameters, **moved}})
@@ -124,7 +124,7 @@ class Draft:
         """The base and the chosen effects as they were fitted, perhaps all but one; made once."""
         if but not in self._found:
             entries = list_entries(
-                [one for one in self.chosen if one.effect != but], Path("diagnosis.json")
+                [fitted for fitted in self.chosen if fitted.effect != but], Path("diagnosis.json")
             )
             effects = build_effects(entries, self.catalogue)
             self._found[but] = extend(self.base, effects)

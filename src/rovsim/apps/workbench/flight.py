@@ -41,8 +41,8 @@ class Flight:
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
-        unsure = bench.diagnosis.indistinguishable if bench.diagnosis else ()
-        one, other = next((pair for pair in unsure if len(pair) == 2), RIVALS)
+        rival_groups = bench.diagnosis.indistinguishable if bench.diagnosis else ()
+        one, other = next((pair for pair in rival_groups if len(pair) == 2), RIVALS)
         trained = {name for name, m in bench.models.items() if m.residual is not None or m.inert}
         self.known = [name for name in bench.known_models() if name not in trained]
         added = [name for name in list(bench.models)[1:] if name not in trained]
@@ -81,19 +81,19 @@ class Flight:
 
     async def _controls(self) -> None:
         """What is asked, and about which model; its values may be chosen."""
-        known, effects, chosen = await self._values(), list(self.bench.catalogue), self.chosen
-        chosen["know"] = [name for name in chosen["know"] if name in known]
+        names, effects, choices = await self._values(), list(self.bench.catalogue), self.chosen
+        choices["know"] = [name for name in choices["know"] if name in names]
         self.controls.clear()
         with self.controls:
-            bind, anew = chosen.bind, self._draw_all
-            bind("asked", ui.select(ASKED, label="The question"), redraw=anew)
-            if chosen["asked"] == "between":
+            bind, redraw = choices.bind, self._draw_all
+            bind("asked", ui.select(ASKED, label="The question"), redraw=redraw)
+            if choices["asked"] == "between":
                 bind("one", ui.select(effects, label="One", with_input=True))
                 bind("other", ui.select(effects, label="Or the other", with_input=True))
             else:
-                values = ui.select(known, label="Values (none: all)", multiple=True)
-                bind("know", values, optional=True)
-            bind("model", ui.select(titled(self.known), label="Model"), redraw=anew)
+                select = ui.select(names, label="Values (none: all)", multiple=True)
+                bind("know", select, optional=True)
+            bind("model", ui.select(titled(self.known), label="Model"), redraw=redraw)
             seconds = ui.number("Length (s)", min=SHORTEST, max=LONGEST, precision=0)
             seconds.props("debounce=500")  # ms, for two more digits
             bind("seconds", seconds, convert=int)
@@ -109,10 +109,12 @@ class Flight:
     @property
     def question(self) -> Question:
         """What is asked."""
-        chosen = self.chosen
-        names = {"between": (chosen["one"], chosen["other"])}
-        asked = names if chosen["asked"] == "between" else {"know": chosen["know"]}
-        return Question.of(self.bench.settings, "the question", **asked, seconds=chosen["seconds"])
+        choices = self.chosen
+        names = {"between": (choices["one"], choices["other"])}
+        keywords = names if choices["asked"] == "between" else {"know": choices["know"]}
+        return Question.of(
+            self.bench.settings, "the question", **keywords, seconds=choices["seconds"]
+        )
 
     async def _draw(self) -> None:
         """The flight that answers the question, or the way to it."""
@@ -121,18 +123,18 @@ class Flight:
         try:
             question = self.question
             folder = await computed(self.bench.flight_folder, self.chosen["model"], question)
-            found = folder / "experiment.json"
-            known = Experiment.read(found) if found.exists() else None
+            path = folder / "experiment.json"
+            experiment = Experiment.read(path) if path.exists() else None
         except RovsimError as error:
             with self.area:
                 text(str(error), "warning")
             return
         self.area.clear()  # another change may have been drawn meanwhile
         with self.area:
-            if known is None:
+            if experiment is None:
                 self._ask(question)
             else:
-                _tell(known, folder, self.bench.data.vehicle.thruster_names)
+                _tell(experiment, folder, self.bench.data.vehicle.thruster_names)
             self._terminal()
 
     def _ask(self, question: Question) -> None:
@@ -150,20 +152,20 @@ class Flight:
         button.props("unelevated no-caps").classes("onward")
 
     def _terminal(self) -> None:
-        chosen = self.chosen
-        asked = f"between=[{chosen['one']},{chosen['other']}]"
-        asked = asked if chosen["asked"] == "between" else f"know=[{','.join(chosen['know'])}]"
-        campaign, model = self.bench.settings.campaign, self.bench.paths[chosen["model"]]
-        given = [f"campaign={campaign}", f"model={model}", asked, f"seconds={chosen['seconds']}"]
-        line = shlex.join(word for word in (*given, "out=PLAN") if word != "know=[]")
-        in_a_terminal(f"rovsim design {line}")
+        choices = self.chosen
+        key = f"between=[{choices['one']},{choices['other']}]"
+        key = key if choices["asked"] == "between" else f"know=[{','.join(choices['know'])}]"
+        campaign, model = self.bench.settings.campaign, self.bench.paths[choices["model"]]
+        args = [f"campaign={campaign}", f"model={model}", key, f"seconds={choices['seconds']}"]
+        command = shlex.join(word for word in (*args, "out=PLAN") if word != "know=[]")
+        in_a_terminal(f"rovsim design {command}")
 
 
 def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
     """What it is expected to tell, where it leads, and what to do."""
     section(f"A flight of {found.seconds:g} s")
-    for one in found.warnings:
-        text(one, "warning")
+    for item in found.warnings:
+        text(item, "warning")
     _expected(found, thrusters)
     text(tell_limits(found))
     png(folder / "experiment.png", "The predicted path from above and from the side, the commands")
@@ -177,7 +179,7 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
     section("What to do")
     ui.html(_numbered(found.instructions), sanitize=False).classes("text")
     section("What the usual manoeuvres would tell")
-    rows = [(name, [words(tell_share(one))]) for name, one in found.baselines.items()]
+    rows = [(name, [words(tell_share(item))]) for name, item in found.baselines.items()]
     table(
         "On the same seconds, at their best amplitudes",
         ["manoeuvre", "beside this flight"],
@@ -189,7 +191,7 @@ def _numbered(instructions: Sequence[str]) -> str:
     """Instructions as HTML: numbered steps, and under them what belongs to each."""
 
     def items(texts: Sequence[str]) -> str:
-        return "".join(f"<li>{escape(one)}</li>" for one in texts)
+        return "".join(f"<li>{escape(entry)}</li>" for entry in texts)
 
     steps = [
         f"<li>{escape(step)}{f'<ul>{items(parts)}</ul>' if parts else ''}</li>"
@@ -201,8 +203,8 @@ def _numbered(instructions: Sequence[str]) -> str:
 def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
     if found.expects.odds:
         rows = [
-            (name, [words(size_of_odds(one.now)), words(size_of_odds(one.then))])
-            for name, one in found.expects.odds.items()
+            (name, [words(size_of_odds(estimate.now)), words(size_of_odds(estimate.then))])
+            for name, estimate in found.expects.odds.items()
         ]
         table(
             "Odds of each effect against the other, if it is the true one",
@@ -210,13 +212,13 @@ def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
             rows,
         )
     if found.expects.std:
-        named = with_thruster_names(found.expects.std, thrusters)
+        labels = with_thruster_names(found.expects.std, thrusters)
         rows = [
             (
-                f"{called} ({unit(one.unit)})" if one.unit not in (None, "1") else called,
-                [cell(one.now, f"{name}/now"), cell(one.then, f"{name}/then")],
+                f"{label} ({unit(estimate.unit)})" if estimate.unit not in (None, "1") else label,
+                [cell(estimate.now, f"{name}/now"), cell(estimate.then, f"{name}/then")],
             )
-            for called, (name, one) in zip(named, found.expects.std.items(), strict=True)
+            for label, (name, estimate) in zip(labels, found.expects.std.items(), strict=True)
         ]
         table("Standard deviation of each value", ["value", "now", "after the flight"], rows)
 

@@ -54,29 +54,29 @@ def look(folder: Path, part: str = "") -> Listing:
     parents = tuple(reversed(folder.parents))
     try:
         with os.scandir(folder) as entries:
-            seen = [(entry.name, _is_folder(entry)) for entry in entries]
+            contents = [(entry.name, _is_folder(entry)) for entry in entries]
     except OSError as error:
         return Listing(folder, parents, problem=error.strerror or str(error))
-    folders = (name for name, is_folder in seen if is_folder and not name.startswith("."))
+    folders = (name for name, is_folder in contents if is_folder and not name.startswith("."))
     names = sorted(name for name in folders if part.casefold() in name.casefold())
     paths = [folder / name for name in names[:MOST]]
     inside = tuple(Inside(path, _holds_campaign(path)) for path in paths)
-    files = sum(not is_folder for _, is_folder in seen)
+    files = sum(not is_folder for _, is_folder in contents)
     return Listing(folder, parents, inside, len(names) - len(inside), files)
 
 
 def tell_unopenable(place: Path) -> str:
     """Why neither a campaign nor a folder of recordings lies at a place; empty if one may."""
-    found, remedy = "no such file or folder", "Check the path, or look for the folder below."
+    problem, remedy = "no such file or folder", "Check the path, or look for the folder below."
     try:
         if place.is_dir() or (place.suffix in (".yaml", ".yml") and place.is_file()):
             return ""
         if place.exists():
-            found, remedy = "this is a file", f"Open {place.absolute().parent}."
+            problem, remedy = "this is a file", f"Open {place.absolute().parent}."
     except (OSError, ValueError) as error:  # nobody may look, or no system takes such a name
-        found = str(error)
+        problem = str(error)
     expected = "the folder of a campaign, or of recordings"
-    return str(BadInput(found, where=place.absolute(), expected=expected, remedy=remedy))
+    return str(BadInput(problem, where=place.absolute(), expected=expected, remedy=remedy))
 
 
 def _is_folder(entry: os.DirEntry) -> bool:
@@ -99,18 +99,18 @@ def list_recent() -> list[Path]:
         content = read_json(_file())
     except RovsimError:
         return []
-    known = content.get("campaigns") if isinstance(content, dict) else None
-    known = known if isinstance(known, list) else []
-    paths = [Path(one) for one in known if isinstance(one, str)]
+    folders = content.get("campaigns") if isinstance(content, dict) else None
+    folders = folders if isinstance(folders, list) else []
+    paths = [Path(folder) for folder in folders if isinstance(folder, str)]
     return [path for path in paths if _holds_campaign(path)]
 
 
 def remember(campaign: Path) -> None:
     """Put a campaign first among those opened last; where nothing can be kept, nothing is."""
     path = Path(os.path.abspath(campaign))
-    known = [path, *(one for one in list_recent() if one != path)]
+    folders = [path, *(folder for folder in list_recent() if folder != path)]
     try:
-        write_json(_file(), {"campaigns": [str(one) for one in known[:KEPT]]})
+        write_json(_file(), {"campaigns": [str(folder) for folder in folders[:KEPT]]})
     except (OSError, ValueError, RovsimError):  # read-only, full, a name that is no text
         return
 

@@ -50,8 +50,8 @@ async def entry(bench: Workbench, effect: str) -> None:
             "Dots: what the nominal model misses; thick line: what the true effect adds.",
             "soft",
         )
-    for title, said in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
-        ui.html(f"<p><strong>{title}.</strong> {escape(said)}</p>", sanitize=False).classes("text")
+    for title, body in (("Cause", cls.cause), ("What settles it", cls.revealed_by)):
+        ui.html(f"<p><strong>{title}.</strong> {escape(body)}</p>", sanitize=False).classes("text")
     text(f"Neglects {cls.neglects}. Source: {cls.source}.", "soft")
     rows = [
         (p.name, [words(unit(p.unit) or "–"), words(minus(f"{p.scale:g}"))]) for p in cls.parameters
@@ -87,5 +87,5 @@ def _draw(cls: type[Effect], path: Path, catalogue: Catalogue) -> None:
     from rovsim.reporting.figures.signature import signature, write
 
     assert cls.signature is not None
-    shown = seen(cls.signature, settings(cls, cls.signature), catalogue)
-    write(signature(shown), path)
+    example = seen(cls.signature, settings(cls, cls.signature), catalogue)
+    write(signature(example), path)

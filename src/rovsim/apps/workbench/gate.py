@@ -38,8 +38,8 @@ def _foreign(headers: dict[bytes, bytes]) -> bool:
     origin, host = headers.get(b"origin"), headers.get(b"host", b"")
     if origin is not None:
         return origin != b"http://" + host
-    asked = headers.get(b"sec-fetch-site") in ELSEWHERE
-    return asked and headers.get(b"sec-fetch-mode") != b"navigate"
+    from_elsewhere = headers.get(b"sec-fetch-site") in ELSEWHERE
+    return from_elsewhere and headers.get(b"sec-fetch-mode") != b"navigate"
 
 
 def _framed(send: Any) -> Any:

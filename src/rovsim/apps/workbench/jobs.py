@@ -30,9 +30,9 @@ class Beginning(ui.button):
     def wait(self) -> None:
         """While other work goes on, for those who point at it and those who hear it."""
         self.set_enabled(not self.other)
-        told = WAITING.format(self.other) if self.other else None
+        reason = WAITING.format(self.other) if self.other else None
         for name in ("title", "aria-description"):
-            self.props.set_optional(name, told)
+            self.props.set_optional(name, reason)
 
 
 def start_diagnosis(bench: Workbench) -> None:
@@ -45,8 +45,8 @@ def start_training(bench: Workbench, kind: str, name: str) -> None:
     """Begin to train a residual on top of one of the models."""
     base = NOMINAL if name == bench.base.name else name
     trained = name_learned(kind, bench.settings.control, base)
-    chosen = compose([f"residual={kind}"]).residual
-    settings = bench.only(name).model_copy(update={"residual": chosen})
+    residual = compose([f"residual={kind}"]).residual
+    settings = bench.only(name).model_copy(update={"residual": residual})
 
     def take(path: Path) -> None:
         bench.add(read_model(path, bench.catalogue), path)
@@ -62,14 +62,14 @@ def start_report(bench: Workbench) -> None:
         bench.choices["report"] = path
 
     settings = bench.only(*bench.models)
-    known = (bench.ladder(), bench.diagnosis)
-    bench.work.begin("Writing the report", take, tasks.report_into, settings, *known, bench.out)
+    results = (bench.ladder(), bench.diagnosis)
+    bench.work.begin("Writing the report", take, tasks.report_into, settings, *results, bench.out)
 
 
 def start_design(bench: Workbench, name: str, question: Question) -> None:
     """Begin to plan the flight that answers a question about one of the models."""
 
-    given = (bench.only(name), question, bench.flight_folder(name, question))
+    arguments = (bench.only(name), question, bench.flight_folder(name, question))
     bench.work.begin(
-        "Planning a flight", lambda folder: None, tasks.design_into, *given
+        "Planning a flight", lambda folder: None, tasks.design_into, *arguments
     )  # the screen finds it in its folder

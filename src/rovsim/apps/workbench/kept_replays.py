@@ -36,10 +36,10 @@ class KeptReplays:
         """One run replayed in windows of `horizon` s, or open loop (None)."""
         key = (model, run, horizon)
         spans = () if horizon is None else (horizon,)
-        how = self.how.only(*spans)
+        settings = self.how.only(*spans)
         return self._replays.get(
             key,
-            lambda: replay(model, self.runs.motions[run], how, not spans),
+            lambda: replay(model, self.runs.motions[run], settings, not spans),
         )
 
     def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
@@ -50,17 +50,19 @@ class KeptReplays:
     def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
         """Within what the model may lie, given all that it leaves open; None where nobody knows."""
         spans = () if horizon is None else (horizon,)
-        motion, how = self.runs.motions[run], self.how.only(*spans)
-        (found,) = find_spans(motion, how.replay, open_loop=not spans).values()
+        motion, settings = self.runs.motions[run], self.how.only(*spans)
+        (windows,) = find_spans(motion, settings.replay, open_loop=not spans).values()
         return self._bands.get(
             (model, run, horizon),
-            lambda: predict_band(model, motion, found, how) if found else None,
+            lambda: predict_band(model, motion, windows, settings) if windows else None,
         )
 
     def thrust(self, model: Model, run: str) -> Array:
         """What it makes of the commands of a run at its samples or bins (n, 6), N and N m."""
-        motion, how = self.runs.motions[run], self.how.replay
-        return self._thrusts.get((model, run), lambda: drive_as_measured(model, motion, how).wrench)
+        motion, settings = self.runs.motions[run], self.how.replay
+        return self._thrusts.get(
+            (model, run), lambda: drive_as_measured(model, motion, settings).wrench
+        )
 
     def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
         """The errors of one run, as comparison.json has them."""

@@ -71,13 +71,13 @@ def _train(bench: Workbench) -> None:
     text("Trained on the train runs, on top of any model, and shown here on the test runs.", "soft")
     physical = [n for n, m in bench.models.items() if m.residual is None and not m.inert]
     with ui.row().classes("controls"):
-        on = ui.select(titled(physical), label="On top of", value=physical[-1]).classes("control")
-        on.props("outlined dense")
-        for kind, one in learners().items():
+        base = ui.select(titled(physical), label="On top of", value=physical[-1]).classes("control")
+        base.props("outlined dense")
+        for kind, learner in learners().items():
             train = jobs.Beginning(
                 bench,
-                f"Train {one.meaning} ({one.title})",
-                on_click=lambda _, k=kind: jobs.start_training(bench, k, on.value),
+                f"Train {learner.meaning} ({learner.title})",
+                on_click=lambda _, k=kind: jobs.start_training(bench, k, base.value),
             )
             train.props("outline no-caps")
 
@@ -104,15 +104,15 @@ def _report(bench: Workbench) -> None:
 
 def chart_of(ladder: Ladder) -> Options:
     """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
-    shown = chart_ladder(ladder)
-    floor = or_none(shown.noise_floor)
+    ladder_chart = chart_ladder(ladder)
+    floor = or_none(ladder_chart.noise_floor)
     bars = [
         {
             "value": or_none(bar.value),
             "itemStyle": {"color": bar.look.color},
-            "label": _label(bar, cut=bar in shown.beyond),
+            "label": _label(bar, cut=bar in ladder_chart.beyond),
         }
-        for bar in shown.bars
+        for bar in ladder_chart.bars
     ]
     line = {
         "symbol": "none",
@@ -121,7 +121,7 @@ def chart_of(ladder: Ladder) -> Options:
         "precision": -1,  # where the number says; of itself ECharts rounds to two decimals
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
         "label": {
-            "formatter": f"noise floor {significant(shown.noise_floor)}",
+            "formatter": f"noise floor {significant(ladder_chart.noise_floor)}",
             "position": "start",
             "color": INK,
         },
@@ -131,7 +131,7 @@ def chart_of(ladder: Ladder) -> Options:
         "xAxis": {
             "type": "value",
             "min": 0,
-            "max": shown.end,
+            "max": ladder_chart.end,
             "name": f"{ERROR} (standard deviations)",
             "nameLocation": "middle",
             "nameGap": 26,
@@ -143,7 +143,7 @@ def chart_of(ladder: Ladder) -> Options:
             "type": "category",
             "inverse": True,
             "axisTick": {"show": False},
-            "data": [bar.label for bar in shown.bars],
+            "data": [bar.label for bar in ladder_chart.bars],
             "axisLabel": {"color": INK},
         },
         "series": [

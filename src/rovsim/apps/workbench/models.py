@@ -64,9 +64,9 @@ class Models:
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
         motions, run = bench.data.motions, first_run(bench)
-        known = list(bench.known_models())
+        names = list(bench.known_models())
         added = list(bench.models)[1:]
-        others = [*(name for name in known if name != bench.base.name), *added]
+        others = [*(name for name in names if name != bench.base.name), *added]
         first = {
             "left": bench.base.name,
             "right": next(reversed(others), None),
@@ -75,8 +75,8 @@ class Models:
             "horizon": WINDOW,
         }
         possible: Mapping[str, Sequence[Any]] = {
-            "left": known,
-            "right": known,
+            "left": names,
+            "right": names,
             "run": list(motions),
             "axes": AXES,
             "horizon": HORIZONS,
@@ -90,11 +90,11 @@ class Models:
         """Build the screen."""
         heading(TITLE, QUESTION)
         about_axes()
-        known = titled(self.bench.known_models())
+        titles = titled(self.bench.known_models())
         runs = {r: f"{r} ({split})" for r, split in self.bench.data.runs.splits.items()}
         with ui.row().classes("controls"):
             bind = self.chosen.bind
-            self.sides = [bind(side, ui.select(known, label=side.capitalize())) for side in SIDES]
+            self.sides = [bind(side, ui.select(titles, label=side.capitalize())) for side in SIDES]
             bind("run", ui.select(runs, label="Run"))
             bind("axes", ui.select(list(AXES), label="Axes", multiple=True))
             horizon_slider(self.chosen["horizon"], self._horizon)
@@ -119,27 +119,27 @@ class Models:
 
     async def _horizon(self, horizon: float | None) -> None:
         self.chosen.put("horizon", horizon)
-        shown, remark = await self._panels()
+        all_panels, remark = await self._panels()
         if self.chosen["horizon"] == horizon and self.traces:  # not moved on meanwhile
-            self.traces.redraw(shown, remark)
+            self.traces.redraw(all_panels, remark)
 
     async def draw(self) -> None:
         """Everything below the controls."""
         self.chosen.tell()
         self.area.clear()
         self.traces, self.drawn = None, self.drawn + 1
-        mine = self.drawn
+        number = self.drawn
         try:
             names = dict.fromkeys(self.chosen[side] for side in SIDES if self.chosen[side])
             self.models = {n: await computed(self.bench.known_model, n) for n in names}
-            shown, remark = await self._panels()
+            all_panels, remark = await self._panels()
             errors = await computed(self._errors)
         except RovsimError as error:  # of a file, or of a run that lacks what an effect needs
-            if mine == self.drawn:
+            if number == self.drawn:
                 with self.area:
                     text(str(error), "warning")
             return
-        if mine != self.drawn:  # something else was chosen meanwhile
+        if number != self.drawn:  # something else was chosen meanwhile
             return
         with self.area:
             if len(self.models) == 1:
@@ -150,7 +150,7 @@ class Models:
             time = self.bench.data.motions[self.chosen["run"]].time
             look = {"measured": FAMILIES["measured"], **dict(zip(self.models, LOOKS, strict=False))}
             span, zoom = self.chosen.span, self.chosen.zoom
-            self.traces = Traces(time, shown, about, span, zoom, look, remark)
+            self.traces = Traces(time, all_panels, about, span, zoom, look, remark)
             section("What is in them")
             _tell_parameters(self.models)
             _tell_totals(self.models, self.bench.catalogue)
@@ -165,9 +165,9 @@ class Models:
             )
             for name, model in self.models.items()
         }
-        named = {title(name): one for name, one in predicted.items()}
-        shown = panels(motion, predicted, self.chosen["axes"])
-        return shown, tell_divergence(motion.time, named)
+        by_title = {title(name): prediction for name, prediction in predicted.items()}
+        all_panels = panels(motion, predicted, self.chosen["axes"])
+        return all_panels, tell_divergence(motion.time, by_title)
 
     def _errors(self) -> Errors:
         """Of each model at each horizon that comparison.json has."""
@@ -188,9 +188,11 @@ def _tell_errors(run: str, errors: Errors) -> None:
     for name in (*ERRORS, *POSE):
         cells: list[str] = []
         for horizon in horizons:
-            values = {model: _read(found[horizon], name) for model, found in errors.items()}
-            at = OPEN_LOOP if horizon is None else name_horizon(horizon)
-            cells += [cell(v, f"{model}/{at}/{name.split()[0]}") for model, v in values.items()]
+            values = {
+                model: _read(by_horizon[horizon], name) for model, by_horizon in errors.items()
+            }
+            label = OPEN_LOOP if horizon is None else name_horizon(horizon)
+            cells += [cell(v, f"{model}/{label}/{name.split()[0]}") for model, v in values.items()]
             if len(values) == 2:
                 cells.append(f'<td class="number">{tell_change(*values.values())}</td>')
         rows.append((name, cells))
@@ -221,8 +223,8 @@ def tell_change(before: float | None, after: float | None) -> str:
 def _tell_parameters(models: Mapping[str, Model]) -> None:
     """Every value that an effect of one of the models has."""
     columns = {name: _values(model) for name, model in models.items()}
-    known = dict.fromkeys(key for values in columns.values() for key in values)
-    if not known:
+    keys = dict.fromkeys(key for values in columns.values() for key in values)
+    if not keys:
         text("No effect was added to the vehicle file.")
         return
     rows = [
@@ -230,7 +232,7 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
             f"{effect}, {parameter}" if parameter else effect,
             [words(values.get((effect, parameter), ABSENT)) for values in columns.values()],
         )
-        for effect, parameter in known
+        for effect, parameter in keys
     ]
     heads = ["value", *map(title, columns)]
     table("Effects that were added, with 95 % intervals", heads, rows)
@@ -238,24 +240,24 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
 
 def _values(model: Model) -> dict[tuple[str, str], str]:
     """What a model has beside its vehicle file, in words, by effect and parameter."""
-    found: dict[tuple[str, str], str] = {}
+    texts: dict[tuple[str, str], str] = {}
     for effect in model.added:
         units = {p.name: p.unit for p in effect.parameters}
-        for name, known in describe_effect(effect).parameters.items():
-            value = FittedValue(value=known.value, std=known.std, unit=units[name])
-            called = name_parameter(effect.id, name, model.vehicle.thruster_names)
-            found[effect.id, called] = interval(value)
+        for name, parameter in describe_effect(effect).parameters.items():
+            value = FittedValue(value=parameter.value, std=parameter.std, unit=units[name])
+            label = name_parameter(effect.id, name, model.vehicle.thruster_names)
+            texts[effect.id, label] = interval(value)
     if (learned := model.residual) is not None:
         learner = learners().get(learned.kind)
         kind = learned.kind if learner is None else learner.title
-        found["learned residual", ""] = f"{kind}, {learned.points} points"
-    return found
+        texts["learned residual", ""] = f"{kind}, {learned.points} points"
+    return texts
 
 
 def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
     """What coefficients come to, where one of the models has another than the vehicle file."""
-    first = nominal(next(iter(models.values())).vehicle)
-    bodies = {"vehicle file": first.body} | {name: model.body for name, model in models.items()}
+    base = nominal(next(iter(models.values())).vehicle)
+    bodies = {"vehicle file": base.body} | {name: model.body for name, model in models.items()}
     columns = {name: list_totals(body) for name, body in bodies.items()}
     rows = []
     for key, before in columns["vehicle file"].items():
@@ -263,8 +265,8 @@ def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
         if any(value != before for value in values):
             effect, axis = key
             (si,) = (p.unit for p in catalogue[effect].parameters if p.name == axis)
-            told = [f"<td>{significant(v)} {alarm(warn(effect, v))}</td>" for v in values]
-            rows.append((f"{effect}, {axis} ({unit(si)})", told))
+            cells = [f"<td>{significant(v)} {alarm(warn(effect, v))}</td>" for v in values]
+            rows.append((f"{effect}, {axis} ({unit(si)})", cells))
     if rows:
         section("What the coefficients come to")
         table(

@@ -50,13 +50,13 @@ def show(
             answers[question.place] = _field(question)
 
     def answered() -> None:
-        given = {place: value() for place, value in answers.items()}
-        open_still = tell_unanswered(proposal.questions, given)
+        texts = {place: value() for place, value in answers.items()}
+        open_still = tell_unanswered(proposal.questions, texts)
         if open_still:
             failure.tell(open_still)
             return
         try:
-            write(given)
+            write(texts)
         except RovsimError as error:
             failure.tell(error)
 
@@ -69,20 +69,20 @@ def show(
 
 def _guesses(proposal: CampaignProposal) -> None:
     """What was taken for a reason that may be wrong."""
-    told = list_guesses(proposal, TOPICS)
-    if not told:
+    guesses = list_guesses(proposal, TOPICS)
+    if not guesses:
         return
     section("Taken, and why")
     with ui.column().classes("effects"):
-        for line in told:
+        for line in guesses:
             text(line)
 
 
 def tell_unanswered(questions: Sequence[OpenQuestion], answers: Mapping[str, str]) -> str:
     """Which questions have no answer by place yet, by what their fields are called."""
-    left = [q.place for q in questions if not answers.get(q.place, "").strip()]
-    names = listed([TOPICS.get(place, place) for place in left])
-    return f"No answer yet: {names}. Answer every question; no file does." if left else ""
+    unanswered = [q.place for q in questions if not answers.get(q.place, "").strip()]
+    names = listed([TOPICS.get(place, place) for place in unanswered])
+    return f"No answer yet: {names}. Answer every question; no file does." if unanswered else ""
 
 
 def _field(question: OpenQuestion) -> Callable[[], str]:

@@ -28,22 +28,22 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
         models = bench.draft.found(but=effect), bench.draft.found()
     except RovsimError:  # a diagnosis from elsewhere, of effects that are not known here
         return False
-    known = bench.catalogue.get(effect)
+    cls = bench.catalogue.get(effect)
     before, after = [await computed(bench.replays.searched, model) for model in models]
     blocks = before.explanation.blocks, after.explanation.blocks
     if blocks[0] is None or blocks[1] is None:
         return False
-    found = find_most_lowered(*blocks, known.signature if known else None, _axes(bench, effect))
-    if found is None or found.removed < SEEN:
+    errors = find_most_lowered(*blocks, cls.signature if cls else None, _axes(bench, effect))
+    if errors is None or errors.removed < SEEN:
         return False
     chart(
-        lowered_chart(found),
-        f"On your data: {_name(found)} over {found.condition.name}, without {effect} and with it",
+        lowered_chart(errors),
+        f"On your data: {_name(errors)} over {errors.condition.name}, without {effect} and with it",
         230,
     )
-    what = "the size (RMS) of what is left" if found.size else "what is left"
+    label = "the size (RMS) of what is left" if errors.size else "what is left"
     ui.label(
-        f"On your {before.split} runs: {what} on {found.axis}, measured minus model, beside all "
+        f"On your {before.split} runs: {label} on {errors.axis}, measured minus model, beside all "
         "other effects found."
     )
     return True
@@ -63,11 +63,11 @@ def lowered_chart(found: Lowered) -> Options:
     """Means of the bins with two standard errors, or their sizes, before and after."""
     name, unit = found.condition.name, chart_bins(tabulate(found.before)).unit
     series = [
-        one
+        curve
         for (label, (color, dash)), table in zip(
             LOOKS.items(), (found.before, found.after), strict=True
         )
-        for one in _curve(label, color, dash, table, found.size)
+        for curve in _curve(label, color, dash, table, found.size)
     ]
     return {
         "grid": {"left": 64, "right": 16, "top": 52, "bottom": 44},
@@ -101,14 +101,14 @@ def lowered_chart(found: Lowered) -> Options:
 def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) -> list[Options]:
     curve = chart_bins(tabulate(table))
     height = table.rms if size else curve.mean
-    at, mean, error = (x[curve.judged] for x in (curve.center, height, curve.error))
+    centers, mean, error = (x[curve.judged] for x in (curve.center, height, curve.error))
     line = {
         "name": name,
         "type": "line",
         "symbolSize": 6,
         "itemStyle": {"color": color},
         "lineStyle": {"color": color, "type": dash},
-        "data": np.stack([at, mean], 1).tolist(),
+        "data": np.stack([centers, mean], 1).tolist(),
     }
     if size:
         return [line]
@@ -118,7 +118,7 @@ def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) ->
         "silent": True,
         ":renderItem": WHISKER,
         "z": 4,
-        "data": np.stack([at, mean - error, mean + error], 1).tolist(),
+        "data": np.stack([centers, mean - error, mean + error], 1).tolist(),
         "encode": {"x": 0, "y": [1, 2]},
         "tooltip": {"show": False},
     }

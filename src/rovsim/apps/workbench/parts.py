@@ -38,10 +38,10 @@ async def computed(function: Callable, *given: Any) -> Any:
         place = ui.context.slot.parent
     except RuntimeError:  # the control that was used has been drawn anew since
         place = None
-    found = await in_thread(function, *given)
+    result = await in_thread(function, *given)
     if place is not None and place.is_deleted:
         raise asyncio.CancelledError
-    return found
+    return result
 
 
 class Slider(ui.slider):
@@ -119,10 +119,10 @@ def cell(value: float | None, name: str = "", told: str = "") -> str:
 
     `told`: the number in words, where three digits of it are not what people would write.
     """
-    known = "" if value is None else f' data-value="{value!r}"'
+    attribute = "" if value is None else f' data-value="{value!r}"'
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))
-    shown = escape(told or digits)
-    return f'<td class="number" data-name="{escape(name)}"{known}>{shown}</td>'
+    content = escape(told or digits)
+    return f'<td class="number" data-name="{escape(name)}"{attribute}>{content}</td>'
 
 
 def titled(models: Iterable[str]) -> dict[str, str]:
@@ -180,9 +180,9 @@ def tile(called: str, value: float | None, name: str, note: str = "") -> ui.html
 
 def tile_html(called: str, value: float | None, name: str, note: str = "") -> str:
     """The content of a tile, to be replaced when the number changes."""
-    known = "" if value is None else f' data-value="{value!r}"'
+    attribute = "" if value is None else f' data-value="{value!r}"'
     return (
-        f"<span>{escape(called)}</span><strong data-name='{escape(name)}'{known}>"
+        f"<span>{escape(called)}</span><strong data-name='{escape(name)}'{attribute}>"
         f"{significant(or_nan(value))}</strong><small>{escape(note)}</small>"
     )
 
@@ -199,15 +199,15 @@ def chart(
     The CSV calls its `columns` as the axes are called, unless they are named.
     """
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
-    found = ui.echart({**common, **with_minus(options)}, on_point_click)
-    found.on("vnodeBeforeUnmount", js_handler="leftUndrawn")
-    found.props.update({"role": "img", "aria-label": about})
+    element = ui.echart({**common, **with_minus(options)}, on_point_click)
+    element.on("vnodeBeforeUnmount", js_handler="leftUndrawn")
+    element.props.update({"role": "img", "aria-label": about})
     literal = json.dumps(dict(columns)).replace("<", "\\u003c")  # names of models are in it
     with ui.row().classes("keep"):
         for name, function in SAVE.items():
-            given = f"getElement({found.id}).chart, {literal}"
-            saving(name, about).on("click", js_handler=f"() => {function}({given})")
-    return found.classes("chart").style(f"height:{height}px" if height else "")
+            arguments = f"getElement({element.id}).chart, {literal}"
+            saving(name, about).on("click", js_handler=f"() => {function}({arguments})")
+    return element.classes("chart").style(f"height:{height}px" if height else "")
 
 
 def saving(kind: str, about: str) -> ui.button:
@@ -246,11 +246,11 @@ def onward(label: str, path: str) -> None:
 def in_a_terminal(line: str) -> None:
     """The command that does the same."""
     ui.label("The same in a terminal").classes("soft")
-    shown = ui.code(line, language="bash")
-    shown.copy_button.props('aria-label="Copy the command" title="Copy"')
+    code = ui.code(line, language="bash")
+    code.copy_button.props('aria-label="Copy the command" title="Copy"')
 
 
 def formula(latex: str) -> None:
     """An equation; a wide one scrolls sideways, with the keyboard too."""
-    shown = ui.html(mathml(latex), sanitize=False).classes("formula")
-    shown.props('role="group" tabindex="0" aria-label="Equation"')
+    element = ui.html(mathml(latex), sanitize=False).classes("formula")
+    element.props('role="group" tabindex="0" aria-label="Equation"')

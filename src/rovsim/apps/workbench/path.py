@@ -68,13 +68,13 @@ class Path:
         self.timer = ui.timer(TICK, self._tick, active=False)
 
     def _controls(self) -> None:
-        first, last = float(self.time[0]), float(self.time[-1])
+        start, end = float(self.time[0]), float(self.time[-1])
         with ui.row().classes("controls"):
             self.play = ui.button("Play", icon="play_arrow", on_click=self._toggle)
             self.play.props("unelevated no-caps")
             with ui.column().classes("control wide"):
                 ui.label("Time (s)")
-                self.clock = Slider(min=first, max=last, step=TICK, value=first)
+                self.clock = Slider(min=start, max=end, step=TICK, value=start)
                 self.clock.props('label aria-label="Time in the run, seconds"')
                 self.clock.on("update:model-value", lambda e: self._show(e.args), throttle=0.05)
 
@@ -102,8 +102,8 @@ class Path:
                 for name in self.paths
             }
         eye = dict(zip("xyz", (middle + far_enough(low, high)).tolist(), strict=True))
-        at = {f"look_at_{k}": x for k, x in zip("xyz", middle.tolist(), strict=True)}
-        scene.move_camera(**eye, **at, duration=0)
+        target = {f"look_at_{k}": x for k, x in zip("xyz", middle.tolist(), strict=True)}
+        scene.move_camera(**eye, **target, duration=0)
 
     def _toggle(self) -> None:
         self.timer.active = not self.timer.active
@@ -112,8 +112,8 @@ class Path:
 
     async def _tick(self) -> None:
         """One picture on, no faster than the browser draws; from the end it starts anew."""
-        on = self.clock.value + TICK * SPEED
-        self.clock.value = round(on if on <= self.time[-1] else float(self.time[0]), 2)
+        moment = self.clock.value + TICK * SPEED
+        self.clock.value = round(moment if moment <= self.time[-1] else float(self.time[0]), 2)
         self._show(self.clock.value)
         with suppress(TimeoutError):
             await ui.run_javascript(DRAWN, timeout=PATIENCE)
@@ -122,9 +122,9 @@ class Path:
         """Put the vehicles where they are at one moment."""
         k = int(np.clip(np.searchsorted(self.time, moment), 0, len(self.time) - 1))
         for name, path in self.paths.items():
-            known = bool(np.isfinite(path[k]).all())
-            self.spots[name].visible(known)
-            if known:
+            visible = bool(np.isfinite(path[k]).all())
+            self.spots[name].visible(visible)
+            if visible:
                 self.spots[name].move(*path[k].tolist())
         self.changed(moment)
 
@@ -134,11 +134,11 @@ def bends(path: Array) -> list[tuple[list[float], list[float], list[float]]]:
 
     Each passes three points of the path, thinned to `PIECES` curves.
     """
-    at = np.unique(np.linspace(0, len(path) - 1, 2 * PIECES + 1).astype(int))
-    at = at[: len(at) - (len(at) + 1) % 2]  # pieces share their ends: an odd number of points
-    start, middle, end = path[at[:-2:2]], path[at[1:-1:2]], path[at[2::2]]
+    k = np.unique(np.linspace(0, len(path) - 1, 2 * PIECES + 1).astype(int))
+    k = k[: len(k) - (len(k) + 1) % 2]  # pieces share their ends: an odd number of points
+    start, middle, end = path[k[:-2:2]], path[k[1:-1:2]], path[k[2::2]]
     curves = np.stack([start, 2.0 * middle - 0.5 * (start + end), end], axis=1)
-    return [tuple(one) for one in curves[np.isfinite(curves).all(axis=(1, 2))].tolist()]
+    return [tuple(curve) for curve in curves[np.isfinite(curves).all(axis=(1, 2))].tolist()]
 
 
 def room(measured: Array, tank: Array) -> tuple[Array, Array]:
@@ -148,11 +148,11 @@ def room(measured: Array, tank: Array) -> tuple[Array, Array]:
         measured: path (n, 3) north, west, up; m.
         tank: limits (3, 2) in NED, NaN where unknown; m.
     """
-    known = np.sort(tank * HALF_TURN_X[:, None], axis=1)
-    seen = measured[np.isfinite(measured).all(axis=1)]
-    seen = seen if len(seen) else np.zeros((1, 3))
-    low = np.where(np.isfinite(known[:, 0]), known[:, 0], seen.min(axis=0))
-    high = np.where(np.isfinite(known[:, 1]), known[:, 1], seen.max(axis=0))
+    walls = np.sort(tank * HALF_TURN_X[:, None], axis=1)
+    points = measured[np.isfinite(measured).all(axis=1)]
+    points = points if len(points) else np.zeros((1, 3))
+    low = np.where(np.isfinite(walls[:, 0]), walls[:, 0], points.min(axis=0))
+    high = np.where(np.isfinite(walls[:, 1]), walls[:, 1], points.max(axis=0))
     return low, np.maximum(high, low + 0.1)  # a box has a size, whatever moved
 
 
@@ -182,12 +182,12 @@ def directions(low: Array, high: Array) -> dict[str, list[float]]:
     """
     # North along one edge, east along the next, and down from its end: no two names meet.
     ends = (high[0], high[1], high[2]), (low[0], low[1], high[2]), (low[0], low[1], low[2])
-    found = {}
+    labels = {}
     for k, (name, end) in enumerate(zip(DIRECTIONS, ends, strict=True)):
         a, b = sorted((HALF_TURN_X[k] * low[k], HALF_TURN_X[k] * high[k]))
-        told = f"{name} {round(a, 2) + 0.0:g} to {round(b, 2) + 0.0:g} m"
-        found[told.replace("-", "−")] = [float(x) for x in end]
-    return found
+        label = f"{name} {round(a, 2) + 0.0:g} to {round(b, 2) + 0.0:g} m"
+        labels[label.replace("-", "−")] = [float(x) for x in end]
+    return labels
 
 
 def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[str]:
@@ -199,13 +199,13 @@ def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[s
         tank: limits (3, 2) in NED, NaN where unknown; m.
     """
     low, high = np.sort(tank, axis=1).T
-    said = []
+    sentences = []
     for name, path in paths.items():
         outside = ((path < low - NEAR) | (path > high + NEAR)).any(axis=1)
         if name != "measured" and outside.any():
-            at = time[np.argmax(outside)] - time[0]
-            said.append(f"The replay of {title(name)} leaves the tank after {at:.1f} s.")
-    return said
+            seconds = time[np.argmax(outside)] - time[0]
+            sentences.append(f"The replay of {title(name)} leaves the tank after {seconds:.1f} s.")
+    return sentences
 
 
 def path_table(run: str, time: Array, paths: Mapping[str, Array]) -> str:

@@ -28,17 +28,17 @@ class Place:
         `possible` values of each choice that an address may name; of lists, several. What cannot
         be had is passed over: an address may be of another day.
         """
-        found = {**first, **self.kept.get(self.screen, {})}
+        chosen = {**first, **self.kept.get(self.screen, {})}
         self._possible |= possible
         for name, values in possible.items():
-            several = isinstance(first[name], list)
-            known = {str(value): value for value in values}
-            asked = [known[text] for text in self.query.getlist(name) if text in known]
-            left = found[name] if several else [found[name]]
-            there = asked or [value for value in left if value in known.values()]
-            found[name] = there if several else (there or [first[name]])[0]
-        self.kept[self.screen] = found
-        return found
+            is_list = isinstance(first[name], list)
+            by_text = {str(value): value for value in values}
+            requested = [by_text[text] for text in self.query.getlist(name) if text in by_text]
+            previous = chosen[name] if is_list else [chosen[name]]
+            valid = requested or [value for value in previous if value in by_text.values()]
+            chosen[name] = valid if is_list else (valid or [first[name]])[0]
+        self.kept[self.screen] = chosen
+        return chosen
 
     def number(self, name: str) -> float | None:
         """A number that the address gives, None if it gives none."""

@@ -32,8 +32,8 @@ class Saving:
         save = ui.button("Save, and open the test runs", icon="save", on_click=self._save)
         save.props("unelevated no-caps").classes("onward")
         save.bind_enabled_from(bench.draft, "ticked", backward=bool)
-        nothing = ui.label(f"Nothing was added to {bench.base.name} yet.").classes("soft")
-        nothing.bind_visibility_from(bench.draft, "ticked", backward=lambda names: not names)
+        hint = ui.label(f"Nothing was added to {bench.base.name} yet.").classes("soft")
+        hint.bind_visibility_from(bench.draft, "ticked", backward=lambda names: not names)
         self.failure = Failure()
         self.result = ui.column().classes("area")
 
@@ -41,17 +41,17 @@ class Saving:
         """Write the model file, and show what it does on the test runs."""
         path = Path(self.path.value.strip())
         try:
-            saved = await computed(self.bench.save, path)
+            model = await computed(self.bench.save, path)
         except RovsimError as error:
             self.failure.tell(error)
             return
         self.failure.forget()
         before = (await computed(self.bench.replays.step, self.bench.base)).windows_2s
-        after = (await computed(self.bench.replays.step, saved)).windows_2s
-        lost = await computed(self._is_lost, saved)
-        opened = await computed(self.bench.note_opening, saved)
+        after = (await computed(self.bench.replays.step, model)).windows_2s
+        diverges = await computed(self._is_lost, model)
+        openings = await computed(self.bench.note_opening, model)
         self.path.value = str(self.bench.free_path())
-        self._tell(path, before, after, lost, opened)
+        self._tell(path, before, after, diverges, openings)
 
     def _is_lost(self, model: Model) -> bool:
         """Whether a replay of a test run diverges."""

@@ -193,8 +193,8 @@ class Sessions:
     @property
     def last(self) -> Session | None:
         """The one that has opened its campaign last."""
-        opened = [one for one in self._by_tab.values() if one.bench is not None]
-        return max(opened, key=lambda one: one.opened_at, default=None)
+        sessions = [session for session in self._by_tab.values() if session.bench is not None]
+        return max(sessions, key=lambda session: session.opened_at, default=None)
 
     def enter(self, tab: str) -> Session:
         """The session of a tab, one page more."""
@@ -221,13 +221,13 @@ class Sessions:
         """Look after a tab's work, and after campaigns that no tab shows any more."""
         session.settle()
         last = self.last
-        for one in self._by_tab.values():
-            if not one.pages and not one.busy and one is not last:
-                one.bench = None
+        for other in self._by_tab.values():
+            if not other.pages and not other.busy and other is not last:
+                other.bench = None
 
     def _forget(self) -> None:
-        gone = [t for t, one in self._by_tab.items() if not one.pages and one is not self.last]
-        for tab in gone[: max(0, len(self._by_tab) - MOST)]:
+        closed = [t for t, s in self._by_tab.items() if not s.pages and s is not self.last]
+        for tab in closed[: max(0, len(self._by_tab) - MOST)]:
             del self._by_tab[tab]
 
 

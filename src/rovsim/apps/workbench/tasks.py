@@ -27,18 +27,18 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     """Diagnose settings.model; writes it to `path`, a proposed effect beside it, and returns it."""
     catalogue, data, base = _open(settings, even_unusable=True)
-    how = select(settings, DiagnosisSettings)
-    found = diagnose(data.runs, base, how, catalogue, digest_recordings(data.campaign))
-    found.write(path)
-    return found.diagnosis
+    options = select(settings, DiagnosisSettings)
+    result = diagnose(data.runs, base, options, catalogue, digest_recordings(data.campaign))
+    result.write(path)
+    return result.diagnosis
 
 
 def train_into(settings: WorkbenchSettings, path: Path) -> Path:
     """Train a residual on top of settings.model; returns the model file, `path`."""
     catalogue, data, base = _open(settings)
-    how = select(settings, TrainingSettings)
-    story = provenance(how, catalogue, data.campaign)
-    train(data.motions.values(), base, how, catalogue, path, story)
+    options = select(settings, TrainingSettings)
+    story = provenance(options, catalogue, data.campaign)
+    train(data.motions.values(), base, options, catalogue, path, story)
     return path
 
 
@@ -62,11 +62,11 @@ def report_into(
     models = load_models(settings.model, data.vehicle, catalogue)
     compared = compare(data, models, settings)
     tests = tuple(run for run in data.runs.of("test") if run in compared.drawn)
-    shown = replace(compared, ladder=ladder, diagnosis=diagnosis, drawn=tests)
+    report_data = replace(compared, ladder=ladder, diagnosis=diagnosis, drawn=tests)
     origin = provenance(select(settings, CampaignSettings), catalogue, data.campaign)
-    present(out, data.campaign.name, shown, origin, catalogue)
+    present(out, data.campaign.name, report_data, origin, catalogue)
     for name in ("comparison", "where", "ladder", "diagnosis"):
-        if result := getattr(shown, name):
+        if result := getattr(report_data, name):
             result.write(out / f"{name}.json")
     return out / "report.html"
 

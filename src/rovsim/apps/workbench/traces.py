@@ -70,8 +70,8 @@ def first_run(bench: Workbench) -> str:
 
 def excited(bench: Workbench, run: str) -> list[str]:
     """Axes that moved in a run, at most three to begin with."""
-    known = bench.data.quality[run]
-    return list(known.excited or known.excitation or AXES)[:3]
+    quality = bench.data.quality[run]
+    return list(quality.excited or quality.excitation or AXES)[:3]
 
 
 def panels(
@@ -87,31 +87,33 @@ def panels(
     `axes` in any order. `bands` by model: within what it may lie. Under that `thrust` (n, 6), what
     the commands push along the axis of the body, N and N m.
     """
-    (what, units), run = QUANTITIES[quantity], motion.run.id
+    (quantity_name, units), run = QUANTITIES[quantity], motion.run.id
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
-    lost = [n for n, p in predicted.items() if find_divergence(motion.time, p) is not None]
-    found = []
+    diverging = [n for n, p in predicted.items() if find_divergence(motion.time, p) is not None]
+    all_panels = []
     for k, axis in enumerate(AXES):
         if axis not in axes:
             continue
         models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
-        models |= {name: cut(models[name], measured[:, k]) for name in lost}
+        models |= {name: cut(models[name], measured[:, k]) for name in diverging}
         missed = {name: measured[:, k] - values for name, values in models.items()}
         ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
-        title, told = axis, f"{run} {axis} {what}"
+        title, description = axis, f"{run} {axis} {quantity_name}"
         if quantity == "eta":
-            title, told = POSES[axis], f"{run} {POSES[axis]}"
+            title, description = POSES[axis], f"{run} {POSES[axis]}"
             missed = {n: short_way(x) if k > 2 else x for n, x in missed.items()}
-        around = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
-        shown = {"measured": measured[:, k], **models}
-        about = {name: f"{told}, {name}" for name in shown}
-        found.append(Panel(title, units[k], shown, bands=ends, about=about))
-        about = {name: f"{told}, measured − {name}" for name in missed}
+        missed_bands = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
+        curves = {"measured": measured[:, k], **models}
+        about = {name: f"{description}, {name}" for name in curves}
+        all_panels.append(Panel(title, units[k], curves, bands=ends, about=about))
+        about = {name: f"{description}, measured − {name}" for name in missed}
         title = f"{title}: measured − model"
-        found.append(Panel(title, units[k], missed, short=True, bands=around, about=about))
+        all_panels.append(
+            Panel(title, units[k], missed, short=True, bands=missed_bands, about=about)
+        )
         if thrust is not None:
-            found.append(_thrust_panel(axis, thrust[:, k], run))
-    return found
+            all_panels.append(_thrust_panel(axis, thrust[:, k], run))
+    return all_panels
 
 
 def _thrust_panel(axis: str, values: Array, run: str) -> Panel:
@@ -133,28 +135,30 @@ def _columns(of: Motion | Prediction, quantity: str) -> Array:
 
 def _measured(motion: Motion, quantity: str) -> Array:
     """The same (n, 6) of a run, NaN where nothing was measured."""
-    values, seen = _columns(motion, quantity), motion.measured
-    if seen is None or quantity != "eta":
-        return blank(seen, values, np.nan)
-    return np.where([*seen.coordinates, *seen.axes[3:5], *seen.heading], values, np.nan)
+    values, measured = _columns(motion, quantity), motion.measured
+    if measured is None or quantity != "eta":
+        return blank(measured, values, np.nan)
+    return np.where([*measured.coordinates, *measured.axes[3:5], *measured.heading], values, np.nan)
 
 
 def beside(
     first: tuple[Motion, list[Panel]], others: Sequence[tuple[Motion, list[Panel]]]
 ) -> list[Panel]:
     """The panels of a run with the curves of others in them, from the start of each."""
-    motion, shown = first
+    motion, base_panels = first
     time = motion.time - motion.time[0]
-    curves = [dict(panel.curves) for panel in shown]
-    about = [dict(panel.about) for panel in shown]
-    for other, theirs in others:
-        own = other.time - other.time[0]
-        for k, panel in enumerate(theirs):
+    curves = [dict(panel.curves) for panel in base_panels]
+    about = [dict(panel.about) for panel in base_panels]
+    for other, other_panels in others:
+        other_time = other.time - other.time[0]
+        for k, panel in enumerate(other_panels):
             for name, values in panel.curves.items():
-                same = f"{name}, {other.run.id}"
-                curves[k][same] = np.interp(time, own, values, right=np.nan)
-                about[k][same] = panel.about[name]
-    return [replace(p, curves=c, about=a) for p, c, a in zip(shown, curves, about, strict=True)]
+                label = f"{name}, {other.run.id}"
+                curves[k][label] = np.interp(time, other_time, values, right=np.nan)
+                about[k][label] = panel.about[name]
+    return [
+        replace(p, curves=c, about=a) for p, c, a in zip(base_panels, curves, about, strict=True)
+    ]
 
 
 # Quasar says "0|12" where the standard wants one number; each end can be reached with the keyboard.
@@ -198,18 +202,18 @@ class Traces:
             self.chart.options["dataZoom"][0] |= {"startValue": low, "endValue": high}
 
     def _zoom(self) -> None:
-        at = self.range.value
+        part = self.range.value
         self.chart.run_chart_method(
             "dispatchAction",
-            {"type": "dataZoom", "startValue": at["min"], "endValue": at["max"]},
+            {"type": "dataZoom", "startValue": part["min"], "endValue": part["max"]},
         )
         self._tell()
 
     def _tell(self) -> None:
         """Say what part is shown; the whole is nothing to say."""
-        at = (float(self.range.value["min"]), float(self.range.value["max"]))
-        whole = at == (float(self.time[0]), float(self.time[-1]))
-        self.told((None, None) if whole else at)
+        part = (float(self.range.value["min"]), float(self.range.value["max"]))
+        whole = part == (float(self.time[0]), float(self.time[-1]))
+        self.told((None, None) if whole else part)
 
     def _whole(self) -> None:
         self.range.value = {"min": float(self.time[0]), "max": float(self.time[-1])}

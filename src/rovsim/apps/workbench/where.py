@@ -77,23 +77,23 @@ class Where:
             with ui.column().classes("half equal side"):
                 self.bins = ui.column().classes("area")
                 onward("Why does it fail?", "/why")
-        at = (self.chosen["axis"], self.chosen["condition"])
-        known = at[1] in self.searched.explanation.tables.get(at[0], ())
-        wanted = at if known else self._largest()
-        if wanted:
-            self.choose(*wanted)
+        pair = (self.chosen["axis"], self.chosen["condition"])
+        exists = pair[1] in self.searched.explanation.tables.get(pair[0], ())
+        chosen = pair if exists else self._largest()
+        if chosen:
+            self.choose(*chosen)
 
     def _largest(self) -> tuple[str, str] | None:
         """Axis and condition of the first finding, else of the largest share."""
         if self.told.findings:
-            first = self.told.findings[0]
-            return first.axis, first.condition
+            finding = self.told.findings[0]
+            return finding.axis, finding.condition
         shares = {
-            (axis, condition): one.share_of_error
+            (axis, condition): table.share_of_error
             for axis, tables in self.told.axes.items()
-            for condition, one in tables.items()
+            for condition, table in tables.items()
         }
-        return max(shares, key=lambda at: shares[at]) if shares else None
+        return max(shares, key=lambda pair: shares[pair]) if shares else None
 
     def _findings(self, findings: Sequence[ConditionFinding]) -> None:
         """What was found, in sentences; the first ones, and the rest folded away."""
@@ -105,16 +105,16 @@ class Where:
             with folded if k >= FIRST else nullcontext(), ui.row().classes("finding"):
                 ui.label(sentence)
                 if k < len(findings):
-                    at = (findings[k].axis, findings[k].condition)
-                    ui.button("show", on_click=lambda _, a=at: self.choose(*a)).props(
-                        f'flat dense no-caps aria-label="Show {at[0]} over {at[1]}"'
+                    pair = (findings[k].axis, findings[k].condition)
+                    ui.button("show", on_click=lambda _, a=pair: self.choose(*a)).props(
+                        f'flat dense no-caps aria-label="Show {pair[0]} over {pair[1]}"'
                     )
 
     def choose(self, axis: str, condition: str) -> None:
         """Show the bins of one condition."""
         self.chosen |= {"axis": axis, "condition": condition}
         self.place.tell(self.chosen)
-        found: BinnedErrors = self.searched.explanation.tables[axis][condition]
+        table: BinnedErrors = self.searched.explanation.tables[axis][condition]
         unit = ACCELERATION_UNITS[AXES.index(axis)]
         self.bins.clear()
         with self.bins:
@@ -128,10 +128,10 @@ class Where:
                 bins_chart(self.told.axes[axis][condition], condition, axis, unit),
                 f"Mean {axis} error by bins of {condition}",
                 200,
-                on_point_click=lambda e: self._samples(axis, found, e.data_index),
+                on_point_click=lambda e: self._samples(axis, table, e.data_index),
             )
-            names = {k: _span(found, k) for k in range(len(found.binning.count))}
-            toggle = ui.toggle(names, on_change=lambda e: self._samples(axis, found, e.value))
+            names = {k: _span(table, k) for k in range(len(table.binning.count))}
+            toggle = ui.toggle(names, on_change=lambda e: self._samples(axis, table, e.value))
             toggle.props('no-caps dense flat toggle-color=primary aria-label="Bin"').classes("bins")
             self.series = ui.column().classes("area")
 
@@ -144,9 +144,11 @@ class Where:
         with self.series:
             ui.label(f"{int(inside.sum())} samples, {_span(found, chosen)}").classes("soft")
             for k, run in enumerate(self.searched.runs):
-                mine = blocks.run == k
-                if (mine & inside).any():
-                    options = samples_chart(blocks.time[mine], error[mine], inside[mine], run, axis)
+                in_run = blocks.run == k
+                if (in_run & inside).any():
+                    options = samples_chart(
+                        blocks.time[in_run], error[in_run], inside[in_run], run, axis
+                    )
                     chart(options, f"Samples of run {run} over time", 170)
 
 

@@ -50,31 +50,31 @@ async def show(bench: Workbench, place: Place) -> None:
     if bench.diagnosis is None:
         _ask(bench)
         return
-    found = bench.diagnosis
-    if bench.settings.diagnosis and not found.recordings:
+    diagnosis = bench.diagnosis
+    if bench.settings.diagnosis and not diagnosis.recordings:
         text(OF_WHICH, "warning")
-    said = explain(found, bench.catalogue)
+    verdict = explain(diagnosis, bench.catalogue)
     ui.html(
-        f"<p><strong>{escape(said.sentence)}</strong> <span>({escape(said.name)})</span></p>",
+        f"<p><strong>{escape(verdict.sentence)}</strong> <span>({escape(verdict.name)})</span></p>",
         sanitize=False,
     ).classes("verdict")
-    _errors(found)
-    text(said.error)
-    if said.key:
-        text(said.key, "soft")
-    seen = {missing.effect: _effect(missing) for missing in said.missing}
-    await _left(bench, found)
-    if found.selected:
+    _errors(diagnosis)
+    text(verdict.error)
+    if verdict.key:
+        text(verdict.key, "soft")
+    rooms = {missing.effect: _effect(missing) for missing in verdict.missing}
+    await _left(bench, diagnosis)
+    if diagnosis.selected:
         onward("Add what is missing", "/add")
-    if said.next:
+    if verdict.next:
         section("What to record next")
-        text(said.next, "next")
+        text(verdict.next, "next")
         onward("Plan the flight", "/flight")
-    paragraphs("What else to know", said.remarks)
-    _ranking(found)
-    again = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.start_diagnosis(bench))
-    again.props("flat no-caps").classes("onward")
-    for effect, room in seen.items():
+    paragraphs("What else to know", verdict.remarks)
+    _ranking(diagnosis)
+    button = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.start_diagnosis(bench))
+    button.props("flat no-caps").classes("onward")
+    for effect, room in rooms.items():
         with room:
             await _show_effect(bench, effect)
 
@@ -121,8 +121,8 @@ async def _show_effect(bench: Workbench, effect: str) -> None:
     """What it does to the user's data; where accelerations do not show it, to the gallery's."""
     if await show_lowered(bench, effect):
         return
-    if known := bench.catalogue.get(effect):
-        await picture(bench, known)
+    if cls := bench.catalogue.get(effect):
+        await picture(bench, cls)
         ui.label("From the gallery: what it looks like in a calm tank, not your data.")
 
 

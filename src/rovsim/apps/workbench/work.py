@@ -35,11 +35,11 @@ class Work:
     def start(title: str, after: Callable[[Any], None], function: Callable, *given: Any) -> "Work":
         """Start `function(*given)`; everything given must be able to travel between processes."""
         context = multiprocessing.get_context("spawn")  # threads and forks do not mix
-        ours, theirs = context.Pipe(duplex=False)
-        process = context.Process(target=_run, args=(theirs, function, given), daemon=True)
+        receiver, sender = context.Pipe(duplex=False)
+        process = context.Process(target=_run, args=(sender, function, given), daemon=True)
         process.start()
-        theirs.close()
-        work = Work(title, after, process, ours)
+        sender.close()
+        work = Work(title, after, process, receiver)
         weakref.finalize(work, process.terminate)  # nobody waits for it any more
         return work
 
@@ -70,8 +70,8 @@ class Work:
     @property
     def left(self) -> float | None:
         """Seconds that are probably left, None as long as nobody can tell."""
-        known = self.share is not None and self.share >= FEWEST
-        return self.elapsed * (1.0 / self.share - 1.0) if known and self.share else None
+        reliable = self.share is not None and self.share >= FEWEST
+        return self.elapsed * (1.0 / self.share - 1.0) if reliable and self.share else None
 
 
 @dataclass(eq=False)

@@ -52,15 +52,15 @@ class Workbench:
             BadInput: one of them cannot be used.
         """
         data = measure(open_campaign(settings.campaign), settings.signals)
-        found = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
-        _check_base(next(iter(found.values())))
-        paths = dict(zip(found, dict.fromkeys(as_list(settings.model)), strict=True))
-        bench = Workbench(settings, catalogue.on(data.vehicle), data, found, paths)
+        models = {m.name: m for m in load_models(settings.model, data.vehicle, catalogue)}
+        _check_base(next(iter(models.values())))
+        paths = dict(zip(models, dict.fromkeys(as_list(settings.model)), strict=True))
+        bench = Workbench(settings, catalogue.on(data.vehicle), data, models, paths)
         if settings.diagnosis:
-            given = Path(settings.diagnosis)
-            bench.diagnosis = read_given_diagnosis(given, data.campaign)
-            beside = given.with_name("ladder.json")
-            bench.study = Ladder.read(beside) if beside.exists() else None
+            file = Path(settings.diagnosis)
+            bench.diagnosis = read_given_diagnosis(file, data.campaign)
+            ladder_file = file.with_name("ladder.json")
+            bench.study = Ladder.read(ladder_file) if ladder_file.exists() else None
         elif bench.diagnosis_path.exists():
             bench.diagnosis = Diagnosis.read(bench.diagnosis_path)
         return bench
@@ -78,8 +78,8 @@ class Workbench:
     @cached_property
     def diagnosis_path(self) -> Path:
         """Of these recordings, settings, base and code: an outdated one is never shown."""
-        how = select(self.settings, DiagnosisSettings)
-        return kept_diagnosis(self.out, self.data.campaign, how, self.base, self.catalogue)
+        settings = select(self.settings, DiagnosisSettings)
+        return kept_diagnosis(self.out, self.data.campaign, settings, self.base, self.catalogue)
 
     def flight_folder(self, name: str, question: Question) -> Path:
         """Where the flight lies that answers a question about a model.
@@ -126,8 +126,8 @@ class Workbench:
     @property
     def law_path(self) -> Path:
         """File of the effect that the diagnosis proposes."""
-        given = self.settings.diagnosis
-        return law_beside(Path(given) if given else self.diagnosis_path)
+        diagnosis = self.settings.diagnosis
+        return law_beside(Path(diagnosis) if diagnosis else self.diagnosis_path)
 
     def add(self, model: Model, path: Path) -> None:
         """Take in a model that was saved or trained."""
@@ -140,9 +140,9 @@ class Workbench:
 
     def known_models(self) -> dict[str, Path]:
         """Files by the name of their model, the base first: those open, and those saved before."""
-        known = {path.stem: path for path in self.saved_in.glob("*.yaml")}
-        known |= {name: Path(path) for name, path in self.paths.items()}
-        return {name: known[name] for name in (self.base.name, *sorted(known))}
+        files = {path.stem: path for path in self.saved_in.glob("*.yaml")}
+        files |= {name: Path(path) for name, path in self.paths.items()}
+        return {name: files[name] for name in (self.base.name, *sorted(files))}
 
     def known_model(self, name: str) -> Model:
         """One of `known_models`, its file read now if it is not open.
@@ -158,10 +158,10 @@ class Workbench:
         Raises:
             BadInput: the file holds no model, or another one is called as this one is.
         """
-        there = self.paths.get(path.stem)
-        if there is not None and Path(there).resolve() == path.resolve():
+        existing = self.paths.get(path.stem)
+        if existing is not None and Path(existing).resolve() == path.resolve():
             return self.models[path.stem]
-        if there is not None or path.stem in BUILT_IN:
+        if existing is not None or path.stem in BUILT_IN:
             raise BadInput(
                 f"another model is called '{path.stem}'",
                 where=path,
@@ -178,8 +178,8 @@ class Workbench:
         Raises:
             BadInput: no such model can be, or the place is taken by something else.
         """
-        inside = (Path(), self.out, self.data.campaign.file.parent)
-        _check_place(path, inside, {*BUILT_IN, self.base.name})
+        allowed = (Path(), self.out, self.data.campaign.file.parent)
+        _check_place(path, allowed, {*BUILT_IN, self.base.name})
         story: dict[str, object] = {
             "base": self.base.name,
             "effects": self.draft.ticked,
@@ -187,9 +187,9 @@ class Workbench:
         }
         story |= describe_origin(self.catalogue)
         write_model(self.draft.model(), path, provenance=story)
-        saved = read_model(path, self.catalogue)
-        self.add(saved, path)
-        return saved
+        model = read_model(path, self.catalogue)
+        self.add(model, path)
+        return model
 
     def free_path(self) -> Path:
         """Where the next model may be saved without taking the place of another."""
@@ -199,9 +199,9 @@ class Workbench:
 
     def note_opening(self, model: Model) -> int:
         """Write down that the test runs were opened for a model; how often they were by now."""
-        kept = self.out / OPENINGS
-        before = read_text(kept) if kept.exists() else "model,error\n"
-        write_text(kept, f"{before}{model.name},{self.replays.step(model).windows_2s}\n")
+        log = self.out / OPENINGS
+        before = read_text(log) if log.exists() else "model,error\n"
+        write_text(log, f"{before}{model.name},{self.replays.step(model).windows_2s}\n")
         return len(before.splitlines())
 
     def only(self, *names: str) -> WorkbenchSettings:
@@ -217,11 +217,11 @@ class Workbench:
         """All that is known: baseline, base, found effects, models, noise floor."""
         if self.study is not None:
             extra = [self.replays.step(m) for n, m in self.models.items() if m is not self.base]
-            known = self.study.steps
-            return Ladder(steps=(*known[:-1], *extra, *known[-1:]))
-        first = [self.baseline, self.base]
-        others = [m for m in self.models.values() if m.name not in {one.name for one in first}]
-        steps = [self.replays.step(m) for m in first]
+            study_steps = self.study.steps
+            return Ladder(steps=(*study_steps[:-1], *extra, *study_steps[-1:]))
+        references = [self.baseline, self.base]
+        others = [m for m in self.models.values() if m.name not in {r.name for r in references}]
+        steps = [self.replays.step(m) for m in references]
         steps += [Step(model=EFFECTS)] if self.diagnosis else []
         steps += [self.replays.step(m) for m in others]
         return Ladder.with_diagnosis(steps, self.diagnosis.ladder.steps if self.diagnosis else ())
@@ -239,16 +239,16 @@ def _check_base(model: Model) -> None:
 
 def _check_place(path: Path, inside: Sequence[Path], taken: set[str]) -> None:
     """Refuse to write elsewhere or over a file, and to call a model as another is."""
-    found = ""
+    problem = ""
     if not any(path.resolve().is_relative_to(folder.resolve()) for folder in inside):
-        found = "lies outside the folder in which the workbench was started"
+        problem = "lies outside the folder in which the workbench was started"
     elif path.suffix not in (".yaml", ".yml"):
-        found = "does not end in .yaml"
+        problem = "does not end in .yaml"
     elif path.stem in taken:
-        found = f"would be called '{path.stem}', as another model is"
+        problem = f"would be called '{path.stem}', as another model is"
     elif path.exists():
-        found = "is there already"
-    if found:
+        problem = "is there already"
+    if problem:
         raise BadInput(
-            found, where=path, expected="a new model file", remedy="Give it another name."
+            problem, where=path, expected="a new model file", remedy="Give it another name."
         )
