@@ -53,14 +53,14 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         seconds: float = 30.0,
         reach: float = 2.0,
     ) -> None:
-        known = (
+        loaded = (
             model
             if isinstance(model, Model)
             else load_model(model, load_vehicle(vehicle or default_vehicle()), load_catalogue())
         )
-        self.stepper = Stepper(known, duration=seconds)
+        self.stepper = Stepper(loaded, duration=seconds)
         self.dt, self.seconds, self.reach = dt, seconds, reach
-        self.limit = known.vehicle.thrusters.command_limit
+        self.limit = loaded.vehicle.thrusters.command_limit
         self.action_space = Box(-1.0, 1.0, (self.stepper.columns,), np.float64)
         edge = np.concatenate([np.full(3, np.inf), np.full(4, 1.01), np.full(6, np.inf)])
         edge = np.concatenate([edge, np.full(3, reach)])
@@ -83,9 +83,9 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         """Hold an action for dt; actions beyond [-1, 1] count as -1 or 1."""
         action = np.clip(action, -1.0, 1.0)
         self.state = self.stepper.step(self.state, self.limit * action, self.dt)
-        lost = bool(np.abs(self.state[:3]).max() > 3.0 * self.reach)
-        late = self.stepper.time >= self.seconds - 1e-9
-        return self._seen(), self.reward(action), lost, late, {}
+        terminated = bool(np.abs(self.state[:3]).max() > 3.0 * self.reach)
+        truncated = self.stepper.time >= self.seconds - 1e-9
+        return self._seen(), self.reward(action), terminated, truncated, {}
 
     def reward(self, action: Array) -> float:
         """What an action that led to the present state is worth."""

@@ -16,7 +16,7 @@ def complain(message: str) -> NoReturn:
 
 def warn(message: str) -> None:
     """Say what went wrong beside the result, and go on."""
-    lines = [line for one in f"rovsim: {message}".splitlines() for line in fold(one)]
+    lines = [line for paragraph in f"rovsim: {message}".splitlines() for line in fold(paragraph)]
     print("\n".join(lines), file=sys.stderr)
 
 

@@ -98,8 +98,8 @@ def complete(words: Sequence[str]) -> str:
 def _answer(shell: str, line: str) -> list[str]:
     *before, last = split(line)
     names = [word.value for word in before[1:]]
-    found = suggest(names, last.value)
-    return [_as(shell, last, one) for one in found]
+    values = suggest(names, last.value)
+    return [_as(shell, last, value) for value in values]
 
 
 def _as(shell: str, word: Word, found: str) -> str:
@@ -150,10 +150,10 @@ def suggest(given: Sequence[str], word: str) -> list[str]:
     key, equals, value = word.partition("=")
     if equals:
         before, value = _last_item(value)
-        return [f"{key}={before}{one}" for one in _values(command, key, value)]
-    taken = {one.partition("=")[0] for one in rest}
+        return [f"{key}={before}{item}" for item in _values(command, key, value)]
+    used = {item.partition("=")[0] for item in rest}
     files = _files(word, "") if command == "init" else []
-    return [*files, *_keys(command, word, taken)]
+    return [*files, *_keys(command, word, used)]
 
 
 def commands() -> list[str]:
@@ -167,15 +167,15 @@ def _beginning(word: str, names: Iterable[str]) -> list[str]:
 
 def _last_item(value: str) -> tuple[str, str]:
     """What stands before the last item of a list, and that item."""
-    at = max(value.rfind("["), value.rfind(",")) + 1
-    return (value[:at], value[at:]) if value.startswith("[") else ("", value)
+    start = max(value.rfind("["), value.rfind(",")) + 1
+    return (value[:start], value[start:]) if value.startswith("[") else ("", value)
 
 
 def _keys(command: str, word: str, taken: set[str]) -> list[str]:
     """Keys that the command's own help names; once something is typed, all of the configuration."""
-    own = own_keys(command)
-    known = [*own, *settings()] if word else own
-    ends = [key[len(word) :] for key in known if key.startswith(word) and key not in taken]
+    helped = own_keys(command)
+    keys = [*helped, *settings()] if word else helped
+    ends = [key[len(word) :] for key in keys if key.startswith(word) and key not in taken]
     return [word + end for end in dict.fromkeys(map(_step, ends))]
 
 
@@ -195,13 +195,13 @@ def _values(command: str, key: str, value: str) -> list[str]:
     """What a value may become: names first, then files."""
     if key == "to" and command == "export":
         return _beginning(value, [module.name for module in pkgutil.iter_modules([str(TARGETS)])])
-    named = [*conf_names(key), *settings().get(key, ())]
+    names = [*conf_names(key), *settings().get(key, ())]
     if key in OF_EFFECTS:
-        named += effects()
+        names += effects()
     elif key in ("model", "to"):
-        named += MODELS
+        names += MODELS
     files = _files(value, FILES[key]) if key in FILES else []
-    return [*_beginning(value, named), *files]
+    return [*_beginning(value, names), *files]
 
 
 def _files(start: str, ending: str) -> list[str]:
@@ -209,21 +209,21 @@ def _files(start: str, ending: str) -> list[str]:
     _, _, name = start.rpartition("/")
     before = start[: len(start) - len(name)]
     place = Path(os.path.expanduser(before or "."))
-    found = []
-    for entry in sorted(os.scandir(place), key=lambda one: one.name) if place.is_dir() else ():
+    paths = []
+    for entry in sorted(os.scandir(place), key=lambda item: item.name) if place.is_dir() else ():
         if entry.name.startswith(name) and (name or not entry.name.startswith(".")):
             if entry.is_dir():
-                found.append(f"{before}{entry.name}/")
+                paths.append(f"{before}{entry.name}/")
             elif entry.name.endswith(ending):
-                found.append(before + entry.name)
-    return found
+                paths.append(before + entry.name)
+    return paths
 
 
 def effects() -> list[str]:
     """Ids of the built-in effects, as their files declare them."""
     texts = (path.read_text(encoding="utf-8") for path in EFFECTS.glob("*.py"))
-    classes = (one for text in texts for one in text.split("\nclass ") if UNLISTED not in one)
-    return sorted(name for one in classes for name in re.findall(r'^    id = "(\w+)"', one, re.M))
+    classes = (body for text in texts for body in text.split("\nclass ") if UNLISTED not in body)
+    return sorted(name for body in classes for name in re.findall(r'^    id = "(\w+)"', body, re.M))
 
 
 @cache
@@ -231,12 +231,12 @@ def settings() -> dict[str, tuple[str, ...]]:
     """Keys of the configuration, dotted, with the values that their lines name."""
     main = _text("config.yaml")
     groups = re.findall(r"^  - ([\w/]+): (\w+)", main, re.M)
-    found = _listed(main, "")
-    for group, chosen in groups:
-        text = _text(f"{group}/{chosen}.yaml")
+    keys = _listed(main, "")
+    for group, option in groups:
+        text = _text(f"{group}/{option}.yaml")
         package = re.search(r"@package ([\w.]+)", text)
-        found |= {group: ()} | _listed(text, f"{package[1] if package else group}.")
-    return found
+        keys |= {group: ()} | _listed(text, f"{package[1] if package else group}.")
+    return keys
 
 
 def _text(name: str) -> str:
@@ -246,23 +246,23 @@ def _text(name: str) -> str:
 
 def _listed(text: str, before: str) -> dict[str, tuple[str, ...]]:
     """Keys of one file of settings: plain mappings, one key a line."""
-    found: dict[str, tuple[str, ...]] = {}
+    choices: dict[str, tuple[str, ...]] = {}
     above: list[tuple[int, str]] = []
     for space, key, value in re.findall(r"^( *)(\w+):(.*)$", text, re.M):
-        above = [one for one in above if one[0] < len(space)]
+        above = [level for level in above if level[0] < len(space)]
         name = "".join(f"{outer}." for _, outer in above) + key
         if not value.split("#")[0].strip():
             above.append((len(space), key))
         elif name.split(".")[0] not in NOT_SETTINGS:
-            found[before + name] = _choices(value)
-    return found
+            choices[before + name] = _choices(value)
+    return choices
 
 
 def _choices(value: str) -> tuple[str, ...]:
     """Values that a line of settings names: true and false, or `a | b` of its comment."""
-    now, _, comment = value.partition("#")
-    if now.strip() in ("true", "false"):
+    current, _, comment = value.partition("#")
+    if current.strip() in ("true", "false"):
         return ("true", "false")
     comment = re.sub(r"\([^)]*\)", "", comment)
-    named = re.match(r"\s*(\w+(?:\s*\|\s*\w+)+)", comment)
-    return tuple(re.split(r"\s*\|\s*", named[1])) if named else ()
+    match = re.match(r"\s*(\w+(?:\s*\|\s*\w+)+)", comment)
+    return tuple(re.split(r"\s*\|\s*", match[1])) if match else ()

@@ -38,8 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             sys.exit(141)
         complain(describe_os_error(error))
     except KeyboardInterrupt as end:
-        said, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
-        print(f"rovsim: {said}; what was finished is kept.", file=sys.stderr)
+        reason, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
+        print(f"rovsim: {reason}; what was finished is kept.", file=sys.stderr)
         sys.exit(code)
 
 
@@ -64,10 +64,10 @@ def _main(words: list[str]) -> None:
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
-    named = [word for word in words if command in FILES and is_file(word)]
-    overrides = [override(word, sweep) for word in words if word not in named]
-    if named:
-        overrides.append(f"{FILES[command]}=[{','.join(map(quoted, named))}]")
+    files = [word for word in words if command in FILES and is_file(word)]
+    overrides = [override(word, sweep) for word in words if word not in files]
+    if files:
+        overrides.append(f"{FILES[command]}=[{','.join(map(quoted, files))}]")
     _run(command, overrides, sweep)
 
 
@@ -140,9 +140,9 @@ def override(word: str, sweep: bool = False) -> str:
     if value.startswith("[") and value.endswith("]"):
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
     if sweep and key in SWEPT and not os.path.exists(value):
-        several = listed(value)
-        if all(os.path.exists(one) or one in BUILT_IN for one in several):
-            return f"{key}={','.join(map(quoted, several)) or 'null'}"
+        paths = listed(value)
+        if all(os.path.exists(path) or path in BUILT_IN for path in paths):
+            return f"{key}={','.join(map(quoted, paths)) or 'null'}"
     return f"{key}={quoted(value)}"
 
 

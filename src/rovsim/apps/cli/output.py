@@ -19,7 +19,7 @@ def say(settings: CommandSettings, text: str, content: object) -> None:
 
 def join_files(text: str, files: str, *became: str) -> str:
     """A text, the files that were written, and what became of those that were there."""
-    return "\n".join([text, "", files, *(line for one in became if one for line in fold(one))])
+    return "\n".join([text, "", files, *(line for part in became if part for line in fold(part))])
 
 
 def choose_folder(settings: CommandSettings, default: str) -> Path:
@@ -30,12 +30,12 @@ def choose_folder(settings: CommandSettings, default: str) -> Path:
     """
     out = Path(settings.out or default)
     whole = out.absolute()
-    there = next(place for place in (whole, *whole.parents) if place.exists())
-    if there.is_dir() and os.access(there, os.W_OK):
+    nearest = next(place for place in (whole, *whole.parents) if place.exists())
+    if nearest.is_dir() and os.access(nearest, os.W_OK):
         return out
     raise BadInput(
-        "may not be written to" if there.is_dir() else "is not a folder",
-        where=there,
+        "may not be written to" if nearest.is_dir() else "is not a folder",
+        where=nearest,
         expected="a folder that results can be written into",
         remedy="Give another out=.",
     )

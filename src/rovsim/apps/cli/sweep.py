@@ -44,8 +44,8 @@ def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
     check_campaigns(campaigns)
     words = [word for word in overrides if not word.startswith(f"{FOLDER}=")]
     folder = choose_sweep_folder(sweep_folder(first_values(overrides)), given=words != [*overrides])
-    for old in folder.rglob(FAILED):
-        old.unlink()
+    for path in folder.rglob(FAILED):
+        path.unlink()
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # errors come here, as they are
     literal = str(folder).replace("\\", "\\\\").replace("'", "\\'")
     sys.argv = ["rovsim", "--multirun", *words, f"{FOLDER}='{literal}'"]
@@ -66,12 +66,12 @@ def choose_sweep_folder(folder: Path, given: bool) -> Path:
         return folder
     make_folder(folder.parent)
     for number in count(1):
-        one = folder if number == 1 else folder.with_name(f"{folder.name}_{number}")
+        candidate = folder if number == 1 else folder.with_name(f"{folder.name}_{number}")
         try:
-            one.mkdir()
+            candidate.mkdir()
         except FileExistsError:
             continue
-        return one
+        return candidate
     raise AssertionError  # it counts on
 
 
@@ -108,17 +108,17 @@ def job(composed: Any) -> None:
     except (RovsimError, OSError) as error:
         if isinstance(error, BrokenPipeError):
             raise
-        told = describe_os_error(error) if isinstance(error, OSError) else str(error)
+        reason = describe_os_error(error) if isinstance(error, OSError) else str(error)
         words = " ".join(hydra.overrides.task[1:])  # without the command
-        said = f"run {hydra.job.num} of the sweep ({words}): {told}"
-        warn(said)
-        write_text(Path(hydra.runtime.output_dir, FAILED), f"{said}\n")
+        message = f"run {hydra.job.num} of the sweep ({words}): {reason}"
+        warn(message)
+        write_text(Path(hydra.runtime.output_dir, FAILED), f"{message}\n")
 
 
 def first_values(overrides: Sequence[str]) -> list[str]:
     """Overrides of a sweep's first run."""
-    listed = [(word, _list_values(word)) for word in overrides]
-    return [f"{word.partition('=')[0]}={v[0]}" if v else word for word, v in listed]
+    pairs = [(word, _list_values(word)) for word in overrides]
+    return [f"{word.partition('=')[0]}={v[0]}" if v else word for word, v in pairs]
 
 
 def check_sweep(overrides: Sequence[str]) -> list[Path]:
@@ -190,9 +190,9 @@ def choose_out(given: str | None, own: str, name: str) -> str:
 
 def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:
     """The settings, with a name that tells one MLflow run of a sweep from another."""
-    own = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED]
-    if settings.tracking.name or not own:
+    words = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED]
+    if settings.tracking.name or not words:
         return settings
-    name = " ".join([name_learned(settings.learner.kind, settings.control), *own])
+    name = " ".join([name_learned(settings.learner.kind, settings.control), *words])
     tracking = settings.tracking.model_copy(update={"name": name})
     return settings.model_copy(update={"tracking": tracking})

@@ -20,11 +20,11 @@ def require_taken(command: str, overrides: Sequence[str]) -> None:
     Raises:
         BadInput: there is one.
     """
-    taken = import_large(f"rovsim.apps.cli.commands.{command}").Settings.model_fields
+    fields = import_large(f"rovsim.apps.cli.commands.{command}").Settings.model_fields
     for word in overrides:
         key = word.lstrip("+~").partition("=")[0]
         name = section(key)
-        if name in Settings.model_fields and name not in (*taken, *EVERYWHERE):
+        if name in Settings.model_fields and name not in (*fields, *EVERYWHERE):
             raise BadInput(
                 f"`rovsim {command}` does not use '{key}'",
                 where="command line",
@@ -44,8 +44,8 @@ def section(key: str) -> str:
 
 def _remedy(name: str) -> str:
     """Who takes it, as far as their help says."""
-    users = [one for one in commands() if name in {section(key) for key in own_keys(one)}]
+    users = [user for user in commands() if name in {section(key) for key in own_keys(user)}]
     if not 0 < len(users) <= FEW:
         return "Leave it out."
-    told = ", ".join(f"`rovsim {one}`" for one in users)
-    return f"Leave it out, or did you mean {told}?"
+    names = ", ".join(f"`rovsim {user}`" for user in users)
+    return f"Leave it out, or did you mean {names}?"

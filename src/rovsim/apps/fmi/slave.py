@@ -44,9 +44,9 @@ class Vehicle(Fmi2Slave):
         """
         root = super().to_xml(*options)
         structure = root.find("ModelStructure")
-        known = SubElement(structure, "InitialUnknowns")
+        unknowns = SubElement(structure, "InitialUnknowns")
         for output in structure.iterfind("Outputs/Unknown"):
-            SubElement(known, "Unknown", attrib=dict(output.attrib))
+            SubElement(unknowns, "Unknown", attrib=dict(output.attrib))
         return root
 
     def _real(self, name, causality, array, i, **more):

@@ -97,12 +97,12 @@ class Campaign:
             BadInput: the model cannot be loaded, or cannot be diagnosed.
         """
         base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
-        how, folder = select(self.settings, DiagnosisSettings), self._folder
-        path = kept_diagnosis(folder, self.data.campaign, how, base, self._known)
+        settings, folder = select(self.settings, DiagnosisSettings), self._folder
+        path = kept_diagnosis(folder, self.data.campaign, settings, base, self._known)
         if not path.exists():
             with in_a_cell():
-                read = digest_recordings(self.data.campaign)
-                diagnose(self.data.runs, base, how, self.catalogue, read).write(path)
+                digest = digest_recordings(self.data.campaign)
+                diagnose(self.data.runs, base, settings, self.catalogue, digest).write(path)
         return ShownDiagnosis(Diagnosis.read(path), path, self._known)
 
     def add(
@@ -136,16 +136,16 @@ class Campaign:
             BadInput: no such learner or key, or no run of that control to learn from.
         """
         require("learn", by="campaign.train")
-        words = [f"residual={residual}", f"control={control}"]
-        chosen = compose([*words, *(f"residual.{key}={value}" for key, value in keys.items())])
-        mine = {"residual": chosen.residual, "control": chosen.control}
-        how = select(self.settings.model_copy(update=mine), TrainingSettings)
+        overrides = [f"residual={residual}", f"control={control}"]
+        config = compose([*overrides, *(f"residual.{key}={value}" for key, value in keys.items())])
+        update = {"residual": config.residual, "control": config.control}
+        settings = select(self.settings.model_copy(update=update), TrainingSettings)
         base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
-        named = name_learned(residual, control, base.name)
-        out = Path(path or self._folder / "trained" / named / f"{named}.yaml")
+        name = name_learned(residual, control, base.name)
+        out = Path(path or self._folder / "trained" / name / f"{name}.yaml")
         with in_a_cell():
-            story = provenance(how, self.catalogue, self.data.campaign)
-            train(self.data.motions.values(), base, how, self.catalogue, out, story)
+            story = provenance(settings, self.catalogue, self.data.campaign)
+            train(self.data.motions.values(), base, settings, self.catalogue, out, story)
         return self.model(out)
 
     def export(self, model: Spec, to: str, path: Spec | None = None) -> ShownExport:
@@ -154,15 +154,15 @@ class Campaign:
         Raises:
             BadInput: no such simulator, or it cannot hold such a model.
         """
-        chosen = target(to)
+        simulator = target(to)
         loaded = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
-        out = Path(path or f"{loaded.name}{chosen.suffix}")
+        out = Path(path or f"{loaded.name}{simulator.suffix}")
         over, parts = f"the runs of {self.name}", model_parts(loaded)
         export = export_model(
-            loaded, chosen, lambda: flights(loaded, self.data.motions.values()), over, parts
+            loaded, simulator, lambda: flights(loaded, self.data.motions.values()), over, parts
         )
         write_export(export, out)
-        return ShownExport(out, chosen.title, export.left)
+        return ShownExport(out, simulator.title, export.left)
 
     def model(self, path: Spec) -> ShownModel:
         """A model file.
@@ -207,12 +207,12 @@ def open(
         BadInput: an override, the campaign or a file cannot be used.
     """
     files = [effects_file] if isinstance(effects_file, str | PathLike) else effects_file
-    given = {
+    update = {
         "campaign": fspath(folder),
-        "effects_file": [fspath(one) for one in files] or None,
+        "effects_file": [fspath(file) for file in files] or None,
         "out": None if out is None else fspath(out),
     }
-    settings = compose(overrides).model_copy(update=given)
+    settings = compose(overrides).model_copy(update=update)
     catalogue = load_catalogue(settings.effect_files)
     with in_a_cell():
         data = measure(open_campaign(settings.campaign), settings.signals, even_unusable=True)
@@ -226,7 +226,7 @@ def tank(folder: Spec, *overrides: str, effects_file: Spec | Sequence[Spec] = ()
         BadInput: an override that cannot be used, or a folder that holds something else.
     """
     files = [effects_file] if isinstance(effects_file, str | PathLike) else effects_file
-    catalogue = load_catalogue([Path(one) for one in files])
+    catalogue = load_catalogue([Path(file) for file in files])
     with in_a_cell(), reported("flying") as progress:
         make_campaign(compose(overrides).tank, Path(folder), catalogue, progress)
     return Path(folder)

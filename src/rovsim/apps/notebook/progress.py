@@ -19,8 +19,8 @@ def in_a_cell() -> Iterator[None]:
 
     def tell(what: str, share: float | None) -> None:
         nonlocal shown
-        done = "" if share is None else f" {round(STEPS * share) * 100 // STEPS} %"
-        line = f"{what}{done}"
+        percent = "" if share is None else f" {round(STEPS * share) * 100 // STEPS} %"
+        line = f"{what}{percent}"
         if line != shown:
             print(f"\r{line:<78}", end="", flush=True)
             shown = line

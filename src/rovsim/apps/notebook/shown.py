@@ -160,11 +160,13 @@ class ShownDiagnosis(Figures):
         return _named(tabulate_ladder(self.result.ladder))
 
     def _repr_html_(self) -> str:
-        said = explain(self.result, self.catalogue)
-        parts = [html.heading(said.sentence)]
+        verdict = explain(self.result, self.catalogue)
+        parts = [html.heading(verdict.sentence)]
         if self.result.selected:
             parts.append(html.table(self.selected))
-        parts.append(html.sentences([*said.sentences, *([said.next] if said.next else [])]))
+        parts.append(
+            html.sentences([*verdict.sentences, *([verdict.next] if verdict.next else [])])
+        )
         return "".join([*parts, self._picture("ladder")])
 
 
@@ -208,7 +210,7 @@ class ShownExport:
     @property
     def left_out(self) -> DataFrame:
         """RMS force of what is left out, N and N m, and why."""
-        rows = {one.name: [*one.rms, one.why] for one in self.left}
+        rows = {part.name: [*part.rms, part.why] for part in self.left}
         return DataFrame.from_dict(rows, orient="index", columns=[*AXES, "why"])
 
     def _repr_html_(self) -> str:
@@ -228,15 +230,15 @@ def _named(table: Table) -> DataFrame:
 
 def _effects(found: Sequence[FittedEffect]) -> DataFrame:
     rows = {
-        (one.effect, name): (
+        (fitted.effect, name): (
             or_nan(v.value),
             v.std,
             v.unit,
-            or_nan(one.error_reduction),
-            one.probability,
+            or_nan(fitted.error_reduction),
+            fitted.probability,
         )
-        for one in found
-        for name, v in one.parameters.items()
+        for fitted in found
+        for name, v in fitted.parameters.items()
     }
     return _rows(rows, (*FITTED, "error_reduction", "probability"))
 

@@ -52,18 +52,18 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    new, names, diagnosed, one_by_one = write_with_effects(
+    extended, names, diagnosed, one_by_one = write_with_effects(
         Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
     text = f"{base} + {' + '.join(names)}"
     if not names:
-        none = "the diagnosis selected" if settings.effects is None else "effects=[] names"
-        text = f"{base} as it is, for {none} no effect"
+        source = "the diagnosis selected" if settings.effects is None else "effects=[] names"
+        text = f"{base} as it is, for {source} no effect"
     if not diagnosed:
         text += f".\n{OTHER.format(base=base)}"
     if one_by_one:
         text += f".\n{ALONE.format(model=model)}"
-    warning = warn_totals(new.body)
+    warning = warn_totals(extended.body)
     if warning:
         text += f".\n{warning}"
     content = {
@@ -73,7 +73,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         "one_by_one": one_by_one,
         "warning": warning,
     }
-    lines = [line for one in f"{model}: {text}".splitlines() for line in fold(one)]
+    lines = [line for paragraph in f"{model}: {text}".splitlines() for line in fold(paragraph)]
     say(settings, "\n".join(lines), content)
 
 

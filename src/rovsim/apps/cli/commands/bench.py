@@ -47,32 +47,32 @@ class Settings(SimulationSections, CommandSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Record the campaign, train on its train runs, time on its test runs."""
     require("benchmark", "learn", by="rovsim bench")
-    model, found = _samples(settings, catalogue)
-    how = settings.bench
-    pairs = _pairs(found, FeatureSettings()).drawn()
-    large = _pairs(found, LARGE).drawn()
+    model, samples = _samples(settings, catalogue)
+    options = settings.bench
+    pairs = _pairs(samples, FeatureSettings()).drawn()
+    large = _pairs(samples, LARGE).drawn()
     gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP)
     knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
     residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
-    effort = Effort(how.calls, how.warmup, how.seconds)
+    effort = Effort(options.calls, options.warmup, options.seconds)
     speeds = replay_speeds(model, residuals)
     path = Path(settings.out or "results") / "bench.json"
-    known = Bench(
+    result = Bench(
         machine=describe_machine(), replay=speeds, inference={}, scheduling="", accuracy=()
     )
     unfinished = path.with_name(UNFINISHED)
 
     def known_with(timed: dict[str, Latency], scheduling: str) -> Bench:
-        return known.model_copy(update={"inference": timed, "scheduling": scheduling})
+        return result.model_copy(update={"inference": timed, "scheduling": scheduling})
 
     def keep(timed: dict[str, Latency], scheduling: str) -> None:
         known_with(timed, scheduling).write(unfinished)
 
-    timed = known_with(*inference(pairs, effort, how.sweep_seconds, keep))
+    timed = known_with(*inference(pairs, effort, options.sweep_seconds, keep))
     bench = timed.model_copy(update={"accuracy": measure_accuracy(pairs)})
     bench.write(path)
     unfinished.unlink(missing_ok=True)
-    write_page(Path(how.page), bench)
+    write_page(Path(options.page), bench)
     say(settings, str(path), bench.to_json())
 
 
@@ -83,11 +83,11 @@ def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str,
         make_campaign(tank, Path(folder, "raw"), catalogue)
         data = measure(load_campaign(Path(folder, "raw")), settings.signals)
     model = nominal(data.vehicle)
-    found: dict[str, list] = {"train": [], "test": []}
+    by_split: dict[str, list] = {"train": [], "test": []}
     for motion in data.motions.values():
-        taken = sample_run(model, motion, settings)
-        found[motion.run.split].append((motion.run.control, taken))
-    return model, found
+        samples = sample_run(model, motion, settings)
+        by_split[motion.run.split].append((motion.run.control, samples))
+    return model, by_split
 
 
 def _pairs(found: dict[str, list], features: FeatureSettings) -> Pairs:

@@ -37,21 +37,23 @@ class Settings(CommandSettings):
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Run what is missing, then score all."""
     benchmark = Benchmark.of(settings.blind, settings.out)
-    asked, out = benchmark.asked, benchmark.out
+    options, out = benchmark.asked, benchmark.out
     with reported("blind cases") as progress:
         run_cases(benchmark.pending(), progress)
-    found = {m.name: read_answers(benchmark.cases, m, benchmark.answers) for m in benchmark.methods}
-    summaries = {name: summarize(answers) for name, answers in found.items()}
+    by_method = {
+        m.name: read_answers(benchmark.cases, m, benchmark.answers) for m in benchmark.methods
+    }
+    summaries = {name: summarize(answers) for name, answers in by_method.items()}
     results = BlindSummary(
-        suite=asked.suite,
-        share=asked.share,
-        seeds=asked.seeds,
-        simulator=asked.simulator,
+        suite=options.suite,
+        share=options.share,
+        seeds=options.seeds,
+        simulator=options.simulator,
         methods=summaries,
     )
     results.write(out / "summary.json")
     text = write_markdown(results)
-    page = Path(asked.page)
-    if asked.seeds == "reporting" and asked.simulator == "tank" and page.is_file():
+    page = Path(options.page)
+    if options.seeds == "reporting" and options.simulator == "tank" and page.is_file():
         replace_tables(page, write_markdown(results, write_pictures(page, results)))
     say(settings, f"{text}\n{out / 'summary.json'}", results.to_json())

@@ -35,27 +35,27 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     with second_process(DRAWING) as other:
         data, out = measure_campaign(settings, "compare")
         models = load_models(settings.model, data.vehicle, catalogue)
-        found = compare(data, models, settings)
-        assert found.comparison is not None
-        assert found.where is not None
+        results = compare(data, models, settings)
+        assert results.comparison is not None
+        assert results.where is not None
         outdated = find_outdated(out / "report.html", "compare", settings.campaign)
-        kept = keep_other(out / "report.html", "compare")
+        notice = keep_other(out / "report.html", "compare")
         origin = provenance(settings, catalogue, data.campaign)
         with appearing_together(out, last="comparison.json") as folder:
-            _write(folder, found)
+            _write(folder, results)
             from rovsim.reporting.html.folder import present
 
-            drawn = present(folder, data.campaign.name, found, origin, catalogue, other=other)
-    outdated.remove(drawn)
-    if found.coverage is None:
+            figures = present(folder, data.campaign.name, results, origin, catalogue, other=other)
+    outdated.remove(figures)
+    if results.coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
-    errors = {step.model: step.windows_2s for step in found.steps}
-    away = [step.model for step in found.steps if not step.scored]
+    errors = {step.model: step.windows_2s for step in results.steps}
+    away = [step.model for step in results.steps if not step.scored]
     tested = bool(data.runs.of("test"))
-    text = tell_comparison(errors, found.where, tested, found.coverage, away)
+    text = tell_comparison(errors, results.where, tested, results.coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    told = join_files(text + tell_doubts(data.quality), files, kept, outdated.told)
-    say(settings, told, found.comparison.to_json())
+    message = join_files(text + tell_doubts(data.quality), files, notice, outdated.told)
+    say(settings, message, results.comparison.to_json())
 
 
 def _write(folder: Path, found: ReportData) -> None:

@@ -38,10 +38,10 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     question = _ask(settings)
     data, out = measure_campaign(settings, "design")
     model = load_one_model(settings.model, data.vehicle, catalogue)
-    found = design(data, model, question, catalogue)
-    write_flight(out, found)
-    text = tell_experiment(found.experiment, model.vehicle.thruster_names)
-    say(settings, f"{text}\n\n{out / 'experiment.csv'}", found.experiment.to_json())
+    flight = design(data, model, question, catalogue)
+    write_flight(out, flight)
+    text = tell_experiment(flight.experiment, model.vehicle.thruster_names)
+    say(settings, f"{text}\n\n{out / 'experiment.csv'}", flight.experiment.to_json())
 
 
 def _ask(settings: Settings) -> Question:

@@ -54,40 +54,40 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data, out = measure_campaign(settings, "diagnosis", even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
-    others = (DRAWING, *(LOGGING if tracking else ()))
-    with second_process(*others, first=None if is_compiled() else COMPILING) as other:
+    modules = (DRAWING, *(LOGGING if tracking else ()))
+    with second_process(*modules, first=None if is_compiled() else COMPILING) as other:
         outdated = find_outdated(out / "report.html", "diagnose", settings.campaign)
         drawing = _Drawing(other, out)
 
         def draw_early(where: ErrorConditions) -> None:
             drawing.begin(ReportData(where=where, quality=data.quality))
 
-        how = select(settings, DiagnosisSettings)
-        read = digest_recordings(data.campaign)
-        found = diagnose(data.runs, base, how, catalogue, read, draw_early)
-        found.write(out / "diagnosis.json")
-        known = ReportData(
+        options = select(settings, DiagnosisSettings)
+        digest = digest_recordings(data.campaign)
+        result = diagnose(data.runs, base, options, catalogue, digest, draw_early)
+        result.write(out / "diagnosis.json")
+        report_data = ReportData(
             quality=data.quality,
-            ladder=found.diagnosis.ladder,
-            where=found.where,
-            diagnosis=found.diagnosis,
+            ladder=result.diagnosis.ladder,
+            where=result.where,
+            diagnosis=result.diagnosis,
         )
-        drawing.begin(known)
-        _tell(settings, out, found.diagnosis, data.quality, catalogue, outdated.told)
-        drawn = drawing.finish()
-        shown = ShownDiagnosis(
+        drawing.begin(report_data)
+        _tell(settings, out, result.diagnosis, data.quality, catalogue, outdated.told)
+        figures = drawing.finish()
+        page = ShownDiagnosis(
             out=out,
             campaign=data.campaign.name,
             base=base.name,
-            data=known,
-            provenance=provenance(settings, catalogue, data.campaign, read),
+            data=report_data,
+            provenance=provenance(settings, catalogue, data.campaign, digest),
             effect_files=settings.effect_files,
-            params=how.model_dump(mode="json"),
+            params=options.model_dump(mode="json"),
         )
-        last = other.submit(shown.show, drawn, tracking)
+        task = other.submit(page.show, figures, tracking)
         with reported("writing the page and logging" if tracking else "writing the page"):
-            unlogged = last.result()
-        outdated.remove(path for one in drawn for path in one.files)
+            unlogged = task.result()
+        outdated.remove(path for figure in figures for path in figure.files)
     if unlogged:
         warn(f"the diagnosis is complete, but MLflow does not have it: {unlogged}")
 
@@ -109,7 +109,7 @@ class _Drawing:
 
     def finish(self) -> list[Drawn]:
         """All of them, once they are drawn."""
-        return [one.result() for one in counted(list(self._begun.values()), "drawing")]
+        return [future.result() for future in counted(list(self._begun.values()), "drawing")]
 
 
 def _tell(
@@ -128,5 +128,5 @@ def _tell(
         text += tell_roles(quality)
     text += tell_doubts(quality)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
-    kept = keep_other(out / "report.html", "diagnose")
-    say(settings, join_files(text, files, kept, replaced), found.to_json())
+    notice = keep_other(out / "report.html", "diagnose")
+    say(settings, join_files(text, files, notice, replaced), found.to_json())

@@ -44,9 +44,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     )
     lines = [line for check in checks for line in check()]
     text = "\n".join(
-        f"  {'ok' if good else '-':<3} {what:<10} {more}" for what, good, more in lines
+        f"  {'ok' if ok else '-':<3} {item:<10} {detail}" for item, ok, detail in lines
     )
-    content = [{"what": what, "ok": good, "told": more} for what, good, more in lines]
+    content = [{"what": item, "ok": ok, "told": detail} for item, ok, detail in lines]
     say(settings, text, content)
 
 
@@ -67,8 +67,8 @@ def _compiled() -> list[Line]:
     if not os.access(folder, os.W_OK):
         return [("compiled", False, f"{folder} cannot be written: set ROVSIM_CACHE to a folder")]
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
-    told = f"{size / 1e6:.0f} MB" if size else "empty: the first run compiles, up to a minute"
-    return [("compiled", True, f"{told}, in {folder}")]
+    note = f"{size / 1e6:.0f} MB" if size else "empty: the first run compiles, up to a minute"
+    return [("compiled", True, f"{note}, in {folder}")]
 
 
 def _settings() -> list[Line]:
@@ -88,10 +88,10 @@ def _services(tracking: TrackingSettings) -> list[Line]:
     browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     slurm = shutil.which("sbatch")
     file = tracking.uri.removeprefix("sqlite:///")
-    kept = "a server" if file == tracking.uri else "no run was logged yet"
-    kept = "runs are kept there" if os.path.exists(file) else kept
+    status = "a server" if file == tracking.uri else "no run was logged yet"
+    status = "runs are kept there" if os.path.exists(file) else status
     return [
         ("browser", browser is not None, browser or "no Chromium: `playwright install chromium`"),
         ("slurm", slurm is not None, slurm or "no sbatch here; only clusters need it"),
-        ("mlflow", True, f"{tracking.uri} ({kept})"),
+        ("mlflow", True, f"{tracking.uri} ({status})"),
     ]

@@ -46,9 +46,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
     warning = warn_totals(model.body)
-    told = [_told(f"{out}: {_name(model)}", chosen, export.left, over), *fold(warning)]
+    lines = [_told(f"{out}: {_name(model)}", chosen, export.left, over), *fold(warning)]
     content = _content(out, chosen, export.left) | {"model": model.name, "warning": warning}
-    say(settings, "\n".join(told), content)
+    say(settings, "\n".join(lines), content)
 
 
 def _target(settings: Settings) -> Target:
@@ -95,11 +95,11 @@ def _name(model: Model) -> str:
 def _told(head: str, chosen: Target, left: Sequence[Sized], over: str) -> str:
     """`head`: the file, and what is in it."""
     if not left:
-        whole = f"{chosen.title} holds the whole model. {chosen.takes}"
-        return "\n".join([*fold(head), *fold(whole)])
+        sentence = f"{chosen.title} holds the whole model. {chosen.takes}"
+        return "\n".join([*fold(head), *fold(sentence)])
     lines = fold(f"Left out for {chosen.title}, with the RMS force over {over}:")
-    for one in left:
-        lines += [f"  {one.name}: {_largest(one)}", *fold(one.why, " " * 6)]
+    for part in left:
+        lines += [f"  {part.name}: {_largest(part)}", *fold(part.why, " " * 6)]
     return "\n".join([*fold(head), *lines, *fold(chosen.takes)])
 
 
@@ -118,7 +118,7 @@ def _content(out: Path, chosen: Target, left: Sequence[Sized]) -> dict[str, obje
         "file": str(out),
         "to": chosen.name,
         "left_out": [
-            {"name": one.name, "why": one.why, "rms": dict(zip(AXES, one.rms, strict=True))}
-            for one in left
+            {"name": part.name, "why": part.why, "rms": dict(zip(AXES, part.rms, strict=True))}
+            for part in left
         ],
     }

@@ -65,16 +65,16 @@ def _bag(path: Path) -> bool:
 
 def _told(proposal: CampaignProposal, file: Path) -> str:
     parts = ["\n".join(f"  {line}" for line in proposal.found)]
-    taken = [*list_taken(proposal), *(f"guess: {line}" for line in list_guesses(proposal))]
-    parts.append("\n".join(f"  {line}" for line in taken))
+    assumptions = [*list_taken(proposal), *(f"guess: {line}" for line in list_guesses(proposal))]
+    parts.append("\n".join(f"  {line}" for line in assumptions))
     if proposal.checks:
         parts.append("\n".join(f"CHECK  {line}" for line in proposal.checks))
     if proposal.questions:
-        asked = [
+        questions = [
             f"  {q.place}: {q.asks} {', '.join(v for v, _ in q.answers)}"
             for q in proposal.questions
         ]
-        parts.append(f"{len(asked)} to be answered in {file}:\n" + "\n".join(asked))
+        parts.append(f"{len(questions)} to be answered in {file}:\n" + "\n".join(questions))
     parts.append(f"{file}\nThen: rovsim compare {quote(f'campaign={file.parent}')}")
     return "\n\n".join(parts)
 

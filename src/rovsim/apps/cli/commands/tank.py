@@ -56,7 +56,7 @@ def _begin(tank: TankSettings, fly: str) -> str:
 
 def _with_flight(tank: TankSettings, fly: str) -> TankSettings:
     """With one more run, which a log of commands prescribes."""
-    taken = [run.id for run in tank.runs]
-    name = next(n for k in count(1) if (n := f"designed-{k}" if k > 1 else "designed") not in taken)
+    ids = [run.id for run in tank.runs]
+    name = next(n for k in count(1) if (n := f"designed-{k}" if k > 1 else "designed") not in ids)
     run = TankRun(id=name, control="6dof", split="train", fly=fly)
     return tank.model_copy(update={"runs": (*tank.runs, run)})

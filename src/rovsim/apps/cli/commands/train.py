@@ -62,46 +62,46 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     file, story = out / FILE, provenance(settings, catalogue, data.campaign)
     corrected = train(data.motions.values(), base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
-    found = scored.comparison
-    found.write(out / "comparison.json")
-    said = {base.name: base.name, corrected.name: name_learned(kind, settings.control, base.name)}
-    pictures = draw(out, _shown(scored, said, data.quality))
+    comparison = scored.comparison
+    comparison.write(out / "comparison.json")
+    names = {base.name: base.name, corrected.name: name_learned(kind, settings.control, base.name)}
+    pictures = draw(out, _shown(scored, names, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
-        written = (file, out / ARRAYS, out / "comparison.json")
+        files = (file, out / ARRAYS, out / "comparison.json")
         run = TrackedRun(
             experiment=data.campaign.name,
             name=settings.tracking.name or name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
-            scores=found.models[FILE.stem].runs,
-            files=[*written, *(path for one in pictures for path in one.files)],
+            scores=comparison.models[FILE.stem].runs,
+            files=[*files, *(path for picture in pictures for path in picture.files)],
             metrics=ranking(errors, corrected.name, base.name),
         )
         track(settings.tracking, run)
-    told = {said[model]: error for model, error in errors.items()}
-    text = tell_comparison(told, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
+    by_name = {names[model]: error for model, error in errors.items()}
+    text = tell_comparison(by_name, ErrorConditions(models={}), tested=bool(data.runs.of("test")))
     text += tell_residual(errors[base.name], errors[corrected.name]) + tell_doubts(data.quality)
-    kept = tell_ranking(settings.tracking, data.campaign.name)
-    say(settings, f"{text}\n\n{file}\n\n{kept}", {"model": str(file), "errors": errors})
+    ranking_text = tell_ranking(settings.tracking, data.campaign.name)
+    say(settings, f"{text}\n\n{file}\n\n{ranking_text}", {"model": str(file), "errors": errors})
 
 
 def _of_study(settings: Settings) -> Settings:
     """With the synthetic campaign of the study, where none is given and that has been made."""
-    own = settings.tank.raw_folder
-    if settings.campaign is not None or not Path(own).is_dir():
+    folder = settings.tank.raw_folder
+    if settings.campaign is not None or not Path(folder).is_dir():
         return settings
-    warn(f"no campaign was given: that of the study is taken, {own}")
-    return settings.model_copy(update={"campaign": own})
+    warn(f"no campaign was given: that of the study is taken, {folder}")
+    return settings.model_copy(update={"campaign": folder})
 
 
 def _check_name(given: str | Sequence[str]) -> None:
     """Refuse a base that is called as what is trained will be: one would stand for the other."""
-    for one in as_list(given):
-        if Path(one).stem == FILE.stem:
+    for model in as_list(given):
+        if Path(model).stem == FILE.stem:
             raise BadInput(
                 f"the base is called '{FILE.stem}', as the model that is trained will be",
-                where=f"model={one}",
+                where=f"model={model}",
                 expected="another name (a model is called by its file's stem)",
                 remedy="Copy the file, for example to base.yaml, and give that.",
             )
@@ -109,8 +109,8 @@ def _check_name(given: str | Sequence[str]) -> None:
 
 def _shown(scored: Scored, said: Mapping[str, str], quality: Mapping[str, Quality]) -> ReportData:
     """What figures show of the errors, the models called by what they are."""
-    comparison = {said[name]: one for name, one in scored.comparison.models.items()}
-    growth = {said[name]: one for name, one in scored.growth.models.items()}
+    comparison = {said[name]: result for name, result in scored.comparison.models.items()}
+    growth = {said[name]: result for name, result in scored.growth.models.items()}
     return ReportData(
         comparison=Comparison(models=comparison), growth=Growth(models=growth), quality=quality
     )
