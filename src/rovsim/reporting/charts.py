@@ -59,10 +59,10 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
 
 def _end(steps: Mapping[str, float], floor: float) -> float:
     """Where the axis ends; a baseline that is far higher than all models is cut."""
-    known = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
-    models = max((v for n, v in known.items() if n != ZERO_ACCELERATION), default=0.0)
-    cut = 0.0 < FAR * models < known.get(ZERO_ACCELERATION, 0.0)
-    return ROOM * (models if cut else max(known.values(), default=0.0)) or 1.0
+    values = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
+    models = max((v for n, v in values.items() if n != ZERO_ACCELERATION), default=0.0)
+    cut = 0.0 < FAR * models < values.get(ZERO_ACCELERATION, 0.0)
+    return ROOM * (models if cut else max(values.values(), default=0.0)) or 1.0
 
 
 def tell_beyond(bars: Sequence[LadderBar]) -> str:
@@ -87,14 +87,14 @@ class ConditionMap:
 def chart_conditions(model: ModelConditions, most: int | None = None) -> ConditionMap:
     """The map of one model; `most` conditions, or all."""
     axes = tuple(axis for axis in AXES if model.axes.get(axis))
-    known = {axis: find_varying_shares(model.axes[axis]) for axis in axes}
-    best = {
-        name: max(known[axis][name] for axis in axes) for name in (known[axes[0]] if axes else ())
+    shares = {axis: find_varying_shares(model.axes[axis]) for axis in axes}
+    largest = {
+        name: max(shares[axis][name] for axis in axes) for name in (shares[axes[0]] if axes else ())
     }
-    conditions = tuple(sorted(best, key=lambda name: -best[name])[:most])
-    share = [[known[axis][name] for axis in axes] for name in conditions]
-    found = frozenset((one.axis, one.condition) for one in model.findings)
-    return ConditionMap(axes, conditions, np.reshape(share, (len(conditions), len(axes))), found)
+    conditions = tuple(sorted(largest, key=lambda name: -largest[name])[:most])
+    share = [[shares[axis][name] for axis in axes] for name in conditions]
+    findings = frozenset((finding.axis, finding.condition) for finding in model.findings)
+    return ConditionMap(axes, conditions, np.reshape(share, (len(conditions), len(axes))), findings)
 
 
 def find_varying_shares(tables: Mapping[str, ConditionTable]) -> dict[str, float]:
@@ -105,8 +105,8 @@ def find_varying_shares(tables: Mapping[str, ConditionTable]) -> dict[str, float
     """
     constant = tables[THROUGHOUT].share_of_error if THROUGHOUT in tables else 0.0
     return {
-        name: one.share_of_error if name == THROUGHOUT else max(one.share_of_error - constant, 0.0)
-        for name, one in tables.items()
+        name: t.share_of_error if name == THROUGHOUT else max(t.share_of_error - constant, 0.0)
+        for name, t in tables.items()
     }
 
 

@@ -12,8 +12,8 @@ def mathml(latex: str) -> str:
     from latex2mathml.converter import convert
 
     try:
-        found = convert(latex.replace("<", r"\lt ").replace(">", r"\gt "))
+        markup = convert(latex.replace("<", r"\lt ").replace(">", r"\gt "))
     except Exception:  # it has a dozen errors of its own, and raises IndexError and others besides
-        found = ""
-    harmless = found and " href=" not in found and " style=" not in found
-    return found if harmless else f"<code>{escape(latex)}</code>"
+        markup = ""
+    harmless = markup and " href=" not in markup and " style=" not in markup
+    return markup if harmless else f"<code>{escape(latex)}</code>"

@@ -173,8 +173,8 @@ class RunData:
     @property
     def bands(self) -> dict[str, Array]:
         """Bands (2, n, 6) of the velocity by model, of those that have one."""
-        each = {model: by_run.get(self.run) for model, by_run in self.known.bands.items()}
-        return {model: band.nu for model, band in each.items() if band is not None}
+        candidates = {model: by_run.get(self.run) for model, by_run in self.known.bands.items()}
+        return {model: band.nu for model, band in candidates.items() if band is not None}
 
     @property
     def budget(self) -> ForceBudget | None:
@@ -214,8 +214,8 @@ def list_run_figures() -> list[FigureKind]:
 def _is_of_run(figure: FigureKind) -> bool:
     if set(figure.needs) <= vars(RunData).keys():
         return True
-    own = (*(one.name for one in fields(ReportData)), *vars(ReportData))
-    refuse_unknown(figure, (name for name in own if not name.startswith("_")))
+    attributes = (*(result.name for result in fields(ReportData)), *vars(ReportData))
+    refuse_unknown(figure, (name for name in attributes if not name.startswith("_")))
     return False
 
 
@@ -223,8 +223,8 @@ def describe(figure: str, run: str, data: ReportData | None = None) -> str:
     """What a figure of one run shows, in a few words."""
     if not run:
         return ""
-    asked = kind(figure).needs
-    words = [f"run {run}", *dict.fromkeys(REPLAYED[name] for name in asked if name in REPLAYED)]
-    if "budget" in asked and data and (budget := data.budgets.get(run)):
+    needs = kind(figure).needs
+    words = [f"run {run}", *dict.fromkeys(REPLAYED[name] for name in needs if name in REPLAYED)]
+    if "budget" in needs and data and (budget := data.budgets.get(run)):
         words.append(f"model {title(budget.model)}")
     return ", ".join(words)

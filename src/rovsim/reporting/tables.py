@@ -65,14 +65,14 @@ class Table:
         Returns:
             Like `frame`, True or False.
         """
-        shown = self.frame.map(lambda value: float(f"{value:.2e}")).drop(
+        rounded = self.frame.map(lambda value: float(f"{value:.2e}")).drop(
             NOISE_FLOOR, errors="ignore"
         )
-        best = shown.min()
+        best = rounded.min()
         for column in self.columns:
             if column.high_is_good:
-                best[column.name] = shown[column.name].max()
-        return shown.eq(best).reindex(self.frame.index, fill_value=False)
+                best[column.name] = rounded[column.name].max()
+        return rounded.eq(best).reindex(self.frame.index, fill_value=False)
 
     def csv(self) -> str:
         """All columns at full precision; an empty cell where there is no value."""
@@ -85,9 +85,9 @@ class Table:
         heads = [(column.heading, f"({column.unit})") for column in self.printed]
         levels = MultiIndex.from_tuples(heads, names=["model", None])
         bold = np.where(self.best()[names], "bfseries:", "")
-        shown = self.frame[names].set_axis(levels, axis=1).set_axis(map(title, self.frame.index))
-        style = shown.style.format(_number).apply(lambda _: bold, axis=None)
-        written = (
+        frame = self.frame[names].set_axis(levels, axis=1).set_axis(map(title, self.frame.index))
+        style = frame.style.format(_number).apply(lambda _: bold, axis=None)
+        text = (
             style.format_index(escape="latex")
             .format_index(escape="latex", axis=1)
             .to_latex(
@@ -100,7 +100,7 @@ class Table:
                 siunitx=True,
             )
         )
-        return NEEDED + written.replace("\\begin{tabular}", SET_UP + "\\begin{tabular}")
+        return NEEDED + text.replace("\\begin{tabular}", SET_UP + "\\begin{tabular}")
 
     def write(self, folder: Path, name: str) -> list[Path]:
         """Write `name`.csv and `name`.tex into `folder`."""
@@ -112,16 +112,16 @@ class Table:
 
 def _number(value: float) -> str:
     """A number as siunitx reads it; in braces, and not aligned, a power of ten, and a dash."""
-    shown = significant(value).replace("−", "-")
-    if "e" in shown:
-        return rf"{{\num{{{shown}}}}}"
-    return shown if math.isfinite(value) else f"{{{shown}}}"
+    text = significant(value).replace("−", "-")
+    if "e" in text:
+        return rf"{{\num{{{text}}}}}"
+    return text if math.isfinite(value) else f"{{{text}}}"
 
 
 def _aligned(column: Series) -> str:
     """A column as wide as its numbers are before and after their decimal points."""
-    shown = [_number(value) for value in column]
-    parts = [number.partition(".") for number in shown if not number.startswith("{")]
+    numbers = [_number(value) for value in column]
+    parts = [number.partition(".") for number in numbers if not number.startswith("{")]
     before = max((len(whole) for whole, _, _ in parts), default=1)
     after = max((len(rest) for _, _, rest in parts), default=0)
     return f"S[table-format={before}.{after}]"
@@ -170,10 +170,10 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         for step in ladder.steps
     }
     built_up = f" {LADDER}" if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
-    bound = "; the noise floor is a bound, not a model" if ladder.noise_floor is not None else ""
+    remark = "; the noise floor is a bound, not a model" if ladder.noise_floor is not None else ""
     return Table(
         caption=f"Models on the test runs, all samples alike.{built_up} {ERROR_MEANING}. Fit: 1 "
-        f"minus this. Per axis: acceleration RMSE. Best of each column in bold, ties too{bound}.",
+        f"minus this. Per axis: acceleration RMSE. Best of each column in bold, ties too{remark}.",
         label="tab:ladder",
         columns=columns,
         frame=_frame(rows, columns),

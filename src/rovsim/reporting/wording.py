@@ -73,8 +73,8 @@ def title(model: str, length: int = LONGEST) -> str:
     """Return a model's name as people say it: `effects+knn_6dof` is "effects + KNN (6-DoF)"."""
     if learned := _learned().fullmatch(model):
         base, kind, control = learned.groups()
-        said = f"{list_learners()[kind].title} ({CONTROLS[control]})"
-        return short(f"{base} + {said}" if base else said, length)
+        learner = f"{list_learners()[kind].title} ({CONTROLS[control]})"
+        return short(f"{base} + {learner}" if base else learner, length)
     if effect := STEP.fullmatch(model):
         return short(f"+ {effect[1]}", length)
     return short(TITLES.get(model, model), length)
@@ -84,11 +84,11 @@ def explain_model(model: str) -> str:
     """What a model of the study is; nothing of one that its user made."""
     if learned := _learned().fullmatch(model):
         base, kind, control = learned.groups()
-        of = "" if control == "all" else f" under {CONTROLS[control]} control"
+        condition = "" if control == "all" else f" under {CONTROLS[control]} control"
         meaning = list_learners()[kind].meaning
         return (
             f"{title(base or 'nominal')}, and {meaning} that learned the rest of the acceleration "
-            f"from the train runs{of}"
+            f"from the train runs{condition}"
         )
     if model == f"+{PROPOSED}":
         return "the proposed equation, and the effects that act beside it"

@@ -13,14 +13,14 @@ from rovsim.reporting.figures.signature import signature, write
 
 def main(docs: Path, names: list[str]) -> None:
     """Write docs/catalogue.md, and the pictures of these effects (all if none is named)."""
-    known = {n: cls for n, cls in built_in().items() if cls.signature and n in (names or [n])}
+    effects = {n: cls for n, cls in built_in().items() if cls.signature and n in (names or [n])}
     with reported("drawing") as progress:
-        for k, (name, cls) in enumerate(known.items()):
-            progress(k, len(known))
+        for k, (name, cls) in enumerate(effects.items()):
+            progress(k, len(effects))
             if cls.signature:
                 look = seen(cls.signature, settings(cls, cls.signature), built_in())
                 write(signature(look), docs / PICTURES / f"{name}.png")
-        progress(len(known), len(known))
+        progress(len(effects), len(effects))
     write_text(docs / PAGE, page(built_in()))
 
 

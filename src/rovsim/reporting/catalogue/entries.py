@@ -69,9 +69,9 @@ edit those.
 def page(effects: Mapping[str, type[Effect]]) -> str:
     """Markdown of all these effects, by where they act; as a set, whatever their order."""
     chapters = chaptered(effects)
-    parts = [INTRODUCTION, *(_contents(title, found) for title, found in chapters.items())]
-    for title, found in chapters.items():
-        parts += [f"## {title}\n", *(entry(cls) for cls in found)]
+    parts = [INTRODUCTION, *(_contents(title, classes) for title, classes in chapters.items())]
+    for title, classes in chapters.items():
+        parts += [f"## {title}\n", *(entry(cls) for cls in classes)]
     return "\n".join(parts).rstrip() + "\n"
 
 
@@ -94,12 +94,12 @@ def _contents(title: str, found: Iterable[type[Effect]]) -> str:
 
 def entry(cls: type[Effect]) -> str:
     """One effect: sentence, equation, symbols, picture, cause, what settles it, parameters."""
-    first, _, rest = (inspect.getdoc(cls) or "").partition("\n\n")
-    more = f"\n{_flat(rest)}\n" if rest else ""
+    summary, _, details = (inspect.getdoc(cls) or "").partition("\n\n")
+    more = f"\n{_flat(details)}\n" if details else ""
     return f"""\
 ### {cls.id}
 
-{_flat(first)}
+{_flat(summary)}
 {more}
 ```math
 {cls.equation}
@@ -117,20 +117,20 @@ def entry(cls: type[Effect]) -> str:
 
 
 def _where(cls: type[Effect]) -> str:
-    told = "; ".join(f"$`{symbol}`$: {meaning}" for symbol, meaning in explain_symbols(cls))
-    return f"where {told}.\n\n" if told else ""
+    meanings = "; ".join(f"$`{symbol}`$: {meaning}" for symbol, meaning in explain_symbols(cls))
+    return f"where {meanings}.\n\n" if meanings else ""
 
 
 def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -> str:
     if signature is None:
         return ""
-    what = "size of the" if signature.size else "mean"
-    over = f"{what} {signature.axis} error over {signature.condition}"
+    quantity = "size of the" if signature.size else "mean"
+    text = f"{quantity} {signature.axis} error over {signature.condition}"
     values = ", ".join(
         f"{k} = {minus(f'{v:g}')} {unit(units[k])}".strip() for k, v in signature.values.items()
     )
     return (
-        f"![{name}: {over}]({PICTURES}/{name}.png)\n\n<sub>Hidden: {values}. Left: {over}.</sub>\n"
+        f"![{name}: {text}]({PICTURES}/{name}.png)\n\n<sub>Hidden: {values}. Left: {text}.</sub>\n"
     )
 
 
@@ -139,9 +139,9 @@ def _table(parameters: Iterable[Parameter]) -> str:
     rows = ["| parameter | symbol | unit | range | default | scale |", "|---|---|---|---|---|---|"]
     alike = groupby(parameters, key=lambda p: (p.unit, p.low, p.high, _default(p), p.scale))
     for (si, low, high, default, scale), group in alike:
-        same = list(group)
-        names = ", ".join(f"`{p.name}`" for p in same)
-        columns = [names, _symbols(same), unit(si) or "–", _range(low, high), default, f"{scale:g}"]
+        row = list(group)
+        names = ", ".join(f"`{p.name}`" for p in row)
+        columns = [names, _symbols(row), unit(si) or "–", _range(low, high), default, f"{scale:g}"]
         rows.append(f"| {' | '.join(columns)} |")
     text = "\n".join(rows)
     if len(rows) <= LONG:
@@ -151,8 +151,8 @@ def _table(parameters: Iterable[Parameter]) -> str:
 
 def _symbols(same: list[Parameter]) -> str:
     """Symbols of a row: all of up to three, else the first and the last."""
-    shown = [f"$`{p.symbol}`$" for p in same]
-    return ", ".join(shown) if len(shown) <= 3 else f"{shown[0]} … {shown[-1]}"
+    symbols = [f"$`{p.symbol}`$" for p in same]
+    return ", ".join(symbols) if len(symbols) <= 3 else f"{symbols[0]} … {symbols[-1]}"
 
 
 def _default(p: Parameter) -> str:

@@ -59,10 +59,10 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
         turbulence=Turbulence(force=0.1, moment=0.004),
         effects=(describe_effect(cls(**signature.values)),),
     )
-    known = SUITABLE.get(cls.requires, {})
-    suits = {k: known[k] for k in ("vehicle", "tank") if k in known}
-    log = calm.log.model_copy(update=known.get("log", {}))
-    return TankSettings.model_validate({**dict(calm), **suits, "log": log})
+    suitable = SUITABLE.get(cls.requires, {})
+    changes = {k: suitable[k] for k in ("vehicle", "tank") if k in suitable}
+    log = calm.log.model_copy(update=suitable.get("log", {}))
+    return TankSettings.model_validate({**dict(calm), **changes, "log": log})
 
 
 def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
@@ -77,13 +77,13 @@ def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
 def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen:
     """What the nominal model misses in this tank, and what the hidden effect adds to it."""
     motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
-    missing, rest = (
+    missing, remaining = (
         average_blocks(motion, sample_run(model, motion, SimulationSettings()))
         for model in (nominal(truth.vehicle), truth)
     )
     k = AXES.index(signature.axis)
     condition, values = found(signature.condition, missing)
-    error, added = missing.error[:, k], missing.error[:, k] - rest.error[:, k]
+    error, added = missing.error[:, k], missing.error[:, k] - remaining.error[:, k]
     stretch = number_stretches(missing, error)
     cut = cut_bins(condition, values, stretch)
     missed, effect = (bin_errors(cut, x, stretch) for x in (error, added))
@@ -96,9 +96,9 @@ def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
     Raises:
         BadInput: there is none.
     """
-    known = {c.name: (c, x) for c, x in list_shown_conditions(missing).items()}
-    if name in known:
-        return known[name]
+    conditions = {c.name: (c, x) for c, x in list_shown_conditions(missing).items()}
+    if name in conditions:
+        return conditions[name]
     raise unlisted(
-        name, known, found=f"unknown condition '{name}'", where="the signature of an effect"
+        name, conditions, found=f"unknown condition '{name}'", where="the signature of an effect"
     )

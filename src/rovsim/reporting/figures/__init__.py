@@ -55,9 +55,9 @@ def kinds() -> dict[str, FigureKind]:
     Raises:
         BadInput: one of them does not declare what a figure does.
     """
-    found = [kind for path in Path(__file__).parent.glob("*.py") if (kind := read_kind(path))]
-    found.sort(key=lambda one: (SECTIONS.index(one.section), one.place, one.name))
-    return {one.name: one for one in found}
+    figures = [kind for path in Path(__file__).parent.glob("*.py") if (kind := read_kind(path))]
+    figures.sort(key=lambda figure: (SECTIONS.index(figure.section), figure.place, figure.name))
+    return {figure.name: figure for figure in figures}
 
 
 def kind(name: str) -> FigureKind:
@@ -66,10 +66,10 @@ def kind(name: str) -> FigureKind:
     Raises:
         BadInput: there is no such figure.
     """
-    known = kinds()
-    if name not in known:
-        raise unlisted(name, known, found=f"there is no figure '{name}'", where="figures")
-    return known[name]
+    figures = kinds()
+    if name not in figures:
+        raise unlisted(name, figures, found=f"there is no figure '{name}'", where="figures")
+    return figures[name]
 
 
 def read_kind(path: Path) -> FigureKind | None:
@@ -78,7 +78,7 @@ def read_kind(path: Path) -> FigureKind | None:
     Raises:
         BadInput: it does not declare what a figure does.
     """
-    draw, told = None, dict[str, Any](PLACE=1)
+    draw, consts = None, dict[str, Any](PLACE=1)
     for node in _parse(path).body:
         match node:
             case ast.FunctionDef(name="draw"):
@@ -87,20 +87,22 @@ def read_kind(path: Path) -> FigureKind | None:
                 ast.Assign(targets=[ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name)])
                 | ast.AnnAssign(target=ast.Name(id="SECTION" | "CAPTION" | "PLACE" as name))
             ):
-                told[name] = _constant(node.value, path, name)
-    if draw is None and len(told) > 1:
-        raise _refused(path, f"{' and '.join(sorted({*told} - {'PLACE'}))} without a 'draw'", DRAW)
+                consts[name] = _constant(node.value, path, name)
+    if draw is None and len(consts) > 1:
+        raise _refused(
+            path, f"{' and '.join(sorted({*consts} - {'PLACE'}))} without a 'draw'", DRAW
+        )
     if draw is None:
         return None
-    _check(path, told, draw)
-    takes = {one.arg: given for one, given in zip(draw.kwonlyargs, draw.kw_defaults, strict=True)}
+    _check(path, consts, draw)
+    takes = {a.arg: default for a, default in zip(draw.kwonlyargs, draw.kw_defaults, strict=True)}
     return FigureKind(
         path.stem,
-        told["SECTION"],
-        told["CAPTION"],
-        told["PLACE"],
+        consts["SECTION"],
+        consts["CAPTION"],
+        consts["PLACE"],
         tuple(takes),
-        tuple(name for name, given in takes.items() if given is None),
+        tuple(name for name, default in takes.items() if default is None),
     )
 
 
@@ -122,8 +124,8 @@ def _constant(node: ast.expr | None, path: Path, name: str) -> Any:
 def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
     """Refuse a figure that does not say where and under which words it is shown."""
     if told.get("SECTION") not in SECTIONS:
-        found = f"SECTION is {told['SECTION']!r}" if "SECTION" in told else "there is no SECTION"
-        raise _refused(path, found, f"one of {', '.join(SECTIONS)}")
+        problem = f"SECTION is {told['SECTION']!r}" if "SECTION" in told else "there is no SECTION"
+        raise _refused(path, problem, f"one of {', '.join(SECTIONS)}")
     if not (isinstance(told.get("CAPTION"), str) and told["CAPTION"]):
         raise _refused(path, "there is no CAPTION", "one or two sentences")
     if not isinstance(told["PLACE"], (int, float)):
@@ -138,10 +140,10 @@ def refuse_unknown(figure: FigureKind, known: Iterable[str]) -> None:
     Raises:
         BadInput: names what it asks for.
     """
-    if strangers := [name for name in figure.needs if name not in (known := set(known))]:
+    if unknown := [name for name in figure.needs if name not in (known := set(known))]:
         path = Path(__file__).with_name(f"{figure.name}.py")
-        found = f"'draw' asks for {', '.join(strangers)}"
-        raise _refused(path, found, f"some of {', '.join(sorted(known))}")
+        problem = f"'draw' asks for {', '.join(unknown)}"
+        raise _refused(path, problem, f"some of {', '.join(sorted(known))}")
 
 
 def _refused(path: Path, found: str, expected: str) -> BadInput:

@@ -49,10 +49,10 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
 
 def _shown(published_errors: PublishedErrors) -> list[str]:
     """Our models of every cell; of residuals those on top of effects, if there are any."""
-    ours = [n for n in published_errors.models if not n.startswith(PUBLISHED)]
-    whole = [n for n in ours if all(n in cell.ratios for cell in published_errors.cells)]
-    stacked = {n.partition("+")[2] for n in whole if n.startswith(f"{EFFECTS}+")}
-    return [n for n in whole if n not in stacked]
+    own_models = [n for n in published_errors.models if not n.startswith(PUBLISHED)]
+    complete = [n for n in own_models if all(n in cell.ratios for cell in published_errors.cells)]
+    stacked = {n.partition("+")[2] for n in complete if n.startswith(f"{EFFECTS}+")}
+    return [n for n in complete if n not in stacked]
 
 
 def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]) -> None:
@@ -61,11 +61,11 @@ def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]
         return
     runs = list(dict.fromkeys(cell.run for cell in cells))
     places = np.array([k + runs.index(cell.run) for k, cell in enumerate(cells)])
-    shown = np.array([[_ratio(cell, name) for name in style] for cell in cells])
+    ratios = np.array([[_ratio(cell, name) for name in style] for cell in cells])
     for k, name in enumerate(style):
-        axes.plot(places, np.minimum(shown[:, k], HIGHEST), **_look(k, style[name]))
+        axes.plot(places, np.minimum(ratios[:, k], HIGHEST), **_look(k, style[name]))
     axes.axhline(1.0, color="#444444", linewidth=0.8)
-    _vertical(axes, float(np.nanmin(shown, initial=LOWEST)))
+    _vertical(axes, float(np.nanmin(ratios, initial=LOWEST)))
     axes.set_xticks(places, [_label(cell) for cell in cells], rotation=90)
     axes.tick_params(axis="x", length=0)
     for run in runs:

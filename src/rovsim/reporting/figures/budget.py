@@ -49,28 +49,28 @@ ADDED = (Look(PURPLE, "-"), Look(OLIVE, "-"), Look(PURPLE, (0, (4, 1.5))))
 def draw(*, budget: ForceBudget) -> Figure:
     """Draw a model's parts and the missing force over time."""
     time, parts, missing = budget.time, budget.parts, budget.missing
-    known = np.isfinite(missing).any(axis=1)
-    names = _largest(parts, known)
+    valid = np.isfinite(missing).any(axis=1)
+    names = _largest(parts, valid)
     curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}
-    curves = {n: np.where(known[:, None], v, np.nan) for n, v in curves.items()}
-    at = excerpt(time, np.where(known[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
+    curves = {n: np.where(valid[:, None], v, np.nan) for n, v in curves.items()}
+    part = excerpt(time, np.where(valid[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
     style = {"missing": Look(BLACK, "-", width=1.5), **_looks(names)}
     figure, axes = six_panels(FORCE, FORCE_UNITS)
-    drawn = {n: v[at] for n, v in curves.items()}
-    remarks = plot_all(axes, time[at], _common(drawn), style)
+    excerpts = {n: v[part] for n, v in curves.items()}
+    remarks = plot_all(axes, time[part], _common(excerpts), style)
     for k, axis in enumerate(axes):
-        axis.set_ylim(*_limits([v[:, k] for v in drawn.values()]))
+        axis.set_ylim(*_limits([v[:, k] for v in excerpts.values()]))
     share_scales(axes)
     for axis in axes:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
-    left = [n for n in parts if n not in names]
+    omitted = [n for n in parts if n not in names]
     legend(figure, lines(style))
     note(
         figure,
         [
             f"Missing: mean over {significant(SMOOTH, 1)} s.",
-            f"Too small to be drawn: {', '.join(left)}." if left else "",
-            _excerpt_told(time, at),
+            f"Too small to be drawn: {', '.join(omitted)}." if omitted else "",
+            _excerpt_told(time, part),
             SHARED,
             *(r for r in remarks if r.startswith("No values")),
         ],
@@ -94,19 +94,19 @@ def _largest(parts: Mapping[str, Array], known: Array) -> list[str]:
     size = {n: np.sqrt(np.mean(f[known] ** 2, axis=0)) for n, f in parts.items() if known.any()}
     whole = np.sqrt(sum((s**2 for s in size.values()), np.zeros(6)))
     share = {n: float(np.max(s / np.where(whole > 0, whole, 1.0))) for n, s in size.items()}
-    kept = sorted((n for n in share if share[n] > 0.02), key=lambda n: -share[n])[:SHOWN]
-    return [n for n in parts if n in kept]
+    largest = sorted((n for n in share if share[n] > 0.02), key=lambda n: -share[n])[:SHOWN]
+    return [n for n in parts if n in largest]
 
 
 def _smoothed(time: Array, values: Array) -> Array:
     """Running mean over `SMOOTH` s of values (n, 6), of what is known in it."""
     count = max(round(SMOOTH / float(np.median(np.diff(time)))), 1)
-    known, window = np.isfinite(values), np.ones(count)
+    valid, window = np.isfinite(values), np.ones(count)
     total = [
         np.convolve(np.where(k, v, 0.0), window, "same")
-        for v, k in zip(values.T, known.T, strict=True)
+        for v, k in zip(values.T, valid.T, strict=True)
     ]
-    weight = [np.convolve(k.astype(float), window, "same") for k in known.T]
+    weight = [np.convolve(k.astype(float), window, "same") for k in valid.T]
     return np.stack([t / np.maximum(w, 1.0) for t, w in zip(total, weight, strict=True)], axis=1)
 
 
@@ -117,9 +117,9 @@ def _common(curves: dict[str, Array]) -> dict[str, Array]:
 
 
 def _limits(values: list[Array]) -> tuple[float, float]:
-    known = np.concatenate([v[np.isfinite(v)] for v in values])
-    if not len(known):
+    finite = np.concatenate([v[np.isfinite(v)] for v in values])
+    if not len(finite):
         return -1.0, 1.0
-    low, high = float(known.min()), float(known.max())
+    low, high = float(finite.min()), float(finite.max())
     room = 0.06 * max(high - low, 1e-6)
     return low - room, high + room

@@ -74,8 +74,8 @@ def _lay_out(force: Disturbance) -> tuple[Figure, Array, list[Axes]]:
 
 def _list_families(force: Disturbance) -> list[list[int]]:
     """Forces and moments that have a spectrum: they have two units."""
-    shown = [AXES.index(a) for a in force.axes] if force.spectrum else []
-    families = [[i for i in shown if i < 3], [i for i in shown if i >= 3]]
+    axes = [AXES.index(a) for a in force.axes] if force.spectrum else []
+    families = [[i for i in axes if i < 3], [i for i in axes if i >= 3]]
     return [family for family in families if family]
 
 
@@ -84,8 +84,8 @@ def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> Non
     if force.spectrum is None:
         return
     frequency, density = np.array(force.spectrum.frequency_hz), np.array(force.spectrum.density)
-    named = looks([f"effects-{AXES[i]}" for i in family])
-    for i, look in zip(family, named.values(), strict=True):
+    styles = looks([f"effects-{AXES[i]}" for i in family])
+    for i, look in zip(family, styles.values(), strict=True):
         axes.plot(frequency[1:], density[1:, i], label=AXES[i], **look.line())
     plain_log(axes, "xy")
     most = max(float(np.max(density[1:, family])), TINY)

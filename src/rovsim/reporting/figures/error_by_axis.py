@@ -69,9 +69,9 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
     names = list(errors.columns)
     width = 0.8 / max(len(errors), 1)
     for k, (name, row) in enumerate(zip(errors.index, errors.to_numpy(), strict=True)):
-        at = np.arange(len(names)) + (k + 0.5) * width - 0.4
-        axes.bar(at, np.nan_to_num(row), width * 0.92, label=name, **style[name].bar())
-        for x in at[~np.isfinite(row)]:
+        places = np.arange(len(names)) + (k + 0.5) * width - 0.4
+        axes.bar(places, np.nan_to_num(row), width * 0.92, label=name, **style[name].bar())
+        for x in places[~np.isfinite(row)]:
             axes.plot(
                 x,
                 0.02,
@@ -94,8 +94,8 @@ def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
     """From the lowest to the highest run, over the bars."""
     width = 0.8 / max(len(low), 1)
     for k, (least, most) in enumerate(zip(low.to_numpy(), high.to_numpy(), strict=True)):
-        at = np.arange(len(least)) + (k + 0.5) * width - 0.4
-        axes.vlines(at, least, most, color="#222222", linewidth=0.8)
+        places = np.arange(len(least)) + (k + 0.5) * width - 0.4
+        axes.vlines(places, least, most, color="#222222", linewidth=0.8)
     highest = float(np.nan_to_num(high.to_numpy()).max(initial=0.0))
     axes.set_ylim(0, max(axes.get_ylim()[1], ROOM * highest))
 

@@ -25,12 +25,12 @@ def draw(*, growth: Growth) -> Figure:
     style = looks(growth.models)
     figure = sheet(110)
     panels = figure.subplots(2, 3, sharex=True)
-    drawn: set[str] = set()
+    plotted: set[str] = set()
     for axes, axis, unit in zip(panels.flat, AXES, VELOCITY_UNITS, strict=True):
         for name, curve in growth.models.items():
             values = list(map(or_nan, curve.velocity_rmse[axis]))
             if np.isfinite(values).any():
-                drawn.add(name)
+                plotted.add(name)
                 axes.plot(curve.horizon_s, values, label=title(name), **style[name].line())
         axes.set_title(axis)
         axes.set_ylim(bottom=0)
@@ -41,7 +41,7 @@ def draw(*, growth: Growth) -> Figure:
             axes.set_ylabel(f"velocity RMSE ({unit})")
     for axes in panels[1]:
         axes.set_xlabel("time since start (s)")
-    missing = [title(name) for name in growth.models if name not in drawn]
+    missing = [title(name) for name in growth.models if name not in plotted]
     legend(figure, lines(style))
     note(figure, [f"No values: {listed(missing)}." if missing else ""])
     return figure

@@ -69,10 +69,10 @@ def _choose(quality: Mapping[str, Quality]) -> list[str]:
 def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
     """A cell for each axis; with a dash where nothing was measured."""
     for k, axis in enumerate(AXES):
-        known = excitation.get(axis)
-        color = EXCITED if known and known.excited else STILL
+        entry = excitation.get(axis)
+        color = EXCITED if entry and entry.excited else STILL
         axes.bar(k, 0.84, 0.94, y - 0.42, facecolor=color, edgecolor="#BBBBBB", linewidth=0.5)
-        text = significant(known.std, 2) if known else "–"
+        text = significant(entry.std, 2) if entry else "–"
         axes.text(k, y, text, ha="center", va="center", fontsize=8)
 
 

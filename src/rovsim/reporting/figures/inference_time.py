@@ -28,9 +28,9 @@ def draw(*, timing: Timing) -> Figure:
     figure = sheet(34 + 11 * max(len(names), 2))
     axes = figure.subplots()
     plain_log(axes)
-    for row, both in enumerate(timing.inference.values()):
+    for row, timings in enumerate(timing.inference.values()):
         for way, (color, shift) in WAYS.items():
-            _line(axes, len(names) - 1 - row + shift, getattr(both, way), color)
+            _line(axes, len(names) - 1 - row + shift, getattr(timings, way), color)
     axes.set_yticks(range(len(names)), [title(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
     axes.set_xlabel("time of one prediction (µs)")
@@ -52,8 +52,8 @@ def _line(axes: Axes, y: float, stats: Latency, color: str) -> None:
 def _deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     times = [
         getattr(stats, key)
-        for both in inference.values()
-        for stats in (both.library, both.exported)
+        for timings in inference.values()
+        for stats in (timings.library, timings.exported)
         for key in MARKERS
     ]
     low = min([t for t in times if t > 0], default=100.0)

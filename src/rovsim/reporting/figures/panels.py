@@ -51,8 +51,8 @@ def plot_all(
     if len(time):
         axes[-1].set_xlim(float(time[0]), float(max(time[-1], time[0] + 1e-6)))
     empty = [name for name, values in curves.items() if not np.isfinite(values).any()]
-    seen = np.isfinite(next(iter(curves.values()))).any(axis=0)
-    silent = [axis for axis, yes in zip(AXES, seen, strict=True) if not yes] if seen.any() else []
+    valid = np.isfinite(next(iter(curves.values()))).any(axis=0)
+    silent = [axis for axis, yes in zip(AXES, valid, strict=True) if not yes] if valid.any() else []
     return [
         f"Nothing was measured of {listed(silent)}." if silent else "",
         f"Partly beyond the axes: {listed(map(title, sorted(leaving)))}." if leaving else "",
@@ -64,9 +64,9 @@ def plot_all(
 def share_scales(axes: Sequence[Axes]) -> None:
     """Give the panels of one unit the widest scale of those that show something."""
     for group in (axes[:3], axes[3:]):
-        shown = [axis.get_ylim() for axis in group if _shows(axis)]
-        for axis in group if shown else ():
-            axis.set_ylim(min(low for low, _ in shown), max(high for _, high in shown))
+        ranges = [axis.get_ylim() for axis in group if _shows(axis)]
+        for axis in group if ranges else ():
+            axis.set_ylim(min(low for low, _ in ranges), max(high for _, high in ranges))
 
 
 def _shows(axis: Axes) -> bool:
@@ -82,10 +82,10 @@ def _leaves(axes: Sequence[Axes], values: Array) -> bool:
 def shade(axes: list[Axes], time: Array, band: Array, look: Look) -> None:
     """Fill between the ends of a band (2, n, 6), within the axes as they are."""
     for k, axis in enumerate(axes):
-        shown = axis.get_ylim()
+        y_range = axis.get_ylim()
         t, ends = broken(time, band[:, :, k].T)
         axis.fill_between(t, *ends.T, zorder=1, **look.area())
-        axis.set_ylim(shown)
+        axis.set_ylim(y_range)
 
 
 def _scale(axis: Axes, curves: Sequence[Array]) -> None:

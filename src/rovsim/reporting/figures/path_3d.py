@@ -51,11 +51,11 @@ def draw(
     low, high = _view(paths["measured"], tank)
     leaving = []
     for name, path in paths.items():
-        seen = _inside(path, low, high)
-        if np.isfinite(seen).sum() < np.isfinite(path).sum():
+        visible = _inside(path, low, high)
+        if np.isfinite(visible).sum() < np.isfinite(path).sum():
             leaving.append(name)
-        paths[name] = seen
-        axes.plot(*broken(time, seen)[1].T, label=title(name), **style[name].line())
+        paths[name] = visible
+        axes.plot(*broken(time, visible)[1].T, label=title(name), **style[name].line())
     for name in reversed(paths):  # the measured ends lie on top
         _ends(axes, paths[name], style[name].color)
     if tank is not None and np.isfinite(tank).all():
@@ -67,13 +67,13 @@ def draw(
 
 
 def _view(measured: Array, tank: Array | None) -> tuple[Array, Array]:
-    known = np.full((3, 2), np.nan) if tank is None else np.sort(tank * HALF_TURN_X[:, None])
-    seen = measured[np.isfinite(measured).all(axis=1)]
-    if not len(seen):
-        seen = np.array([[-1.0] * 3, [1.0] * 3])
-    low = np.where(np.isfinite(known[:, 0]), known[:, 0], seen.min(axis=0) - ROOM)
-    high = np.where(np.isfinite(known[:, 1]), known[:, 1], seen.max(axis=0) + ROOM)
-    return np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
+    walls = np.full((3, 2), np.nan) if tank is None else np.sort(tank * HALF_TURN_X[:, None])
+    points = measured[np.isfinite(measured).all(axis=1)]
+    if not len(points):
+        points = np.array([[-1.0] * 3, [1.0] * 3])
+    low = np.where(np.isfinite(walls[:, 0]), walls[:, 0], points.min(axis=0) - ROOM)
+    high = np.where(np.isfinite(walls[:, 1]), walls[:, 1], points.max(axis=0) + ROOM)
+    return np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
 
 
 def _inside(path: Array, low: Array, high: Array) -> Array:
@@ -82,8 +82,8 @@ def _inside(path: Array, low: Array, high: Array) -> Array:
 
 
 def _ends(axes: Axes3D, path: Array, color: str) -> None:
-    seen = path[np.isfinite(path).all(axis=1)]
-    for point, marker in ((seen[:1], "o"), (seen[-1:], "s")):
+    points = path[np.isfinite(path).all(axis=1)]
+    for point, marker in ((points[:1], "o"), (points[-1:], "s")):
         axes.plot(
             *point.T,
             marker,

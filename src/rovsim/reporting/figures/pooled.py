@@ -36,10 +36,10 @@ def pool(
         index="run", columns=["model", "axis"], values="value"
     )
     table = table.reindex(columns=MultiIndex.from_product([models, AXES], names=["model", "axis"]))
-    counted = table.notna().T.groupby("axis").any().T.reindex(columns=list(AXES), fill_value=False)
-    runs = counted.sum().where(lambda n: n > 0)
+    valid = table.notna().T.groupby("axis").any().T.reindex(columns=list(AXES), fill_value=False)
+    runs = valid.sum().where(lambda n: n > 0)
     means = {
-        name: (table[name].where(counted, 0.0) ** power).sum(skipna=False) / runs for name in models
+        name: (table[name].where(valid, 0.0) ** power).sum(skipna=False) / runs for name in models
     }
     return DataFrame(means, index=list(AXES)).T ** (1 / power)
 

@@ -35,30 +35,30 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
     selected effect adds in the final model. One that the ranking does not list has no bar: others
     had to be there to bring it to light.
     """
-    alone = {one.effect: or_nan(one.error_reduction) for one in diagnosis.ranking}
-    chosen = {one.effect: or_nan(one.error_reduction) for one in diagnosis.selected}
-    others = [name for name, share in alone.items() if share >= LEAST and name not in chosen]
-    names = [*chosen, *sorted(others, key=lambda name: -alone[name])]
+    alone = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.ranking}
+    selected = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.selected}
+    others = [name for name, share in alone.items() if share >= LEAST and name not in selected]
+    names = [*selected, *sorted(others, key=lambda name: -alone[name])]
     figure = sheet(28 + 6.0 * max(len(names), 3))
     axes = figure.subplots()
     for y, name in enumerate(names):
-        color = FAMILIES["effects"].color if name in chosen else OTHER
-        _row(axes, y, alone.get(name, np.nan), chosen.get(name, np.nan), color)
+        color = FAMILIES["effects"].color if name in selected else OTHER
+        _row(axes, y, alone.get(name, np.nan), selected.get(name, np.nan), color)
     axes.set_yticks(range(len(names)), [short(name, 28) for name in names])
     for label in axes.get_yticklabels():
-        label.set_fontweight("bold" if label.get_text() in chosen else "normal")
+        label.set_fontweight("bold" if label.get_text() in selected else "normal")
     axes.set_ylim(max(len(names), 1) - 0.4, -0.6)
-    harm = any(share < 0.0 for share in chosen.values())
+    harm = any(share < 0.0 for share in selected.values())
     if harm:
         axes.axvline(0, color="black", linewidth=0.5)
-    _scale(axes, [*alone.values(), *chosen.values()], harm)
+    _scale(axes, [*alone.values(), *selected.values()], harm)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set_xlabel("share of the error removed (%)")
     if not names:
         axes.set_xticks([])
         nothing(axes, "no effect removes 1 % by itself" if alone else "no effect was judged")
-    legend(figure, _handles(bool(chosen)) if names else [])
+    legend(figure, _handles(bool(selected)) if names else [])
     note(figure, _remarks(diagnosis))
     return figure
 
@@ -73,11 +73,11 @@ def _scale(axes: Axes, shares: Sequence[float], harm: bool) -> None:
 
 def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
     axes.barh(y, 100 * np.nan_to_num(alone), 0.66, color=color, linewidth=0)
-    shown = float(np.clip(together, LOWEST, HIGHEST))
+    clipped = float(np.clip(together, LOWEST, HIGHEST))
     if np.isfinite(together):
-        marker = "D" if shown == together else "<" if together < shown else ">"
-        axes.plot(100 * shown, y, marker, color="black", markersize=4, clip_on=False)
-    right = 100 * max(np.nan_to_num(alone), np.nan_to_num(shown))
+        marker = "D" if clipped == together else "<" if together < clipped else ">"
+        axes.plot(100 * clipped, y, marker, color="black", markersize=4, clip_on=False)
+    right = 100 * max(np.nan_to_num(alone), np.nan_to_num(clipped))
     axes.annotate(
         _text(alone, together),
         (right, y),

@@ -15,9 +15,9 @@ def broken(time: Array, values: Array) -> tuple[Array, Array]:
     steps = np.diff(time)
     if not len(steps):
         return time, values
-    at = np.flatnonzero(steps > GAP * np.median(steps)) + 1
-    middle = 0.5 * (time[at] + time[at - 1])
-    return np.insert(time, at, middle), np.insert(values, at, np.nan, axis=0)
+    jumps = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    middle = 0.5 * (time[jumps] + time[jumps - 1])
+    return np.insert(time, jumps, middle), np.insert(values, jumps, np.nan, axis=0)
 
 
 def masked(values: Array, usable: Array | None) -> Array:
@@ -33,15 +33,15 @@ def averaged(time: Array, values: Array, seconds: float) -> Array:
     if len(time) < 2:
         return values
     half = max(0, round(0.5 * seconds / float(np.median(np.diff(time)))))
-    known = np.isfinite(values)
+    valid = np.isfinite(values)
     sums, counts = (
         np.pad(np.cumsum(x, axis=0, dtype=float), [(1, 0)] + [(0, 0)] * (values.ndim - 1))
-        for x in (np.where(known, values, 0.0), known)
+        for x in (np.where(valid, values, 0.0), valid)
     )
-    at = np.arange(len(time))
-    low, high = np.maximum(at - half, 0), np.minimum(at + half + 1, len(time))
+    k = np.arange(len(time))
+    low, high = np.maximum(k - half, 0), np.minimum(k + half + 1, len(time))
     return np.where(
-        known, (sums[high] - sums[low]) / np.maximum(counts[high] - counts[low], 1), np.nan
+        valid, (sums[high] - sums[low]) / np.maximum(counts[high] - counts[low], 1), np.nan
     )
 
 
@@ -70,6 +70,6 @@ def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float]:
     base = stacked[0] if len(stacked[0]) else everything
     low, high = float(base.min()), float(base.max())
     room = max(high - low, 1e-6) * (HEADROOM - 1) / 2
-    shown = everything[(everything >= low - room) & (everything <= high + room)]
-    margin = 0.05 * max(float(np.ptp(shown)), 1e-6)
-    return float(shown.min()) - margin, float(shown.max()) + margin
+    visible = everything[(everything >= low - room) & (everything <= high + room)]
+    margin = 0.05 * max(float(np.ptp(visible)), 1e-6)
+    return float(visible.min()) - margin, float(visible.max()) + margin

@@ -74,28 +74,28 @@ def write(figure: Figure, path: Path) -> None:
     with styled():
         figure.savefig(buffer, format="png", dpi=PIXELS / (WIDTH * MM), metadata={"Software": None})
     small = Image.open(buffer).convert("RGB").quantize(COLORS)
-    written = io.BytesIO()
-    small.save(written, format="PNG", optimize=True)
-    write_bytes(path, written.getvalue())
+    compressed = io.BytesIO()
+    small.save(compressed, format="PNG", optimize=True)
+    write_bytes(path, compressed.getvalue())
 
 
 def _bins(axes: Axes, seen: Seen) -> None:
     """Bin means (or sizes) with what the effect makes of them; dots: single blocks."""
-    size, at = seen.signature.size, seen.missed.binning
-    turned = np.degrees if at.condition.unit == "rad" else np.asarray
+    size, binning = seen.signature.size, seen.missed.binning
+    convert = np.degrees if binning.condition.unit == "rad" else np.asarray
     dots = np.abs(seen.error) if size else seen.error
     axes.axhline(0.0, color="#444444", linewidth=0.6)
-    axes.plot(turned(seen.condition), dots, ".", color="#bbbbbb", markersize=3, zorder=1.5)
-    x, there = turned(at.center), at.count > 0
+    axes.plot(convert(seen.condition), dots, ".", color="#bbbbbb", markersize=3, zorder=1.5)
+    x, filled = convert(binning.center), binning.count > 0
     y, added = _height(seen.missed, size), _height(seen.effect, size)
-    error = None if size else 2 * seen.missed.error[there]
-    axes.errorbar(x[there], y[there], yerr=error, fmt="o", color=BLACK, markersize=4, zorder=3)
-    axes.plot(x[there], added[there], zorder=2.5, **LINE)
-    unit = "deg" if at.condition.unit == "rad" else at.condition.unit
-    axes.set_xlabel(f"{at.condition.name} ({unit})")
+    error = None if size else 2 * seen.missed.error[filled]
+    axes.errorbar(x[filled], y[filled], yerr=error, fmt="o", color=BLACK, markersize=4, zorder=3)
+    axes.plot(x[filled], added[filled], zorder=2.5, **LINE)
+    unit = "deg" if binning.condition.unit == "rad" else binning.condition.unit
+    axes.set_xlabel(f"{binning.condition.name} ({unit})")
     axis = seen.signature.axis
-    what = f"size of {axis} error" if size else f"{axis} error"
-    axes.set_ylabel(f"{what} ({ACCELERATION_UNITS[AXES.index(axis)]})")
+    quantity = f"size of {axis} error" if size else f"{axis} error"
+    axes.set_ylabel(f"{quantity} ({ACCELERATION_UNITS[AXES.index(axis)]})")
 
 
 def _height(table: BinnedErrors, size: bool) -> Array:

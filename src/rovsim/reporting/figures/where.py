@@ -36,13 +36,13 @@ def draw(*, where: ErrorConditions) -> Figure:
     for axis, panels in zip(searched, rows, strict=True):
         tables = {name: m.axes[axis] for name, m in models.items()}
         names = strongest(list(tables.values()))
-        known = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
+        significant = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
             _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             panel.set_title(
                 _title(name, list(tables.values())),
                 fontsize=7.5,
-                weight="bold" if name in known else "normal",
+                weight="bold" if name in significant else "normal",
             )
         panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[AXES.index(axis)]})")
         panels[0].locator_params(axis="y", nbins=4)
@@ -54,22 +54,22 @@ def draw(*, where: ErrorConditions) -> Figure:
 
 def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
     """Names of the conditions with more than one bin that explain most, the best first."""
-    known: dict[str, float] = {}
+    shares: dict[str, float] = {}
     for tables in models:
         for name, share in find_varying_shares(tables).items():
             if len(tables[name].mean) > 1:
-                known[name] = max(known.get(name, 0.0), share)
-    return sorted(known, key=lambda name: -known[name])[:COLUMNS]
+                shares[name] = max(shares.get(name, 0.0), share)
+    return sorted(shares, key=lambda name: -shares[name])[:COLUMNS]
 
 
 def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:
     """Name and unit of a condition; below, the shares that it explains, model by model."""
-    known = [tables for tables in models if name in tables]
-    if not known:
+    matching = [tables for tables in models if name in tables]
+    if not matching:
         return ""
-    shares = ", ".join(f"{100 * find_varying_shares(tables)[name]:.0f}" for tables in known)
-    shown = name.replace("distance to the nearest", "distance to")
-    return f"{shown} ({chart_bins(known[0][name]).unit})\n{shares} %"
+    shares = ", ".join(f"{100 * find_varying_shares(tables)[name]:.0f}" for tables in matching)
+    label = name.replace("distance to the nearest", "distance to")
+    return f"{label} ({chart_bins(matching[0][name]).unit})\n{shares} %"
 
 
 def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
@@ -125,9 +125,9 @@ def _remarks(models: Mapping[str, ModelConditions]) -> Sequence[str]:
     if not models:
         return ["No model was searched."]
     splits = {m.split for m in models.values()}
-    told = [f"{title(n)}: runs of the {m.split} split" for n, m in models.items()]
+    sentences = [f"{title(n)}: runs of the {m.split} split" for n, m in models.items()]
     return [
-        f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(told)}.",
+        f"Runs of the {splits.pop()} split." if len(splits) == 1 else f"{'; '.join(sentences)}.",
         "Percent: share of the squared error that varies with the condition, model "
         "by model, a constant error taken out; bold: beyond chance.",
     ]

@@ -26,32 +26,32 @@ def present(
 
     `other`, a second process, draws half of it.
     """
-    shown = draw(out, data, drawn, other)
-    page = report.Report(campaign, data, [one.picture for one in shown], provenance, catalogue)
+    figures = draw(out, data, drawn, other)
+    page = report.Report(campaign, data, [f.picture for f in figures], provenance, catalogue)
     report.write(out / "report.html", page)
-    return [out / "report.html", *(path for one in shown for path in one.files)]
+    return [out / "report.html", *(path for f in figures for path in f.files)]
 
 
 def draw(
     out: Path, data: ReportData, drawn: Iterable[Drawn] = (), other: Executor | None = None
 ) -> list[Drawn]:
     """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
-    known = {one.wanted: one for one in drawn}
+    finished = {figure.wanted: figure for figure in drawn}
     elsewhere: dict[Wanted, Future[Drawn]] = {}
-    left = [one for one in list_wanted(data) if one not in known]
+    pending = [figure for figure in list_wanted(data) if figure not in finished]
     try:
-        for k, one in enumerate(counted(left, "drawing")):
-            content = describe(*one, data), data.select(*one)
+        for k, figure in enumerate(counted(pending, "drawing")):
+            content = describe(*figure, data), data.select(*figure)
             if other is not None and k % 2:
-                elsewhere[one] = other.submit(draw_selected, out, *one, *content)
+                elsewhere[figure] = other.submit(draw_selected, out, *figure, *content)
             else:
-                known[one] = draw_selected(out, *one, *content)
-        known |= {one: future.result() for one, future in elsewhere.items()}
+                finished[figure] = draw_selected(out, *figure, *content)
+        finished |= {figure: future.result() for figure, future in elsewhere.items()}
     finally:  # nothing is drawn any more into a folder that an error takes away
         for future in elsewhere.values():
             future.cancel()
         wait(elsewhere.values())
-    return [known[one] for one in list_wanted(data)]
+    return [finished[figure] for figure in list_wanted(data)]
 
 
 def list_wanted(data: ReportData) -> list[Wanted]:
@@ -69,7 +69,7 @@ def draw_selected(
     out: Path, figure: str, run: str, about: str, content: Mapping[str, Any]
 ) -> Drawn:
     """Draw one figure of its content, as `ReportData.select` gives it, into `out`/figures."""
-    drawn = kind(figure).draw(**content)
-    paths = save(drawn, out / "figures", f"{figure}-{run}" if run else figure)
+    plot = kind(figure).draw(**content)
+    paths = save(plot, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
     return Drawn((figure, run), Picture.read(png, figure, about, run), paths)

@@ -18,12 +18,12 @@ def keep_other(page: Path, command: str) -> str:
 
     Returns a sentence that says so; empty where there was nothing to keep.
     """
-    found = _find_kind(page)
-    if found in ("", command):
+    writer = _find_kind(page)
+    if writer in ("", command):
         return ""
-    kept = _kept(page, found)
-    os.replace(page, kept)
-    return f"{page} was the report of {found}: it is {kept} now."
+    new_path = _kept(page, writer)
+    os.replace(page, new_path)
+    return f"{page} was the report of {writer}: it is {new_path} now."
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ class Outdated:
 
     def remove(self, drawn: Iterable[Path]) -> None:
         """Remove what the new report, with these figures, did not replace."""
-        new = {path.stem for path in drawn}
+        names = {path.stem for path in drawn}
         for path in self.figures:
-            if path.stem not in new:
+            if path.stem not in names:
                 path.unlink(missing_ok=True)
                 path.with_suffix(".pdf").unlink(missing_ok=True)
         for page in self.pages:
@@ -57,16 +57,16 @@ def find_outdated(page: Path, command: str, campaign: str | None) -> Outdated:
     To be asked before the first of its figures is drawn. A figure that an earlier report shows
     belongs to it, whatever it is called; one that was drawn anew since does not.
     """
-    kept = _kept(page, command)
-    earlier = [one for one in (page, kept) if _find_kind(one) == command]
-    texts = [one.read_text(encoding="utf-8", errors="replace") for one in earlier]
+    other_page = _kept(page, command)
+    earlier = [report for report in (page, other_page) if _find_kind(report) == command]
+    texts = [report.read_text(encoding="utf-8", errors="replace") for report in earlier]
     figures = [
         path
         for path in sorted((page.parent / "figures").glob("*.png"))
         if _shows(texts, path.read_bytes())
     ]
-    told = next(filter(None, (_tell_other(page.parent, text, campaign) for text in texts)), "")
-    return Outdated(tuple(figures), (kept,) if kept in earlier else (), told)
+    notice = next(filter(None, (_tell_other(page.parent, text, campaign) for text in texts)), "")
+    return Outdated(tuple(figures), (other_page,) if other_page in earlier else (), notice)
 
 
 def _shows(texts: Sequence[str], picture: bytes) -> bool:
@@ -76,9 +76,9 @@ def _shows(texts: Sequence[str], picture: bytes) -> bool:
 
 def _tell_other(out: Path, text: str, campaign: str | None) -> str:
     """What is replaced, if it is of another campaign that is still there."""
-    found = FOLDER.search(text)
-    other = Path(unescape(found[1])) if found else Path()
-    if not found or campaign is None or not other.exists():
+    match = FOLDER.search(text)
+    other = Path(unescape(match[1])) if match else Path()
+    if not match or campaign is None or not other.exists():
         return ""
     if other.resolve() == Path(campaign).expanduser().resolve():
         return ""

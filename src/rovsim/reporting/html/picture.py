@@ -34,13 +34,13 @@ class Picture:
         try:
             png = path.read_bytes()
         except OSError as error:
-            found = f"cannot be read ({error.strerror})"
+            problem = f"cannot be read ({error.strerror})"
         else:
             if png.startswith(b"\x89PNG"):
                 return Picture(name, png, about, run)
-            found = "is not a PNG picture"
+            problem = "is not a PNG picture"
         remedy = "Draw the figure again."
-        raise BadInput(found, where=path, expected="a figure of the study", remedy=remedy)
+        raise BadInput(problem, where=path, expected="a figure of the study", remedy=remedy)
 
     @property
     def source(self) -> str:

@@ -105,8 +105,8 @@ def _subtitle(data: ReportData) -> str:
 def _folder(provenance: Mapping[str, object]) -> str:
     """Where the campaign lies, absolute, so that the next report tells whether it is of another."""
     settings = provenance.get("settings")
-    given = settings.get("campaign") if isinstance(settings, Mapping) else None
-    return str(Path(given).expanduser().absolute()) if isinstance(given, str) else ""
+    campaign = settings.get("campaign") if isinstance(settings, Mapping) else None
+    return str(Path(campaign).expanduser().absolute()) if isinstance(campaign, str) else ""
 
 
 def _environment() -> Environment:
@@ -133,17 +133,17 @@ def write(path: Path, report: Report) -> None:
 
 def list_rows(content: Mapping[str, object], above: str = "") -> list[tuple[str, str]]:
     """Nested values as rows of a section's dotted name and all its values."""
-    rows, own = [], {}
+    rows, values = [], {}
     for name, value in content.items():
         place = f"{above}.{name}" if above else name
         if isinstance(value, Mapping) and value:
             rows += list_rows(value, place)
         elif above:
-            own[name] = _text(value)
+            values[name] = _text(value)
         else:
             rows.append((name, _text(value)))
-    told = "; ".join(f"{name} {text}" for name, text in own.items())
-    return [(above, told), *rows] if own else rows
+    summary = "; ".join(f"{name} {text}" for name, text in values.items())
+    return [(above, summary), *rows] if values else rows
 
 
 def _text(value: object) -> str:
@@ -160,8 +160,8 @@ def _explained(data: ReportData) -> dict[str, str]:
     """What the models are, by the names they have in the report."""
     compared = list(data.comparison.models) if data.comparison else []
     steps = [step.model for step in data.ladder.steps] if data.ladder else []
-    told = {title(name): explain_model(name) for name in (*steps, *compared)}
-    return {name: text for name, text in told.items() if text}
+    meanings = {title(name): explain_model(name) for name in (*steps, *compared)}
+    return {name: text for name, text in meanings.items() if text}
 
 
 def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
@@ -181,7 +181,7 @@ def _tell_undrawn(data: ReportData) -> str:
 
 def _by_section(pictures: Sequence[Picture]) -> dict[str, dict[str, list[Picture]]]:
     """Pictures by section and run; those of no run in particular come first."""
-    found: dict[str, dict[str, list[Picture]]] = {section: {"": []} for section in SECTIONS}
+    sections: dict[str, dict[str, list[Picture]]] = {section: {"": []} for section in SECTIONS}
     for picture in pictures:
-        found[kind(picture.name).section].setdefault(picture.run, []).append(picture)
-    return found
+        sections[kind(picture.name).section].setdefault(picture.run, []).append(picture)
+    return sections

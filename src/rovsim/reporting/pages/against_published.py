@@ -29,11 +29,11 @@ def _standings(published_errors: PublishedErrors) -> str:
     rows = [
         [
             name,
-            f"{found.below} of {found.cells}",
-            known(found.geometric_mean),
-            *(known(found.by_metric[m].geometric_mean) for m in METRICS),
+            f"{standing.below} of {standing.cells}",
+            known(standing.geometric_mean),
+            *(known(standing.by_metric[m].geometric_mean) for m in METRICS),
         ]
-        for name, found in published_errors.models.items()
+        for name, standing in published_errors.models.items()
     ]
     return table(head, rows)
 
@@ -64,14 +64,14 @@ def _against_simulator(published_errors: PublishedErrors, name: str, metric: str
 def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     """Heading and table of one metric: the mark, whose it is, and the ratios of our models."""
     heading, units = QUANTITIES[metric]
-    ours = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
+    own_models = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
     rows = [
         [
             cell.run,
             cell.axis if cell.demanded else f"({cell.axis})",
             significant(cell.mark),
             f"{cell.best.model}, {cell.best.variant}",
-            *(known(cell.ratios.get(name)) for name in ours),
+            *(known(cell.ratios.get(name)) for name in own_models),
         ]
         for cell in published_errors.cells
         if cell.metric == metric
@@ -81,5 +81,5 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     return [
         f"### {heading[0].upper()}{heading[1:]}",
         f"The mark in {units_text}, whose it is, and our errors divided by it{extra}.",
-        table(["run", "axis", "mark", "smallest published", *ours], rows),
+        table(["run", "axis", "mark", "smallest published", *own_models], rows),
     ]

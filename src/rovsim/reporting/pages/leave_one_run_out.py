@@ -25,29 +25,30 @@ from rovsim.results.timing import Timing
 def tabulate_selected(diagnoses: Mapping[str, Diagnosis]) -> str:
     """What the diagnosis chose while each run was held out: a row a parameter, a column a run."""
     values = {
-        run: {name: interval(value) for name, value in _fitted(one)}
-        for run, one in diagnoses.items()
+        run: {name: interval(value) for name, value in _fitted(diagnosis)}
+        for run, diagnosis in diagnoses.items()
     }
-    names = dict.fromkeys(name for own in values.values() for name in own)
-    rows = [[name, *(own.get(name, "–") for own in values.values())] for name in names]
+    names = dict.fromkeys(name for by_name in values.values() for name in by_name)
+    rows = [[name, *(by_name.get(name, "–") for by_name in values.values())] for name in names]
     return table(["parameter", *(f"without {run}" for run in values)], rows)
 
 
 def _fitted(diagnosis: Diagnosis) -> Iterator[tuple[str, FittedValue]]:
-    for one in diagnosis.selected:
-        for name, value in one.parameters.items():
-            yield f"{one.effect} {name}", value
+    for fit in diagnosis.selected:
+        for name, value in fit.parameters.items():
+            yield f"{fit.effect} {name}", value
 
 
 def tell_known(diagnoses: Mapping[str, Diagnosis]) -> str:
     """How many of the fitted numbers the train runs tell from zero, and which in every fold."""
-    values = {run: dict(_fitted(one)) for run, one in diagnoses.items()}
-    known = {
-        run: [n for n, v in own.items() if differs_from_zero(v)] for run, own in values.items()
+    values = {run: dict(_fitted(diagnosis)) for run, diagnosis in diagnoses.items()}
+    nonzero = {
+        run: [n for n, v in by_name.items() if differs_from_zero(v)]
+        for run, by_name in values.items()
     }
-    counts = (f"{len(known[run])} of {len(values[run])} without {run}" for run in values)
+    counts = (f"{len(nonzero[run])} of {len(values[run])} without {run}" for run in values)
     always = [
-        n for n in dict.fromkeys(chain(*known.values())) if all(n in k for k in known.values())
+        n for n in dict.fromkeys(chain(*nonzero.values())) if all(n in k for k in nonzero.values())
     ]
     return (
         f"Fitted numbers whose 95 % interval leaves zero out: {', '.join(counts)}; in every fold "
@@ -57,10 +58,10 @@ def tell_known(diagnoses: Mapping[str, Diagnosis]) -> str:
 
 def tabulate_together(diagnoses: Mapping[str, Diagnosis]) -> str:
     """What the runs fixed only jointly in half of the folds or more, the most frequent first."""
-    groups = [group for one in diagnoses.values() for group in one.known_together]
-    seen = {group: n for group in groups if 2 * (n := groups.count(group)) >= len(diagnoses)}
-    often = sorted(seen, key=lambda group: (-seen[group], group))
-    rows = [[", ".join(group), f"{seen[group]} of {len(diagnoses)}"] for group in often]
+    groups = [group for diagnosis in diagnoses.values() for group in diagnosis.known_together]
+    counts = {group: n for group in groups if 2 * (n := groups.count(group)) >= len(diagnoses)}
+    frequent = sorted(counts, key=lambda group: (-counts[group], group))
+    rows = [[", ".join(group), f"{counts[group]} of {len(diagnoses)}"] for group in frequent]
     return table(["known only together", "folds"], rows)
 
 
@@ -82,8 +83,8 @@ def describe_folds(results: Path) -> str:
     ]
     pitfalls = results / "pitfalls.json"
     if pitfalls.exists():
-        told = tell_pitfalls(Pitfalls.read(pitfalls))
-        parts += ["### The public code's pitfalls, repeated", *told]
+        sentences = tell_pitfalls(Pitfalls.read(pitfalls))
+        parts += ["### The public code's pitfalls, repeated", *sentences]
     return "\n\n".join(parts)
 
 
@@ -92,8 +93,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("results", type=Path)
     parser.add_argument("page", type=Path)
-    given = parser.parse_args(arguments)
-    replace_tables(given.page, describe_folds(given.results))
+    options = parser.parse_args(arguments)
+    replace_tables(options.page, describe_folds(options.results))
 
 
 if __name__ == "__main__":

@@ -30,11 +30,11 @@ def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
 def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
     """Of each selected effect the next best name, but for those that cannot be told from it."""
     best = []
-    for one in found.selected:
-        rivals = [r for r in found.rivals if r.instead_of == one.effect]
-        alike = (group for group in found.indistinguishable if one.effect in group)
-        taken = {name for group in alike for name in group}
-        behind = [r for r in rivals if r.effect not in taken]
+    for fit in found.selected:
+        rivals = [r for r in found.rivals if r.instead_of == fit.effect]
+        alike = (group for group in found.indistinguishable if fit.effect in group)
+        alike_names = {name for group in alike for name in group}
+        behind = [r for r in rivals if r.effect not in alike_names]
         if behind:
             best.append(min(behind, key=lambda r: or_nan(r.deficit)))
     return best

@@ -18,14 +18,14 @@ def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
     `thrusters`: their names in the vehicle file.
     """
     lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
-    lines += [_odds(name, one) for name, one in found.expects.odds.items()]
+    lines += [_odds(name, item) for name, item in found.expects.odds.items()]
     names = with_thruster_names(list(found.expects.std), thrusters)
     lines += map(_std, names, found.expects.std.values())
     if found.expects.std:
         lines += ["", "± is the 95 % interval."]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
-    lines += [f"  {name:<11}{tell_share(one)}" for name, one in found.baselines.items()]
-    warnings = [line for one in found.warnings for line in ("", f"Warning: {one}")]
+    lines += [f"  {name:<11}{tell_share(item)}" for name, item in found.baselines.items()]
+    warnings = [line for item in found.warnings for line in ("", f"Warning: {item}")]
     return "\n".join([*lines, "", tell_limits(found), *warnings])
 
 
@@ -58,18 +58,18 @@ def _std(name: str, one: Surer) -> str:
 
 def tell_limits(found: Experiment) -> str:
     """How near to walls and limits it comes."""
-    kept = found.keeps
-    wall = "" if kept.nearest_wall_m is None else f"{kept.nearest_wall_m:.2f} m from any wall, "
+    limits = found.keeps
+    wall = "" if limits.nearest_wall_m is None else f"{limits.nearest_wall_m:.2f} m from any wall, "
     return (
-        f"It stays {wall}below {kept.speed_m_s:.2f} m/s, {kept.turn_rate_rad_s:.2f} rad/s and "
-        f"{kept.tilt_rad:.2f} rad of tilt."
+        f"It stays {wall}below {limits.speed_m_s:.2f} m/s, {limits.turn_rate_rad_s:.2f} rad/s and "
+        f"{limits.tilt_rad:.2f} rad of tilt."
     )
 
 
 def list_steps(instructions: Sequence[str]) -> list[tuple[str, list[str]]]:
     """Steps to be numbered, each with what belongs to it: all that follows one with a colon."""
-    ends = next((k for k, one in enumerate(instructions) if one.endswith(":")), len(instructions))
-    steps: list[tuple[str, list[str]]] = [(one, []) for one in instructions[: ends + 1]]
+    ends = next((k for k, line in enumerate(instructions) if line.endswith(":")), len(instructions))
+    steps: list[tuple[str, list[str]]] = [(line, []) for line in instructions[: ends + 1]]
     if steps:
         steps[-1][1].extend(instructions[ends + 1 :])
     return steps

@@ -13,7 +13,7 @@ from rovsim.results.published_errors import ModelStanding, PublishedErrors
 def tell_standings(published_errors: PublishedErrors) -> list[str]:
     """One sentence for each residual on top of effects: how many cells, how far, which not."""
     models = published_errors.models
-    return [_sentence(n, found) for n, found in models.items() if n.startswith(f"{EFFECTS}+")]
+    return [_sentence(n, standing) for n, standing in models.items() if n.startswith(f"{EFFECTS}+")]
 
 
 def _sentence(name: str, found: ModelStanding) -> str:
@@ -29,15 +29,15 @@ def _sentence(name: str, found: ModelStanding) -> str:
 def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
     """One sentence for each mistake: what was done, and what it cost on each run."""
     return [
-        f"{name[0].upper()}{name[1:]}: {done}. {measure[0].upper()}{measure[1:]}: {costs}."
-        for name, (done, measure) in PITFALLS.items()
+        f"{name[0].upper()}{name[1:]}: {mistake}. {measure[0].upper()}{measure[1:]}: {costs}."
+        for name, (mistake, measure) in PITFALLS.items()
         if (costs := _costs(pitfalls.runs, name))
     ]
 
 
 def _costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
     return ", ".join(
-        f"{known(found[name].right)} becomes {known(found[name].wrong)} ({run})"
-        for run, found in runs.items()
-        if name in found
+        f"{known(costs[name].right)} becomes {known(costs[name].wrong)} ({run})"
+        for run, costs in runs.items()
+        if name in costs
     )

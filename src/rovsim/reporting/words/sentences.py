@@ -59,18 +59,18 @@ def band_sentences(coverage: Bands) -> list[str]:
 
 def _held(model: ModelBands) -> list[str]:
     """Share of the velocities at the ends of windows, all test runs and axes, by their length."""
-    found: dict[str, list[tuple[float, int]]] = {}
+    by_duration: dict[str, list[tuple[float, int]]] = {}
     for run in model.runs.values():
-        for seconds, one in run.windows.items():
-            share = float(np.nanmean(one.at_end.array())) if one.windows else 0.0
-            found.setdefault(seconds, []).append((share, one.windows))
-    told = []
-    for seconds, parts in found.items():
+        for seconds, windows in run.windows.items():
+            share = float(np.nanmean(windows.at_end.array())) if windows.windows else 0.0
+            by_duration.setdefault(seconds, []).append((share, windows.windows))
+    phrases = []
+    for seconds, parts in by_duration.items():
         shares, counts = np.array(parts).T
         if counts.sum():
             mean = float(shares @ counts / counts.sum())
-            told.append(f"{mean:.0%} of the measured velocities after {seconds} s")
-    return told
+            phrases.append(f"{mean:.0%} of the measured velocities after {seconds} s")
+    return phrases
 
 
 def scores(ladder: Ladder) -> dict[str, float]:
@@ -82,9 +82,9 @@ def runs_sentences(quality: Mapping[str, Quality]) -> list[str]:
     """Say how many runs there are, and how many of them are held out."""
     if not quality:
         return []
-    held = [run for run, report in quality.items() if report.split == "test"]
+    test_runs = [run for run, report in quality.items() if report.split == "test"]
     count = _count(len(quality), "run")
-    return [f"The campaign has {count}, {len(held)} of them held out for tests."]
+    return [f"The campaign has {count}, {len(test_runs)} of them held out for tests."]
 
 
 def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
@@ -93,7 +93,7 @@ def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
     for run, report in quality.items():
         for doubt in report.doubts:
             runs.setdefault(doubt, []).append(run)
-    return [f"{several(found)}: {doubt}" for doubt, found in runs.items()]
+    return [f"{several(names)}: {doubt}" for doubt, names in runs.items()]
 
 
 def nominal_sentences(errors: DataFrame) -> list[str]:
@@ -122,8 +122,8 @@ def _against_nothing(errors: DataFrame) -> list[str]:
     beaten = ratio.index[ratio >= 1 - EQUAL]
     if len(beaten):
         return [f"In {listed(beaten)} it is no better than a vehicle that keeps its velocity."]
-    where = "every axis with a value" if ratio.isna().any() else "every axis"
-    return [f"On {where} it is better than a vehicle that simply keeps its velocity."]
+    axes = "every axis with a value" if ratio.isna().any() else "every axis"
+    return [f"On {axes} it is better than a vehicle that simply keeps its velocity."]
 
 
 def quiet_sentences(quality: Mapping[str, Quality]) -> list[str]:
@@ -142,8 +142,8 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
     if not any(is_learned(name) for name in (*errors.index, *steps)):
         return []
     ratios, measure = _overall(errors, steps)
-    every = {name: ratio for name, ratio in ratios.items() if is_learned(name)}
-    learned = {name: ratio for name, ratio in every.items() if math.isfinite(ratio)}
+    residuals = {name: ratio for name, ratio in ratios.items() if is_learned(name)}
+    learned = {name: ratio for name, ratio in residuals.items() if math.isfinite(ratio)}
     if not learned:
         return ["No learned residual can be compared with the nominal model on the test runs."]
     best = min(learned, key=lambda name: learned[name])
@@ -152,7 +152,7 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
         *_effects_alone(ratios, learned[best]),
         *_per_axis(relate(errors).reindex([best]).loc[best]),
         *_others(learned, best),
-        *_without_value([title(name) for name in every if name not in learned]),
+        *_without_value([title(name) for name in residuals if name not in learned]),
     ]
 
 
@@ -169,23 +169,23 @@ def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, f
         ratios = {name: value / steps[NOMINAL] for name, value in steps.items()}
         return ratios, f"the {ERROR}"
     rows = relate(errors)
-    counted = rows.reindex([NOMINAL]).loc[NOMINAL].notna()
-    if not counted.any():
+    has_value = rows.reindex([NOMINAL]).loc[NOMINAL].notna()
+    if not has_value.any():
         return {}, ""
     return (
-        rows.loc[:, counted].mean(axis=1, skipna=False).to_dict(),
+        rows.loc[:, has_value].mean(axis=1, skipna=False).to_dict(),
         "the velocity RMSE in 2 s windows, relative to nominal, mean over the axes",
     )
 
 
 def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
-    which = "The learned residual" if count == 1 else f"Of {count} learned residuals,"
+    subject = "The learned residual" if count == 1 else f"Of {count} learned residuals,"
     if ratio < 1 - EQUAL:
         verb = "lowers" if count == 1 else "lowers the error most:"
         tail = (
             f" {measure} by {_percent(1 - ratio)}" if count == 1 else f" by {_percent(1 - ratio)}"
         )
-        text = f"{which} {best} {verb}{tail}"
+        text = f"{subject} {best} {verb}{tail}"
         return f"{text}." if count == 1 else f"{text} ({measure})."
     change = (
         "leaves the error as it is"
@@ -206,21 +206,21 @@ def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
         return [
             f"But the effects alone lower it by {_percent(1 - r)}." for r in alone if r < learned
         ]
-    own = {name: r for name, r in ratios.items() if family(name) == EFFECTS}  # files of users
-    best = min(own, key=lambda name: own[name], default=None)
-    if best is None or not own[best] < learned:
+    files = {name: r for name, r in ratios.items() if family(name) == EFFECTS}  # files of users
+    best = min(files, key=lambda name: files[name], default=None)
+    if best is None or not files[best] < learned:
         return []
-    return [f"But {title(best)}, which has no residual, lowers it by {_percent(1 - own[best])}."]
+    return [f"But {title(best)}, which has no residual, lowers it by {_percent(1 - files[best])}."]
 
 
 def _per_axis(row: Series) -> list[str]:
     if row.isna().all():
         return []
     lower = [f"{a} (−{_percent(1 - r)})" for a, r in row.items() if r < 1 - EQUAL]
-    same = [a for a, r in row.items() if abs(r - 1) <= EQUAL]
+    equal = [a for a, r in row.items() if abs(r - 1) <= EQUAL]
     worse = [f"{a} (+{_percent(r - 1)})" for a, r in row.items() if r > 1 + EQUAL]
-    groups = (("lower in", lower), ("the same in", same), ("higher in", worse))
-    parts = [f"{what} {listed(where)}" for what, where in groups if where]
+    groups = (("lower in", lower), ("the same in", equal), ("higher in", worse))
+    parts = [f"{phrase} {listed(axes)}" for phrase, axes in groups if axes]
     return [f"Axis by axis its velocity RMSE is {'; '.join(parts)}."]
 
 

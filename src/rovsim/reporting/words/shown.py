@@ -60,7 +60,7 @@ def lost_sentences(lost: Mapping[str, float]) -> list[str]:
     """Train runs of which a part was left out, because the model runs away there."""
     if not lost:
         return []
-    parts = listed(f"{run} from {at:.1f} s on" for run, at in lost.items())
+    parts = listed(f"{run} from {start:.1f} s on" for run, start in lost.items())
     return [f"The model runs away although it is corrected at every reading: {parts} is not used."]
 
 

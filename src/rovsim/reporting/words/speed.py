@@ -8,8 +8,8 @@ from rovsim.results.timing import RATES, Latency, Timing
 
 def timing_sentences(timing: Timing) -> list[str]:
     """Say which exported predictors keep which deadlines, and how the libraries compare."""
-    exported = {name: both.exported for name, both in timing.inference.items()}
-    library = {name: both.library for name, both in timing.inference.items()}
+    exported = {name: times.exported for name, times in timing.inference.items()}
+    library = {name: times.library for name, times in timing.inference.items()}
     return [
         *_range("exported predictors", exported),
         *_deadlines("exported predictors", exported),
@@ -36,12 +36,12 @@ def _deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
     loops = {name: fastest_loop(stats) for name, stats in entries.items()}
     if not loops:
         return []
-    every = f"Of the {what}, " if len(set(loops.values())) > 1 else f"All {what}: "
+    head = f"Of the {what}, " if len(set(loops.values())) > 1 else f"All {what}: "
     groups = [
         f"{_promise(rate)}{_names(loops, rate)}"
         for rate in sorted(set(loops.values()), reverse=True)
     ]
-    return [f"{every}{'; '.join(groups)}."]
+    return [f"{head}{'; '.join(groups)}."]
 
 
 def _promise(rate: int) -> str:

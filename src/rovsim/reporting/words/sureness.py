@@ -25,16 +25,16 @@ def tell_sureness(
 def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
     """Effects that surely act, of which some values by themselves might be those of absence."""
     sentences = []
-    for one in found.selected:
-        known = catalogue.get(one.effect)
-        absence = {p.name: p.neutral_value for p in known.parameters} if known else {}
-        unsure = [name for name, v in one.parameters.items() if _holds(v, absence.get(name, 0.0))]
-        if unsure and (one.probability or 0.0) > 1.0 - IMPROBABLE:
-            names = [name_parameter(one.effect, name, found.thrusters) for name in unsure]
+    for fit in found.selected:
+        cls = catalogue.get(fit.effect)
+        absence = {p.name: p.neutral_value for p in cls.parameters} if cls else {}
+        unsure = [name for name, v in fit.parameters.items() if _holds(v, absence.get(name, 0.0))]
+        if unsure and (fit.probability or 0.0) > 1.0 - IMPROBABLE:
+            names = [name_parameter(fit.effect, name, found.thrusters) for name in unsure]
             values = dict.fromkeys(f"{absence.get(name, 0.0):g}" for name in unsure)
             hold = "intervals of {} hold" if len(names) > 1 else "interval of {} holds"
             sentences.append(
-                f"{one.effect} is sure, but not each of its values: the 95 % "
+                f"{fit.effect} is sure, but not each of its values: the 95 % "
                 f"{hold.format(listed(names))} {' or '.join(values)}, which changes nothing."
             )
     return sentences
@@ -49,16 +49,16 @@ def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) ->
     proposal = found.unexplained.proposal
     if known and issubclass(known, StochasticCurrent):
         return "what is left unexplained may seem a current that wanders"
-    if proposal and one.effect not in {each.effect for each in proposal.beside}:
+    if proposal and one.effect not in {fit.effect for fit in proposal.beside}:
         return "the proposed equation does without it"
     if one.effect in found.unexplained.stand_ins:
         return "an equation that was tried takes most of its place"
-    smooths = any(each.effect == PoseFilter.id for each in found.selected)
+    smooths = any(fit.effect == PoseFilter.id for fit in found.selected)
     if known and issubclass(known, InputDelay) and smooths and _leads(one):
         return "the cameras' filter may look ahead"
-    reductions = [each.error_reduction for each in found.selected]
-    left = bound_unexplained(found.unexplained.fraction, reductions)
-    if proposal is None and or_nan(one.error_reduction) < left:
+    reductions = [fit.error_reduction for fit in found.selected]
+    unexplained = bound_unexplained(found.unexplained.fraction, reductions)
+    if proposal is None and or_nan(one.error_reduction) < unexplained:
         return "what is left unexplained may make more of the error"
     return "no other name was tried"
 

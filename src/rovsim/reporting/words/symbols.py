@@ -31,15 +31,15 @@ def explain_symbols(effect: type[Effect], values: Collection[str] | None = None)
 
     Of parameters that have no `values` it says what stands for them; without, that is left out.
     """
-    known = COMMON | dict(effect.symbols) | dict(_name_parameters(effect, values))
-    left, found = WORDS.sub(lambda words: " " * len(words[0]), effect.equation), {}
-    for symbol in sorted(known, key=len, reverse=True):
+    meanings = COMMON | dict(effect.symbols) | dict(_name_parameters(effect, values))
+    remaining, by_place = WORDS.sub(lambda words: " " * len(words[0]), effect.equation), {}
+    for symbol in sorted(meanings, key=len, reverse=True):
         begin = "" if symbol.startswith("\\") else r"(?<![A-Za-z\\])"
         pattern = rf"{begin}{re.escape(symbol)}(?![A-Za-z_])"
-        if match := re.search(pattern, left):
-            found[match.start()] = (symbol, known[symbol])
-            left = re.sub(pattern, lambda seen: " " * len(seen[0]), left)
-    return [found[place] for place in sorted(found)]
+        if match := re.search(pattern, remaining):
+            by_place[match.start()] = (symbol, meanings[symbol])
+            remaining = re.sub(pattern, lambda hit: " " * len(hit[0]), remaining)
+    return [by_place[place] for place in sorted(by_place)]
 
 
 def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> Iterator[Meaning]:
@@ -52,10 +52,10 @@ def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> It
             symbol = f"{base}_{{ij}}" if "," in index else f"{base}_i"
             together.setdefault(symbol, []).append(parameter.name)
     for symbol, names in together.items():
-        shown = [name for name in names if values is None or name in values]
-        if shown and symbol not in dict(effect.symbols):
-            told = shown if values else [shown[0], "…", shown[-1]]
-            yield symbol, ", ".join(told).replace(", …,", " …")
+        chosen = [name for name in names if values is None or name in values]
+        if chosen and symbol not in dict(effect.symbols):
+            parts = chosen if values else [chosen[0], "…", chosen[-1]]
+            yield symbol, ", ".join(parts).replace(", …,", " …")
 
 
 def _name(parameter: Parameter, values: Collection[str] | None) -> str:

@@ -48,8 +48,8 @@ def tell_comparison(
     table = _errors(errors) if tested else ["", *fold(NO_TEST)]
     if tested and away:
         table += ["", *fold(NO_ERROR.format(listed([title(name) for name in away])))]
-    said = band_sentences(coverage) if coverage else []
-    bands = [line for one in said for line in ("", *fold(one))]
+    sentences = band_sentences(coverage) if coverage else []
+    bands = [line for sentence in sentences for line in ("", *fold(sentence))]
     return "\n".join([*table, *bands, *_findings(where)])
 
 
@@ -58,10 +58,10 @@ def tell_residual(without: float | None, corrected: float | None) -> str:
     if without is None or corrected is None:
         return ""
     share = corrected / without - 1.0
-    told = f"On the test runs the residual {'lowers' if share < 0.0 else 'raises'} the error by "
-    told += percent(abs(share))
-    told += "." if share < 0.0 else ": the model is better without it."
-    return "\n".join(["", "", *fold(told)])
+    text = f"On the test runs the residual {'lowers' if share < 0.0 else 'raises'} the error by "
+    text += percent(abs(share))
+    text += "." if share < 0.0 else ": the model is better without it."
+    return "\n".join(["", "", *fold(text)])
 
 
 def _errors(errors: Mapping[str, float | None]) -> list[str]:
@@ -82,37 +82,37 @@ def _told(error: float | None) -> str:
 
 def tell_doubts(quality: Mapping[str, Quality]) -> str:
     """What to check of the recordings before anything is believed; nothing where all is well."""
-    said = doubt_sentences(quality)
-    told, rest = said[:MOST], len(said) - MOST
-    lines = ["", "", "check the recordings first", ""] if said else []
-    for one in told:
-        lines += fold(one, "  - ", "    ")
-    return "\n".join([*lines, f"  … and {rest} more in the report"] if rest > 0 else lines)
+    doubts = doubt_sentences(quality)
+    printed, hidden = doubts[:MOST], len(doubts) - MOST
+    lines = ["", "", "check the recordings first", ""] if doubts else []
+    for doubt in printed:
+        lines += fold(doubt, "  - ", "    ")
+    return "\n".join([*lines, f"  … and {hidden} more in the report"] if hidden > 0 else lines)
 
 
 def _findings(where: ErrorConditions) -> list[str]:
     if not where.models:
         return []
     name, model = list(where.models.items())[-1]
-    told, rest = model.sentences[:MOST], len(model.sentences) - MOST
+    printed, hidden = model.sentences[:MOST], len(model.sentences) - MOST
     head = f"where {title(name)} fails ({model.split} runs {several(model.runs)})"
     lines = ["", *fold(head), ""]
-    for one in told:
-        lines += fold(one, "  - ", "    ")
-    return [*lines, f"  … and {rest} more in the report"] if rest > 0 else lines
+    for sentence in printed:
+        lines += fold(sentence, "  - ", "    ")
+    return [*lines, f"  … and {hidden} more in the report"] if hidden > 0 else lines
 
 
 def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
     """The verdict, the selected effects and those most worth by themselves, with bars."""
-    said = explain(found, catalogue)
-    lines = ["", *fold(f"{said.sentence} (verdict: {said.name})")]
-    lines += [""] if said.missing else []
-    for one, words in zip(found.selected, said.missing, strict=True):
-        lines += _effect(one.error_reduction or 0.0, words)
-    lines += ["", *fold(said.key)] if said.key else []
+    verdict = explain(found, catalogue)
+    lines = ["", *fold(f"{verdict.sentence} (verdict: {verdict.name})")]
+    lines += [""] if verdict.missing else []
+    for fitted, words in zip(found.selected, verdict.missing, strict=True):
+        lines += _effect(fitted.error_reduction or 0.0, words)
+    lines += ["", *fold(verdict.key)] if verdict.key else []
     lines += _ranking(found.ranking)
-    following = [f"Next: {said.next}"] if said.next else []
-    for remark in (*said.sentences, *following):
+    steps = [f"Next: {verdict.next}"] if verdict.next else []
+    for remark in (*verdict.sentences, *steps):
         lines += ["", *fold(remark)]
     return "\n".join(lines)
 
@@ -120,24 +120,24 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
 def tell_roles(quality: Mapping[str, Quality]) -> str:
     """A line for each run: whether it is a train or a test run, and why it is not used."""
     lines = []
-    for name, one in quality.items():
-        why = f", not used: {one.unusable}" if one.unusable else ""
-        lines += fold(f"{name}: {one.split} run{why}", "  ", "    ")
+    for name, report in quality.items():
+        reason = f", not used: {report.unusable}" if report.unusable else ""
+        lines += fold(f"{name}: {report.split} run{reason}", "  ", "    ")
     return "\n".join(["", "", *lines])
 
 
 def _effect(share: float, words: Missing) -> list[str]:
-    worth, _, sure = words.worth.partition(", ")
+    reduction, _, sureness = words.worth.partition(", ")
     values = [f"      {value}" for value in words.parameters]
-    return [f"  {words.effect:<22}{_bar(share)} {worth}", f"      {sure}", *values]
+    return [f"  {words.effect:<22}{_bar(share)} {reduction}", f"      {sureness}", *values]
 
 
 def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:
     helping = [(r.error_reduction or 0.0, r.effect) for r in ranking]
-    shown = sorted((one for one in helping if one[0] >= LEAST), reverse=True)[:RANKED]
-    if not shown:
+    top = sorted((pair for pair in helping if pair[0] >= LEAST), reverse=True)[:RANKED]
+    if not top:
         return []
-    rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in shown]
+    rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in top]
     return ["", "error that each effect removes alone, at its first estimate:", *rows]
 
 

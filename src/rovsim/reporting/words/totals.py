@@ -21,8 +21,8 @@ def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str 
     before = float(body.stated[effect][AXES.index(parameter)])
     sign = "+" if value >= 0.0 else "−"
     total = significant(before + value)
-    told = f"in all {significant(before)} {sign} {significant(abs(value))} = {total} {unit}"
-    return Total(told.strip(), warn(effect, before + value))
+    text = f"in all {significant(before)} {sign} {significant(abs(value))} = {total} {unit}"
+    return Total(text.strip(), warn(effect, before + value))
 
 
 def warn(effect: str, total: float) -> str:
@@ -47,9 +47,9 @@ def warn_totals(body: Body) -> str:
     for effect, six in body.stated.items():
         wrong = {axis: float(v) for axis, v in zip(AXES, six, strict=True) if v < 0.0}
         if wrong:
-            told = listed(f"{axis} ({significant(value)})" for axis, value in wrong.items())
+            axes = listed(f"{axis} ({significant(value)})" for axis, value in wrong.items())
             reason = warn(effect, min(wrong.values()))
-            sentences.append(f"In all, {effect} is below zero in {told}: {reason}.")
+            sentences.append(f"In all, {effect} is below zero in {axes}: {reason}.")
     if not sentences:
         return ""
     return " ".join([*sentences, "A replay of such a model may run away: check these values."])

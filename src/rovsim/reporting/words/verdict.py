@@ -99,13 +99,13 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     ]
     missing = tuple(
         _missing(
-            one,
-            catalogue.get(one.effect),
+            fit,
+            catalogue.get(fit.effect),
             found.thrusters,
-            tell_sureness(one, found, catalogue),
+            tell_sureness(fit, found, catalogue),
             above=bool(place),
         )
-        for place, one in enumerate(found.selected)
+        for place, fit in enumerate(found.selected)
     )
     return Verdict(
         found.verdict,
@@ -120,10 +120,10 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
 
 def _sentence(found: Diagnosis) -> str:
     """The verdict; where nothing could be judged, also what there was none of, or what was lost."""
-    nothing = found.verdict == "insufficient_data" and not found.ranking
-    if nothing and found.not_followed_from_s:
+    unjudged = found.verdict == "insufficient_data" and not found.ranking
+    if unjudged and found.not_followed_from_s:
         return AWAY
-    if nothing and found.looked_at is not None and not found.looked_at.of:
+    if unjudged and found.looked_at is not None and not found.looked_at.of:
         return NO_TRAIN
     if found.verdict == "insufficient_data" and found.not_followed_from_s:
         return LOST
@@ -186,8 +186,8 @@ def interval(value: FittedValue) -> str:
     if not math.isfinite(half) or half <= 0.0:
         return f"{significant(or_nan(value.value), 4)} {unit(value.unit)}".strip()
     places = max(0, 1 - math.floor(math.log10(half)))
-    told = minus(f"{or_nan(value.value):.{places}f}")
-    return f"{told} ± {half:.{places}f} {unit(value.unit)}".strip()
+    number = minus(f"{or_nan(value.value):.{places}f}")
+    return f"{number} ± {half:.{places}f} {unit(value.unit)}".strip()
 
 
 def differs_from_zero(value: FittedValue) -> bool:
@@ -244,8 +244,12 @@ def leaves_unexplained(found: Diagnosis) -> bool:
 
 def unexplained_sentences(found: Diagnosis) -> list[str]:
     """What no effect of the catalogue explains."""
-    left = found.unexplained
-    return [f"Unexplained: {left.hint}", *_law_sentences(found)] if left.significant else []
+    unexplained = found.unexplained
+    return (
+        [f"Unexplained: {unexplained.hint}", *_law_sentences(found)]
+        if unexplained.significant
+        else []
+    )
 
 
 def _law_sentences(found: Diagnosis) -> list[str]:
@@ -254,12 +258,12 @@ def _law_sentences(found: Diagnosis) -> list[str]:
     if law is None:
         return _disturbance_sentences(found)
     values = ", ".join(f"{name} {interval(v)}" for name, v in law.parameters.items())
-    worth = f"It removes {percent(law.error_reduction)} of the error on the train runs"
+    sentence = f"It removes {percent(law.error_reduction)} of the error on the train runs"
     step = next((s for s in found.ladder.models if s.model == f"+{law.effect}"), None)
     if step is not None and step.windows_2s is not None:
-        worth += f"; with it the {ERROR} on the test runs is {significant(step.windows_2s)}"
+        sentence += f"; with it the {ERROR} on the test runs is {significant(step.windows_2s)}"
     return [
-        f"A law for it: {law.meaning} {law.equation} with {values}. {worth}.",
+        f"A law for it: {law.meaning} {law.equation} with {values}. {sentence}.",
         f"It is in the file {law.file}. Read it, change it if you like, and add it with "
         f"`rovsim add diagnosis=… effects_file={law.file} model=NEW.yaml`.",
     ]
@@ -275,7 +279,7 @@ def _disturbance_sentences(found: Diagnosis) -> list[str]:
         f"{a} {significant(or_nan(force.rms[a]), 2)} {FORCE_UNITS[AXES.index(a)]}"
         for a in force.axes
     ]
-    said = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
-    said += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
+    text = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
+    text += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
     times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
-    return [said + (f" It was strongest at {listed(times)}." if times else "")]
+    return [text + (f" It was strongest at {listed(times)}." if times else "")]
