@@ -1,4 +1,4 @@
-"""Add: tick effects, move their values, see the replay move; save the model as a file."""
+"""The screen Add: tick effects, move their values, watch the replay change, save the model."""
 
 import asyncio
 from typing import Any, Mapping, Sequence
@@ -31,7 +31,7 @@ SENT = 0.002  # s: NiceGUI has sent the curves; beside them it would send the nu
 
 
 class Add:
-    """The screen."""
+    """The screen Add on one page: the draft, and how it replays one run."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench, self.draft = bench, bench.draft
@@ -46,8 +46,8 @@ class Add:
         }
         self.chosen = Choices(place, first, possible, self._redraw)
         self.wanted = self.drawing = False
-        self.missing = False  # no chart, as the draft was no model
-        self.drawn = 0  # times
+        self.missing = False  # no chart is shown, since no model could be built of the draft
+        self.drawn = 0  # how often the chart was drawn
         self.traces: Traces | None = None
 
     async def show(self) -> None:
@@ -85,11 +85,11 @@ class Add:
 
     @property
     def run(self) -> str:
-        """The run shown."""
+        """Name of the run that is shown."""
         return self.chosen["run"]
 
     def _model(self) -> Model | None:
-        """The draft as a model; None, with a message, if no such model can be."""
+        """Build a model of the draft; None, with a message on the page, where that cannot be."""
         try:
             model = self.draft.model()
             motion = self.bench.data.motions[self.run]
@@ -101,22 +101,22 @@ class Add:
         return model
 
     def _replayed(self, model: Model) -> tuple[Any, float | None]:
-        """Prediction and error of the run shown."""
+        """Replay the shown run; returns its prediction, and the 2 s error (None if unknown)."""
         prediction = self.bench.replays.prediction(model, self.run, self.chosen["horizon"])
         return prediction, self.bench.replays.run_error(model, self.run)
 
     def _remark(self, predicted: Mapping[str, Prediction]) -> str:
-        """What is wrong with replays of the run shown."""
+        """Say which replays of the shown run diverge; empty where none does."""
         return tell_divergence(self.bench.data.motions[self.run].time, predicted)
 
     def _tell(self, place: ui.html, when: str, error: float | None) -> None:
-        """The error of the run shown, before or now, in its tile."""
+        """Write the 2 s error of the shown run into a tile; `when` is "before" or "now"."""
         split = self.bench.data.motions[self.run].run.split
         note = f"2 s windows, {split} run"
         place.content = tile_html(f"This run, {when}", error, f"run/{when}", note)
 
     async def draw(self) -> None:
-        """The chart and the two errors, anew."""
+        """Replay the base and the draft, and draw the chart and the two errors anew."""
         self.area.clear()
         self.traces, self.wanted = None, False
         self.drawn += 1
@@ -146,7 +146,10 @@ class Add:
             await self.update()
 
     async def update(self) -> None:
-        """Follow a slider; values that come while one is replayed are taken together."""
+        """Replay the draft after a slider was moved.
+
+        Of several values that arrive during one replay only the last is replayed.
+        """
         self.wanted = True
         if self.missing:
             await self.draw()
@@ -163,7 +166,7 @@ class Add:
             self.drawing = False
 
     async def _follow(self, model: Model, traces: Traces) -> None:
-        """New curves in the chart shown, then their error."""
+        """Replay the draft: put its curves into the present chart, then its error into the tile."""
         with self.area:
             prediction, error = await computed(self._replayed, model)
         if traces is not self.traces:  # another chart is drawn, with the draft as it is then

@@ -1,4 +1,4 @@
-"""The effects of the Add screen: a card each, its tick, and its values on sliders or typed."""
+"""The effects on the screen Add: a card for each, with a tick box and its values on sliders."""
 
 from html import escape
 from typing import Any, Awaitable, Callable
@@ -20,22 +20,25 @@ Changed = Callable[[], Awaitable[None]]
 
 
 class Effects:
-    """What the diagnosis found, then whatever else was ticked.
+    """Cards of the effects that the diagnosis fitted, then of all others that were ticked.
 
-    `ticked` is awaited after another choice of effects, `moved` after another value of one.
+    Args:
+        bench: the open campaign with its draft.
+        ticked: awaited after effects were added or left out.
+        moved: awaited after a value of an effect was changed.
     """
 
     def __init__(self, bench: Workbench, ticked: Changed, moved: Changed) -> None:
         self.bench, self.draft = bench, bench.draft
         self.ticked, self.moved = ticked, moved
         self.touched = ""  # the effect that was changed last
-        self.failure = Failure()  # where no card is to blame
+        self.failure = Failure()  # shown where no card is to blame
         self.failures: dict[str, Failure] = {}  # by card
         self.list = ui.column().classes("area")
         self.draw()
 
     def draw(self) -> None:
-        """All cards, anew."""
+        """Draw all cards anew."""
         self.list.clear()
         self.failures.clear()
         offered = list(dict.fromkeys([*self.draft.fitted, *self.draft.ticked]))
@@ -61,12 +64,12 @@ class Effects:
             undo.bind_enabled_from(self.draft, "changed")
 
     def tell(self, error: Exception) -> None:
-        """Say why no such model can be, on the card that was changed last."""
+        """Show on the card that was changed last why no model can be built."""
         self.forget()
         self.failures.get(self.touched, self.failure).tell(error)
 
     def forget(self) -> None:
-        """Such a model can be."""
+        """Remove all messages: a model can be built again."""
         for failure in (self.failure, *self.failures.values()):
             failure.forget()
 
@@ -151,7 +154,7 @@ class Effects:
 
 
 def tell_doubt(effect: str, draft: Draft) -> str:
-    """That the diagnosis did not select an effect, and how likely it is; empty if it did."""
+    """Say that the diagnosis did not select an effect, and its probability; empty if it did."""
     if draft.diagnosis is None or effect in {fitted.effect for fitted in draft.chosen}:
         return ""
     probabilities = {fitted.effect: fitted.probability for fitted in draft.diagnosis.ranking}

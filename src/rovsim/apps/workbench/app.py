@@ -1,4 +1,4 @@
-"""The page: header, navigation, progress of long work; the screens fill the rest."""
+"""The page of the workbench: header, navigation, progress of long work, and one screen."""
 
 import logging
 from functools import partial
@@ -28,7 +28,7 @@ ICON = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '
     'stroke="#0072B2" stroke-width="4" d="M2 21c5-14 9-14 14 0s9 14 14 0"/></svg>'
 )
-# Light or dark is the system's, until somebody turns it; this browser then remembers.
+# Light or dark as the system is, until the user changes it; the browser then remembers that.
 TURN = """() => {
   const dark = !document.body.classList.contains("body--dark");
   localStorage.setItem("dark", dark);
@@ -43,10 +43,10 @@ TIDY = 60.0  # s between two times that memory is given back
 
 
 class Screens(ui.sub_pages):
-    """The screens by their addresses, and a way on from an address that is none."""
+    """The screens by their addresses, and a message with a link for any other address."""
 
     def _render_page(self, match: RouteMatch) -> bool:
-        """A screen; none where the address goes on behind that of a screen."""
+        """Render a screen; none where the address continues after that of the screen."""
         return not match.remaining_path and super()._render_page(match)
 
     def _render_404(self) -> None:
@@ -55,19 +55,19 @@ class Screens(ui.sub_pages):
 
 
 class Page:
-    """One browser tab."""
+    """The page in one browser tab."""
 
     def __init__(self, sessions: Sessions) -> None:
         self.sessions = sessions
-        self.session: Session | None = None  # the tab's, once the tab has said which one it is
+        self.session: Session | None = None  # of the tab, once the browser has told the tab's id
         self.seen: tuple[int, ...] = ()
-        self.heard: dict[LongWork, int] = {}  # how often each had ended
-        self.name = ""  # of the screen shown; none: choosing a campaign
-        self.kept: dict[str, dict[str, Any]] = {}  # what this tab has chosen on each screen
+        self.heard: dict[LongWork, int] = {}  # how often each had ended when the page was drawn
+        self.name = ""  # of the screen that is shown; empty while a campaign is being chosen
+        self.kept: dict[str, dict[str, Any]] = {}  # the choices on each screen of this tab
         self.links: dict[str, ui.link] = {}
 
     def build(self) -> None:
-        """Header, progress, screen."""
+        """Build the header, the line that shows progress, and the screen."""
         ui.add_head_html(f"<style>{STYLE.read_text(encoding='utf-8')}</style>")
         ui.add_head_html(f"<script>{CHARTS.read_text(encoding='utf-8')}</script>")
         ui.colors(primary="#0072B2")
@@ -94,7 +94,7 @@ class Page:
         ui.run_javascript(RECALL)
 
     async def _enter(self) -> Session:
-        """The tab's session."""
+        """Return the session of this tab, once the tab is connected."""
         if self.session is None:
             client = ui.context.client
             await client.connected()
@@ -126,7 +126,7 @@ class Page:
             work.trouble = ""
 
     def _look(self) -> None:
-        """Show how far long work is; draw the screen again when something has changed."""
+        """Show the progress of long work; draw the screen again when something has changed."""
         session = self.session
         if session is None:
             return
@@ -149,18 +149,18 @@ class Page:
                 ui.navigate.to("/compare")
 
     def _tell(self, session: Session) -> None:
-        """Say what has ended since the screen was drawn."""
+        """Notify the user of long work that has ended since the screen was drawn."""
         for work in session.works:
             if work.said and work.ended > self.heard.get(work, work.ended):
                 ui.notify(work.said, color="dark", position="bottom-right", multi_line=True)
 
     def _note(self, session: Session) -> None:
-        """What is drawn now is all there is."""
+        """Remember the state that the page is drawn in, to notice later changes."""
         self.seen, self.campaign.text = session.changes, session.name
         self.heard = {work: work.ended for work in session.works}
 
     def _key(self, event: Any) -> None:
-        """Digits change the screen."""
+        """Change the screen when a digit is pressed."""
         names = list(self.links)
         number = event.key.number or 0
         if event.action.keydown and not event.modifiers.alt and 1 <= number <= len(names):
@@ -172,19 +172,22 @@ class Page:
             link.classes(add="active") if key == name else link.classes(remove="active")
 
     async def _screen(self, name: str, asked: PageArguments) -> None:
-        """One of the screens, once the campaign is read."""
+        """Show a screen, once the campaign is read."""
         self._active(name)
         bench = await self._opened(await self._enter())
         if bench is None:
             return
-        with ui.element("div").classes("sheet"):  # goes with the screen
+        with ui.element("div").classes("sheet"):  # removed together with the screen
             try:
                 await _module(name).show(bench, Place(name, asked.query_parameters, self.kept))
             except RovsimError as error:
                 Failure().tell(error)
 
     async def _opened(self, session: Session) -> Any:
-        """The campaign, read now if need be; None, and the way to another, if that fails."""
+        """Return the open campaign (a Workbench), which is read now if it was not yet.
+
+        None where that fails; the page then offers other campaigns.
+        """
         unread = session.unread
         if unread:
             waiting = ui.label(f"Reading the recordings of {session.name} …").classes("waiting")
@@ -220,16 +223,17 @@ class Page:
 
 
 def _module(name: str) -> ModuleType:
-    """A screen; imported when first shown, so that the page itself is there at once."""
+    """Import the module of a screen; only when first shown, so that the page opens at once."""
     import importlib
 
     return importlib.import_module(f"rovsim.apps.workbench.{name}")
 
 
 def was_answered(record: logging.LogRecord) -> bool:
-    """Whether a record is not of a page that was closed while it asked for something.
+    """Whether a log record is worth showing: a filter of the server's log.
 
-    Starlette's middleware then has no answer to pass on, and says so at length.
+    It is not where a page was closed during a request: Starlette's middleware then has no response
+    to pass on, and logs a long traceback.
     """
     error = record.exc_info[1] if record.exc_info else None
     return not (isinstance(error, RuntimeError) and str(error) == "No response returned.")

@@ -1,4 +1,4 @@
-"""Open: another campaign, or one to practise on."""
+"""The screen Open: choose another campaign, or make one to practise on."""
 
 from pathlib import Path
 from typing import Callable
@@ -13,7 +13,7 @@ PLACES = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaig
 
 
 def known() -> list[Path]:
-    """Folders of campaigns near here."""
+    """List the folders of campaigns at the usual places below the working directory."""
     folders = {path.parent for place in PLACES for path in Path().glob(place)}
     return sorted(folders)
 
@@ -32,14 +32,14 @@ def _button(words: str, clicked: Callable[..., None], icon: str | None = None) -
 
 
 class Browser:
-    """Folders to walk through: one that is a campaign is opened, another is looked into."""
+    """A list of folders to walk through; one that holds a campaign is opened with `choose`."""
 
     def __init__(self, folder: Path, choose: Callable[[str], None]) -> None:
         self.folder, self.choose = folder, choose
         self.listing: Listing | None = None
 
     def show(self) -> None:
-        """Draw it."""
+        """Draw the way to the folder, and the folders inside it."""
         self.top = ui.column()
         self.area = ui.column().classes("effects folders")
         self._go(self.folder)
@@ -61,7 +61,7 @@ class Browser:
         self._list(listing)
 
     def _list(self, listing: Listing) -> None:
-        if listing == self.listing:  # a button that is about to be clicked stays
+        if listing == self.listing:  # nothing is redrawn under the mouse
             return
         self.listing = listing
         self.area.clear()
@@ -89,9 +89,13 @@ class Browser:
 def show(
     choose: Callable[[str], None], practise: Callable[[], None], problem: str = "", typed: str = ""
 ) -> None:
-    """Show the screen; `choose` opens a folder, `practise` makes a campaign and opens it.
+    """Show the screen.
 
-    `typed` is the folder that could not be opened, for `problem`.
+    Args:
+        choose: opens a folder.
+        practise: makes a synthetic campaign and opens it.
+        problem: why the last folder could not be opened; empty if it could.
+        typed: that folder, as it was typed.
     """
     heading(TITLE, QUESTION)
     failure = Failure()

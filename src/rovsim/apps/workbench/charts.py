@@ -21,10 +21,15 @@ WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """Curves {name: values (n,)} over one time axis; a short panel shows what another left.
+    """Curves over one time axis of n samples.
 
-    `bands` {name: (2, n)} lower and upper end of what a curve may be; `about` {name: run, axis,
-    quantity and model} of each curve, as a table names it.
+    Attributes:
+        title: of the vertical axis.
+        unit: of all values.
+        curves: values (n,) by name.
+        short: whether the panel is a low one, as for the errors under a panel of values.
+        bands: lower and upper end (2, n) of a curve's probability band, by name of the curve.
+        about: heading of each curve in the CSV: its run, axis, quantity and model.
     """
 
     title: str
@@ -36,7 +41,7 @@ class Panel:
 
 
 def with_minus(options: Options) -> Options:
-    """The same chart, its numbers on axes and at the pointer with a true minus (charts.js)."""
+    """Return a chart whose numbers on axes and at the pointer have a true minus (charts.js)."""
     chart = dict(options)
     for name in {"xAxis", "yAxis"} & chart.keys():
         axes = chart[name] if isinstance(chart[name], list) else [chart[name]]
@@ -53,38 +58,46 @@ def _axis_with_minus(axis: Options) -> Options:
 
 
 def told(curve: str) -> str:
-    """What the legend calls a curve: its model as every screen does, then its run, if it is told.
+    """Return the name of a curve in the legend: the title of its model, then its run, if any.
 
     Ids of curves, and the CSV, keep the name of the model's file.
+
+    Args:
+        curve: "MODEL", or "MODEL, RUN".
     """
     model, separator, run = curve.rpartition(", ")
     return f"{title(model)}{separator}{run}" if model else title(curve)
 
 
 def styles(names: Sequence[str]) -> dict[str, Look]:
-    """One look per name; the first of all is the measurement."""
+    """Return a distinct look for each curve."""
     return looks(names)
 
 
 def points(time: Array, values: Array) -> list[list[float]]:
-    """Pairs for ECharts, thinned to what a screen can show; NaN (in JSON: null) leaves a gap."""
+    """Return pairs (time, value) for ECharts, at most about `POINTS`; NaN leaves a gap.
+
+    Args:
+        time: of the samples (n,), s.
+        values: at these (n,).
+    """
     step = max(1, len(time) // POINTS)
     return np.stack([np.round(time[::step], 3), np.round(values[::step], 5)], axis=1).tolist()
 
 
 def line_style(look: Look) -> Options:
-    """Colour, width and dashes of a line."""
+    """Return colour, width and dashes of a line as ECharts options."""
     dash = "solid" if isinstance(look.dash, str) else [2 * d for d in look.dash[1]]
     return {"color": look.color, "width": WEIGHT * look.width, "type": dash}
 
 
 def height(panels: Sequence[Panel]) -> int:
-    """Height in px of a chart of panels."""
+    """Return the height in px of a chart with these panels."""
     return TOP + sum((SHORT if p.short else TALL) + GAP for p in panels) + 24
 
 
 def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -> list[Options]:
-    """The points of every curve and band, by id; `but` those that have not changed."""
+    """Return the points of every curve and band, by id, without the curves named in `but`."""
     return [
         {"id": f"{k}/{name}", "data": points(time, values)}
         for k, panel in enumerate(panels)
@@ -94,7 +107,7 @@ def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -
 
 
 def columns(panels: Sequence[Panel]) -> Options:
-    """What the CSV of the panels calls each series, by id."""
+    """Return the headings of the CSV: of the time, and of each series by its id."""
     return {
         "x": "time (s)",
         "curves": {
@@ -107,13 +120,19 @@ def columns(panels: Sequence[Panel]) -> Options:
 
 
 def _ends(panel: Panel) -> list[tuple[str, Array]]:
-    """Lower ends of bands, and what is stacked on these."""
+    """List the lower ends of bands, and their widths, which ECharts stacks on these."""
     bands = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
     return [s for name, low, wide in bands for s in ((name + LOW, low), (name + WIDTH, wide))]
 
 
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
-    """Panels one above the other; zoom and pointer move all of them together."""
+    """Return a chart of panels one above the other, which share zoom and pointer.
+
+    Args:
+        time: of the samples (n,), s.
+        panels: from top to bottom.
+        look: by name of a curve.
+    """
     indices = list(range(len(panels)))
     titles = [f"{panel.title} ({panel.unit})" for panel in panels]
     options: Options = {
@@ -178,7 +197,15 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
 
 
 def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> Options:
-    """One of the two series that make a band: an unseen line, and what fills up to the other."""
+    """Return one of the two series of a band: an invisible lower line, and the area stacked on it.
+
+    Args:
+        k: number of the panel.
+        name: of the curve that the band belongs to.
+        end: `LOW` or `WIDTH`.
+        look: of that curve.
+        ready: points of every series by id.
+    """
     shade = {"color": look.color, "opacity": SHADE if end == WIDTH else 0.0}
     return {
         "id": f"{k}/{name}{end}",
@@ -199,7 +226,7 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
 
 
 def cursor(panel: int, time: float | None) -> Options:
-    """A series that is nothing but a line at an instant."""
+    """Return a series that marks an instant with a vertical line; None: no line."""
     marks = [] if time is None else [{"xAxis": time}]
     look = {"color": MARK, "width": 1.5, "type": "solid"}
     return {

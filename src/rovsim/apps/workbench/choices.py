@@ -1,4 +1,4 @@
-"""What is chosen on a screen: the controls that change it, and the address that says it."""
+"""The choices on a screen, kept in step with its controls and with its address."""
 
 from typing import Any, Awaitable, Callable, Mapping, Sequence, TypeVar
 
@@ -13,10 +13,18 @@ WHOLE: Span = (None, None)
 
 
 class Choices:
-    """What was chosen on a screen, by name; `redraw` shows it anew where a control changed it.
+    """The present choices on a screen, by name.
 
-    `first` and `possible` are those of `Place.choose`. `span` is the part of the run that is shown:
-    of a screen that `zooms`, the address says it, and another run is shown whole.
+    Args:
+        place: the screen and its address.
+        first: choices to begin with, see `Place.choose`.
+        possible: values of each choice, see `Place.choose`.
+        redraw: awaited after a control has changed a choice.
+        zooms: whether the address also tells which part of the run is shown.
+
+    Attributes:
+        span: start and end of the part of the run that is shown, s; the whole after a change of
+            run.
     """
 
     def __init__(
@@ -38,7 +46,7 @@ class Choices:
         self._chosen[name] = value
 
     def add(self, first: Mapping[str, Any], possible: Mapping[str, Sequence[Any]]) -> None:
-        """Choices that are known only once others were made."""
+        """Add choices whose values depend on others, or replace them."""
         self._chosen = self.place.choose({**self._chosen, **first}, possible)
 
     def bind(
@@ -49,9 +57,17 @@ class Choices:
         convert: Callable[[Any], Any] = lambda value: value,
         redraw: Redraw | None = None,
     ) -> Control:
-        """Let a control show and change a choice; only an `optional` one may become empty.
+        """Let a control show and change a choice.
 
-        `redraw` takes the place of that of the screen.
+        Args:
+            name: of the choice.
+            control: that shows it.
+            optional: whether the choice may become empty.
+            convert: from the value of the control to that of the choice.
+            redraw: awaited after a change, in place of that of the screen.
+
+        Returns:
+            The control.
         """
         control.value = self[name]
         control.classes("control").props("outlined dense options-dense")
@@ -66,15 +82,15 @@ class Choices:
         return control
 
     def put(self, name: str, value: Any) -> None:
-        """Change a choice, and say so in the address."""
+        """Change a choice, and write it into the address."""
         self[name] = value
         self.tell()
 
     def zoom(self, span: Span) -> None:
-        """Show a part of the run, and say so in the address."""
+        """Remember which part of the run is shown, s, and write it into the address."""
         self.span = span
         self.tell()
 
     def tell(self) -> None:
-        """Let the address say what is shown."""
+        """Write all choices, and the part of the run, into the address."""
         self.place.tell({**self._chosen, "from": self.span[0], "to": self.span[1]})

@@ -1,4 +1,4 @@
-"""Compare: measured and simulated, the difference, the path, and how far a model carries."""
+"""The screen Compare: replays beside the measurement, their errors, and the path in the tank."""
 
 from typing import Any, Sequence
 
@@ -47,7 +47,7 @@ TITLE, QUESTION = "Compare", "How far is the model from the measurement?"
 
 
 class Compare:
-    """The screen, with what was chosen on it."""
+    """The screen Compare on one page, and the choices made on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
@@ -76,7 +76,7 @@ class Compare:
 
     @property
     def motion(self):
-        """The run shown."""
+        """Motion of the run that is shown."""
         return self.bench.data.motions[self.chosen["run"]]
 
     async def show(self) -> None:
@@ -117,11 +117,11 @@ class Compare:
 
     @property
     def runs(self) -> list[str]:
-        """The run shown, and those beside it."""
+        """Names of the run that is shown and of those beside it."""
         return list(dict.fromkeys([self.chosen["run"], *self.chosen["beside"]]))
 
     async def _predicted(self) -> tuple[list[Panel], Predicted]:
-        """Panels and predictions, by run and model, of what is chosen."""
+        """Replay the chosen models; returns the panels, and the predictions by run and model."""
         choices = self.chosen
         predictions: Predicted = {run: {} for run in self.runs}
         for run, predicted in predictions.items():
@@ -133,7 +133,7 @@ class Compare:
         return beside(first, others), predictions
 
     async def _panels(self, run: str, predicted: dict[str, Prediction]) -> Drawn:
-        """One run and its panels; bands are those of the run shown."""
+        """Return a run and its panels; only the run that is shown has probability bands."""
         motion = self.bench.data.motions[run]
         axes, quantity = self.chosen["axes"], self.chosen["quantity"]
         thrust = await computed(self.bench.replays.thrust, self.bench.base, run)
@@ -146,7 +146,7 @@ class Compare:
         return motion, panels(motion, predicted, axes, quantity, thrust, bands)
 
     def _remark(self, predicted: Predicted) -> str:
-        """Which replays diverge."""
+        """Say which replays diverge; empty where none does."""
         remarks = []
         for run, models in predicted.items():
             several = len(predicted) > 1
@@ -157,7 +157,7 @@ class Compare:
         return " ".join(filter(None, remarks))
 
     def _tell_missing_bands(self) -> None:
-        """Say which models have none, and why."""
+        """Show which of the chosen models have no probability bands, and why."""
         if not self.chosen["bands"]:
             return
         if self.chosen["quantity"] not in BANDED:
@@ -169,7 +169,7 @@ class Compare:
                 text(f"No band for {title(name)}: {why}.", "soft")
 
     async def draw(self) -> None:
-        """Everything below the controls."""
+        """Draw everything below the controls."""
         all_panels, predicted = await self._predicted()
         self.chosen.tell()
         self.area.clear()
@@ -185,7 +185,7 @@ class Compare:
             onward("Where does it fail?", "/where")
 
     def _numbers(self, found: Predicted) -> None:
-        """Errors of the runs and this horizon, as comparison.json has them."""
+        """Show a table of the errors at this horizon, with the numbers of comparison.json."""
         self.numbers.clear()
         horizon = self.chosen["horizon"]
         with self.numbers:
@@ -206,7 +206,7 @@ class Compare:
             )
 
     async def _path(self, traces: Traces) -> None:
-        """Open loop in the tank, its moment marked in the curves."""
+        """Show the open-loop paths in the tank; their moment is marked in the curves."""
         predicted = {
             name: (
                 await computed(

@@ -1,4 +1,4 @@
-"""The map of the Where screen: how much of each axis' error varies with each condition."""
+"""The map on the screen Where: the share of each axis' error that varies with each condition."""
 
 from typing import Any, Callable
 
@@ -21,9 +21,13 @@ KEYS = f"""(e) => {{
 
 
 class FieldMap:
-    """Fields to click, or to walk through with the arrow keys; `choose` is given axis, condition.
+    """A map of fields to click, or to walk through with the arrow keys.
 
-    Fields are counted from the left and from the top.
+    Fields are numbered (column, row) from the left and from the top.
+
+    Args:
+        found: the errors of one model over conditions.
+        choose: called with axis and condition of a field that is chosen.
     """
 
     def __init__(self, found: ModelConditions, choose: Callable[[str, str], None]) -> None:
@@ -51,7 +55,7 @@ class FieldMap:
         self.told = ui.label().classes("soft").props('role="status"')
 
     def _turned(self, row: int) -> int:
-        """ECharts counts rows from below."""
+        """Convert a number of a row: ECharts counts rows from below."""
         return len(self.shown.conditions) - 1 - row
 
     def _choose(self, column: int, row: int) -> None:
@@ -70,7 +74,7 @@ class FieldMap:
         self._mark()
 
     def _mark(self) -> None:
-        """Show, and say, at which field the keys are."""
+        """Highlight the present field, and tell its share to screen readers."""
         column, row = self.at
         field = self._turned(row) * len(self.shown.axes) + column
         for action in ({"type": "downplay"}, {"type": "highlight", "dataIndex": field}):
@@ -81,7 +85,7 @@ class FieldMap:
 
 
 def map_chart(shown: ConditionMap) -> Options:
-    """A field for each pair, in a stronger blue where more of the error varies."""
+    """Return a chart with a field for each axis and condition; bluer for a larger share."""
     axes, conditions = list(shown.axes), list(reversed(shown.conditions))
     data = [
         [k, j, float(share)]

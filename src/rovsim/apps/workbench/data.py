@@ -1,4 +1,4 @@
-"""Data: what was recorded, what is wrong with it, and what it can tell."""
+"""The screen Data: what was recorded, what is doubtful in it, and which axes moved enough."""
 
 from pathlib import Path
 from typing import Mapping
@@ -44,14 +44,14 @@ async def show(bench: Workbench, place: Place) -> None:
 
 
 def list_remarks(quality: Mapping[str, Quality]) -> list[str]:
-    """What is no doubt: doubts stand above."""
+    """List the remarks on runs that are no doubts; the screen shows doubts above."""
     if not any(report.remarks for report in quality.values()):
         return ["Nothing to remark on."]
     return [f"{run}: {remark}" for run, report in quality.items() for remark in report.others]
 
 
 def _notes(file: Path) -> None:
-    """What people write down beside the campaign, kept as they type: a page may be left at once."""
+    """Show the notes beside campaign.yaml, which are saved while somebody types."""
     section("Notes")
     content = read_text(file) if file.exists() else ""
 
@@ -101,7 +101,7 @@ def _times(value: float | None, factor: float) -> float | None:
 
 
 def _gaps(quality: Mapping[str, Quality]) -> None:
-    """Each run as a line, its gaps as marks."""
+    """Show each run as a line over time, with its gaps as marks."""
     section("Gaps")
     runs = list(quality)[::-1]
     data = [

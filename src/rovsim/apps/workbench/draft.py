@@ -1,4 +1,4 @@
-"""A model being put together: effects ticked, their values moved."""
+"""A draft: a model that a user puts together from effects by hand."""
 
 import time
 from copy import deepcopy
@@ -21,9 +21,14 @@ SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth l
 
 @dataclass(eq=False)
 class Draft:
-    """A base, the diagnosis whose fitted effects are offered, and what was changed.
+    """The base with the effects that a user has added to it.
 
-    `ticked` ids in order; `values` by effect and parameter where the user moved them.
+    Attributes:
+        base: the model without them.
+        diagnosis: whose fitted effects are offered; None if there is none.
+        catalogue: all effects that are known.
+        ticked: ids of the added effects, in the order in which they were added.
+        values: by effect and parameter, where the user has changed them.
     """
 
     base: Model
@@ -32,20 +37,20 @@ class Draft:
     ticked: list[str] = field(default_factory=list)
     values: dict[str, dict[str, float]] = field(default_factory=dict)
     _before: list[tuple[list[str], dict[str, dict[str, float]]]] = field(default_factory=list)
-    _changing: tuple[object, float] = (None, 0.0)  # what the last change was of, and when
-    _found: dict[str, Model] = field(default_factory=dict)  # by what they lack
+    _changing: tuple[object, float] = (None, 0.0)  # subject and time (s) of the last change
+    _found: dict[str, Model] = field(default_factory=dict)  # by the effect that is left out
 
     def __post_init__(self) -> None:
         self.ticked = [fitted.effect for fitted in self.chosen if fitted.effect in self.catalogue]
 
     @property
     def chosen(self) -> tuple[FittedEffect, ...]:
-        """The selected effects; or the law that was taken in, and what is beside it."""
+        """The selected effects; or the proposed law, if it was loaded, and effects beside it."""
         return choose_effects(self.diagnosis, self.catalogue) if self.diagnosis else ()
 
     @property
     def fitted(self) -> dict[str, FittedEffect]:
-        """What is known here and has values in the diagnosis, those first that are chosen."""
+        """Known effects that the diagnosis has fitted, by id; the chosen ones come first."""
         by_name = {fitted.effect: fitted for fitted in self.chosen}
         for name, fitted in (self.diagnosis.fitted if self.diagnosis else {}).items():
             by_name.setdefault(name, fitted)
@@ -53,11 +58,15 @@ class Draft:
 
     @property
     def unknown(self) -> list[str]:
-        """Effects that the diagnosis selected, and that the catalogue does not know."""
+        """Ids of effects that the diagnosis selected but the catalogue does not have."""
         return [fitted.effect for fitted in self.chosen if fitted.effect not in self.catalogue]
 
     def _remember(self, change: object) -> None:
-        """Keep what is there; a value that goes on moving is one change."""
+        """Keep the present state for `undo`, before a change.
+
+        A value that is changed again and again within `MOVING` s is one change. `change` is its
+        subject; None for a change that always counts by itself.
+        """
         now = time.monotonic()
         last, moved = self._changing
         if change is None or change != last or now - moved > MOVING:
@@ -70,7 +79,7 @@ class Draft:
         return bool(self._before)
 
     def undo(self) -> None:
-        """Take back the last change."""
+        """Undo the last change."""
         if self._before:
             self.ticked, self.values = self._before.pop()
             self._changing = None, 0.0
@@ -81,19 +90,20 @@ class Draft:
         self.ticked = [*(t for t in self.ticked if t != effect), *([effect] if yes else [])]
 
     def move(self, effect: str, parameter: str, value: float) -> None:
-        """Change a value."""
+        """Change the value of a parameter."""
         self._remember((effect, parameter))
         self.values.setdefault(effect, {})[parameter] = value
 
     def reset(self, effect: str, parameter: str) -> None:
-        """Give a value back the one it began with: the fitted one, if there is one."""
+        """Set a parameter back to its fitted value, or to its start if it has none."""
         self._remember(None)
         self.values.get(effect, {}).pop(parameter, None)
 
     def entry(self, effect: str) -> EffectEntry:
-        """An effect with its fitted values, those moved in their place.
+        """Return an effect as a model file states it, with the values that the user changed.
 
-        An effect without fitted values begins where a fit of it would.
+        All others are the fitted ones; for an effect that was not fitted, those where its fit would
+        start.
         """
         if effect in self.fitted:
             (entry,) = list_entries([self.fitted[effect]], Path("diagnosis.json"))
@@ -108,10 +118,12 @@ class Draft:
         return entry.model_copy(update={"parameters": {**entry.parameters, **moved}})
 
     def model(self) -> Model:
-        """The base and the ticked effects.
+        """Build a model of the base and the ticked effects.
+
+        It states the uncertainty of the diagnosis as long as no value was changed.
 
         Raises:
-            BadInput: values no model can have.
+            BadInput: the values are not possible.
         """
         model = extend(self.base, build_effects(map(self.entry, self.ticked), self.catalogue))
         if self.diagnosis is None or any(self.values.values()):
@@ -121,7 +133,7 @@ class Draft:
         )
 
     def found(self, but: str = "") -> Model:
-        """The base and the chosen effects as they were fitted, perhaps all but one; made once."""
+        """Return the base with the chosen effects as they were fitted, without the effect `but`."""
         if but not in self._found:
             entries = list_entries(
                 [fitted for fitted in self.chosen if fitted.effect != but], Path("diagnosis.json")
@@ -132,7 +144,7 @@ class Draft:
 
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:
-    """Lowest and highest value of a slider that begins at `value`."""
+    """Return the lowest and highest value of a slider that begins at `value`."""
     if parameter.discrete and np.isfinite(whole := (parameter.low, parameter.highest)).all():
         return whole
     span = max(SPAN * parameter.scale, abs(value))

@@ -1,4 +1,4 @@
-"""Flight: the next recording that would tell most, planned: path, commands, what to expect."""
+"""The screen Flight: plan the recording that would tell most, with its path and its commands."""
 
 import shlex
 from html import escape
@@ -37,7 +37,7 @@ RIVALS = ("linear_damping", "quadratic_damping")  # where no diagnosis names two
 
 
 class Flight:
-    """The screen, with what was chosen on it."""
+    """The screen Flight on one page, and the choices made on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
@@ -80,7 +80,7 @@ class Flight:
         await self._draw()
 
     async def _controls(self) -> None:
-        """What is asked, and about which model; its values may be chosen."""
+        """Draw the controls: the question, the model, and which of its values may be asked for."""
         names, effects, choices = await self._values(), list(self.bench.catalogue), self.chosen
         choices["know"] = [name for name in choices["know"] if name in names]
         self.controls.clear()
@@ -99,16 +99,16 @@ class Flight:
             bind("seconds", seconds, convert=int)
 
     async def _values(self) -> list[str]:
-        """`effect.parameter` of every value that was added to the model."""
+        """List every value of the effects that were added to the model, as "effect.parameter"."""
         try:
             model = await computed(self.bench.known_model, self.chosen["model"])
-        except RovsimError:  # told where the flight would stand
+        except RovsimError:  # `_draw` shows it
             return []
         return [f"{e.id}.{name}" for e in model.added for name in describe_effect(e).parameters]
 
     @property
     def question(self) -> Question:
-        """What is asked."""
+        """The question that is chosen."""
         choices = self.chosen
         names = {"between": (choices["one"], choices["other"])}
         keywords = names if choices["asked"] == "between" else {"know": choices["know"]}
@@ -117,7 +117,7 @@ class Flight:
         )
 
     async def _draw(self) -> None:
-        """The flight that answers the question, or the way to it."""
+        """Show the flight that answers the question, or a button that plans it."""
         self.chosen.tell()
         self.area.clear()
         try:
@@ -162,7 +162,13 @@ class Flight:
 
 
 def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
-    """What it is expected to tell, where it leads, and what to do."""
+    """Show a planned flight: what it is expected to tell, its path, and instructions.
+
+    Args:
+        found: the plan.
+        folder: that holds its files.
+        thrusters: names of the vehicle's thrusters.
+    """
     section(f"A flight of {found.seconds:g} s")
     for item in found.warnings:
         text(item, "warning")
@@ -188,7 +194,7 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
 
 
 def _numbered(instructions: Sequence[str]) -> str:
-    """Instructions as HTML: numbered steps, and under them what belongs to each."""
+    """Return instructions as HTML: numbered steps, with the parts of each step below it."""
 
     def items(texts: Sequence[str]) -> str:
         return "".join(f"<li>{escape(entry)}</li>" for entry in texts)

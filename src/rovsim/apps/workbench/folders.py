@@ -1,4 +1,4 @@
-"""Folders to choose from: what lies in one, and which campaigns were opened last."""
+"""Folders to choose a campaign from: what a folder holds, and which campaigns were opened last."""
 
 import os
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ DESCRIPTION = "campaign.yaml"
 
 @dataclass(frozen=True)
 class Inside:
-    """A folder inside another: its path, and whether it is a campaign."""
+    """A folder inside another: its path, and whether it holds a campaign."""
 
     path: Path
     campaign: bool
@@ -24,10 +24,15 @@ class Inside:
 
 @dataclass(frozen=True)
 class Listing:
-    """What lies in a folder.
+    """What a folder holds.
 
-    `parents` of the folder, the root first; `inside` it, by name; `more` that fit but are not
-    listed; `files` in it; `problem`: why it cannot be read, if it cannot.
+    Attributes:
+        folder: absolute path.
+        parents: of the folder, the root first.
+        inside: folders in it that match, sorted by name, at most `MOST`.
+        more: how many others match.
+        files: how many files it holds.
+        problem: why it cannot be read; empty if it can.
     """
 
     folder: Path
@@ -39,14 +44,16 @@ class Listing:
 
     @property
     def campaign(self) -> bool:
-        """Whether the folder is itself a campaign."""
+        """Whether the folder itself holds a campaign."""
         return _holds_campaign(self.folder)
 
 
 def look(folder: Path, part: str = "") -> Listing:
-    """What lies in a folder; the nearest one above it where there is no such folder.
+    """List what a folder holds; the nearest one above it where there is no such folder.
 
-    Of the folders inside it those whose name holds `part`, in whatever case.
+    Args:
+        folder: any path.
+        part: only folders whose name holds this text are listed, whatever the case of its letters.
     """
     folder = Path(os.path.abspath(os.path.expanduser(folder)))
     while not os.path.isdir(folder) and folder != folder.parent:
@@ -66,7 +73,7 @@ def look(folder: Path, part: str = "") -> Listing:
 
 
 def tell_unopenable(place: Path) -> str:
-    """Why neither a campaign nor a folder of recordings lies at a place; empty if one may."""
+    """Say why a path is neither a campaign nor a folder of recordings; empty if it may be one."""
     problem, remedy = "no such file or folder", "Check the path, or look for the folder below."
     try:
         if place.is_dir() or (place.suffix in (".yaml", ".yml") and place.is_file()):
@@ -94,7 +101,7 @@ def _holds_campaign(path: Path) -> bool:
 
 
 def list_recent() -> list[Path]:
-    """Campaigns that were opened last and are still there, the last one first."""
+    """List the campaigns that were opened last and still exist, the latest first."""
     try:
         content = read_json(_file())
     except RovsimError:
@@ -106,7 +113,7 @@ def list_recent() -> list[Path]:
 
 
 def remember(campaign: Path) -> None:
-    """Put a campaign first among those opened last; where nothing can be kept, nothing is."""
+    """Put a campaign first among those opened last; does nothing where that cannot be written."""
     path = Path(os.path.abspath(campaign))
     folders = [path, *(folder for folder in list_recent() if folder != path)]
     try:
@@ -116,10 +123,10 @@ def remember(campaign: Path) -> None:
 
 
 def shown(path: Path) -> str:
-    """A path as a page can show it, whatever bytes it is made of."""
+    """Return a path as text that a page can show, whatever bytes it is made of."""
     return str(path).encode("utf-8", "replace").decode()
 
 
 def _file() -> Path:
-    """Beside what other programs remember of this user (XDG_STATE_HOME on Linux)."""
+    """Return the file of recent campaigns, in the user's state folder (XDG_STATE_HOME on Linux)."""
     return user_state_path("rovsim", appauthor=False) / "recent.json"

@@ -1,4 +1,4 @@
-"""The gallery: what every effect looks like, what causes it, what data settles it."""
+"""The gallery: a screen for each effect, with its equation, cause, picture and parameters."""
 
 from base64 import b64encode
 from html import escape
@@ -22,7 +22,7 @@ DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
 
 
 async def show(bench: Workbench, place: Place) -> None:
-    """Show all effects, by where they act."""
+    """Show all effects, grouped by where they act."""
     heading(TITLE, QUESTION)
     for chapter, effects in chaptered(bench.catalogue).items():
         section(chapter)
@@ -61,7 +61,7 @@ async def entry(bench: Workbench, effect: str) -> None:
 
 
 async def picture(bench: Workbench, cls: type[Effect]) -> None:
-    """The drawn picture; of an effect of the user's own, drawn now."""
+    """Show the picture of an effect's signature; one that does not exist yet is drawn now."""
     if cls.signature is None:
         return
     path = DRAWN / f"{cls.id}.png"

@@ -1,4 +1,4 @@
-"""Only pages of the workbench itself talk to it: other sites can neither read nor do anything.
+"""Refuse requests that other sites send to the workbench: they can neither read nor do anything.
 
 A browser tells which site a request comes from: `Origin` where it could change or read something,
 `Sec-Fetch-Site` always (Fetch standard, https://fetch.spec.whatwg.org; W3C Fetch Metadata). A page
@@ -8,7 +8,7 @@ that points its own name at this machine is refused by its `Host` (TrustedHostMi
 from typing import Any
 
 ELSEWHERE = (b"cross-site", b"same-site")  # another port of this machine is a site's other page
-# No other page shows the workbench in a frame, under which clicks could be led astray.
+# Refuse to be shown inside a frame of another page, which could misdirect clicks.
 HEADERS = [
     (b"content-security-policy", b"frame-ancestors 'self'"),
     (b"x-frame-options", b"SAMEORIGIN"),
@@ -16,13 +16,13 @@ HEADERS = [
 
 
 class Gate:
-    """ASGI middleware around the workbench."""
+    """ASGI middleware that passes only the workbench's own requests."""
 
     def __init__(self, app: Any) -> None:
         self.app = app
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Pass on what the workbench's own pages ask, and what somebody typed or followed."""
+        """Pass on requests of the workbench's own pages, and addresses that somebody opens."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
         elif _foreign(dict(scope["headers"])):
@@ -34,7 +34,7 @@ class Gate:
 
 
 def _foreign(headers: dict[bytes, bytes]) -> bool:
-    """Whether a page of another site asks; to be opened by a link of one is no such thing."""
+    """Whether a page of another site sends the request; a link that somebody follows is allowed."""
     origin, host = headers.get(b"origin"), headers.get(b"host", b"")
     if origin is not None:
         return origin != b"http://" + host

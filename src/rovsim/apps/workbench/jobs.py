@@ -1,4 +1,4 @@
-"""Long work on an open campaign: begun here, done in a process of its own, taken in when done."""
+"""Start long work on an open campaign in another process, and load the results when it is done."""
 
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ WAITING = "Waits until what goes on has ended, one long work at a time: {}."
 
 
 class Beginning(ui.button):
-    """A button that begins long work: while other work goes on it waits, and says for what."""
+    """A button that starts long work; it is disabled, and says why, while other work runs."""
 
     other = BindableProperty(on_change=lambda button, _: button.wait())
 
@@ -28,7 +28,7 @@ class Beginning(ui.button):
         bind_from(self, "other", bench, "goes_on")
 
     def wait(self) -> None:
-        """While other work goes on, for those who point at it and those who hear it."""
+        """Disable the button while other work runs, with the reason as tooltip and description."""
         self.set_enabled(not self.other)
         reason = WAITING.format(self.other) if self.other else None
         for name in ("title", "aria-description"):
@@ -36,13 +36,13 @@ class Beginning(ui.button):
 
 
 def start_diagnosis(bench: Workbench) -> None:
-    """Begin to look for what the base lacks."""
+    """Start a diagnosis of the base."""
     settings, path = bench.only(bench.base.name), bench.diagnosis_path
     bench.work.begin("Finding what is missing", bench.found, tasks.diagnose_into, settings, path)
 
 
 def start_training(bench: Workbench, kind: str, name: str) -> None:
-    """Begin to train a residual on top of one of the models."""
+    """Start to train a residual of this kind on top of the model called `name`."""
     base = NOMINAL if name == bench.base.name else name
     trained = name_learned(kind, bench.settings.control, base)
     residual = compose([f"residual={kind}"]).residual
@@ -56,7 +56,7 @@ def start_training(bench: Workbench, kind: str, name: str) -> None:
 
 
 def start_report(bench: Workbench) -> None:
-    """Begin to write the report and the JSON files behind it."""
+    """Start to write the report and the JSON files behind it."""
 
     def take(path: Path) -> None:
         bench.choices["report"] = path
@@ -67,9 +67,9 @@ def start_report(bench: Workbench) -> None:
 
 
 def start_design(bench: Workbench, name: str, question: Question) -> None:
-    """Begin to plan the flight that answers a question about one of the models."""
+    """Start to plan the flight that answers a question about the model called `name`."""
 
     arguments = (bench.only(name), question, bench.flight_folder(name, question))
     bench.work.begin(
         "Planning a flight", lambda folder: None, tasks.design_into, *arguments
-    )  # the screen finds it in its folder
+    )  # the screen reads the result from this folder

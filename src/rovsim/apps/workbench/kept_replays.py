@@ -1,4 +1,4 @@
-"""Models against the recordings of a campaign: replays and errors, each computed once."""
+"""A cache: replays and errors of models on the runs of a campaign, each computed once."""
 
 from dataclasses import dataclass, field
 
@@ -22,7 +22,12 @@ from rovsim.simulation.settings import SimulationSettings
 
 @dataclass(eq=False)
 class KeptReplays:
-    """Of some runs, filtered and replayed as the settings say."""
+    """Replays and errors of models on some runs, computed when first asked for.
+
+    Attributes:
+        runs: what was measured.
+        how: settings of the replays.
+    """
 
     runs: Runs
     how: SimulationSettings
@@ -33,7 +38,7 @@ class KeptReplays:
     _thrusts: Recent[Array] = field(default_factory=Recent)
 
     def replayed(self, model: Model, run: str, horizon: float | None) -> Replay:
-        """One run replayed in windows of `horizon` s, or open loop (None)."""
+        """Return the replay of a run, restarted every `horizon` s, or open loop (None)."""
         key = (model, run, horizon)
         spans = () if horizon is None else (horizon,)
         settings = self.how.only(*spans)
@@ -43,12 +48,12 @@ class KeptReplays:
         )
 
     def prediction(self, model: Model, run: str, horizon: float | None) -> Prediction:
-        """What the model predicts in windows of `horizon` s, or open loop (None)."""
+        """Return what a model predicts when restarted every `horizon` s, or open loop (None)."""
         name = OPEN_LOOP if horizon is None else name_horizon(horizon)
         return self.replayed(model, run, horizon).horizons[name]
 
     def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
-        """Within what the model may lie, given all that it leaves open; None where nobody knows."""
+        """Return the probability band of a prediction; None for a model without one."""
         spans = () if horizon is None else (horizon,)
         motion, settings = self.runs.motions[run], self.how.only(*spans)
         (windows,) = find_spans(motion, settings.replay, open_loop=not spans).values()
@@ -58,24 +63,24 @@ class KeptReplays:
         )
 
     def thrust(self, model: Model, run: str) -> Array:
-        """What it makes of the commands of a run at its samples or bins (n, 6), N and N m."""
+        """Return the thrust (n, 6) that commands cause at samples or bins of a run, N and N m."""
         motion, settings = self.runs.motions[run], self.how.replay
         return self._thrusts.get(
             (model, run), lambda: drive_as_measured(model, motion, settings).wrench
         )
 
     def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
-        """The errors of one run, as comparison.json has them."""
+        """Return the errors on one run, with the numbers of comparison.json."""
         return summarize(subtract(self.runs.motions[run], self.prediction(model, run, horizon)))
 
     def run_error(self, model: Model, run: str) -> float | None:
-        """`windows_2s` of one run alone."""
+        """Return the 2 s error (`windows_2s`) on one run alone; None if it has none."""
         motion = self.runs.motions[run]
         replayed = self.replayed(model, run, WINDOW)
         return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
 
     def step(self, model: Model) -> Step:
-        """The ladder's step of one model; this opens the test runs."""
+        """Return the ladder's step of a model, its errors on the test runs; this opens these."""
         if model not in self._steps:
             tests = self.runs.of("test")
             pairs = ((self.runs.motions[r], self.replayed(model, r, WINDOW)) for r in tests)
@@ -83,7 +88,7 @@ class KeptReplays:
         return self._steps[model]
 
     def searched(self, model: Model) -> SearchedModel:
-        """Where a model fails."""
+        """Return the search for conditions under which a model fails."""
         if model not in self._searched:
             self._searched[model] = search_runs(model, self.runs, self.how)
         return self._searched[model]

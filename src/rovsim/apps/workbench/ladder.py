@@ -1,4 +1,4 @@
-"""Ladder: the error falling step by step, down to the noise floor."""
+"""The screen Ladder: the error of each model on the test runs, down to the noise floor."""
 
 from nicegui import app, ui
 
@@ -44,13 +44,13 @@ async def show(bench: Workbench, place: Place) -> None:
 
 
 def _remarks(ladder: Ladder) -> str:
-    """Which rows build on each other, and which bar is cut."""
+    """Say which rows build on each other, and which bar is cut."""
     rows = LADDER if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
     return " ".join(filter(None, (rows, tell_beyond(chart_ladder(ladder).beyond))))
 
 
 def _table(ladder: Ladder) -> None:
-    """The 2 s error, and beside it, under a heading of its own, what velocities err by."""
+    """Show a table of the 2 s error, and of the mean absolute velocity error by axis."""
     rows = [
         (
             title(s.model),
@@ -103,7 +103,7 @@ def _report(bench: Workbench) -> None:
 
 
 def chart_of(ladder: Ladder) -> Options:
-    """Bars from the first step down; the noise floor is a line, for it is a bound and no model."""
+    """Return a chart with a bar for each step, and a line for the noise floor, which is a bound."""
     ladder_chart = chart_ladder(ladder)
     floor = or_none(ladder_chart.noise_floor)
     bars = [
@@ -118,7 +118,7 @@ def chart_of(ladder: Ladder) -> Options:
         "symbol": "none",
         "silent": True,
         "data": [{"xAxis": floor}],
-        "precision": -1,  # where the number says; of itself ECharts rounds to two decimals
+        "precision": -1,  # the exact place; by default ECharts rounds to two decimals
         "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
         "label": {
             "formatter": f"noise floor {significant(ladder_chart.noise_floor)}",
@@ -158,7 +158,7 @@ def chart_of(ladder: Ladder) -> Options:
 
 
 def _label(bar: LadderBar, cut: bool) -> Options:
-    """The number of a bar behind it, or on it where the bar leaves the axis."""
+    """Return the label with the number of a bar: behind the bar, or on a bar that is cut."""
     text = significant(bar.value)
     if cut:
         return {

@@ -1,4 +1,4 @@
-"""Models: two of them side by side: their errors, their replays, and what is in them."""
+"""The screen Models: two models side by side, with their errors, replays and parameters."""
 
 from pathlib import Path
 from typing import Any, Mapping, Sequence
@@ -52,14 +52,14 @@ from rovsim.results.fitted import FittedValue
 TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"
 SIDES = ("left", "right")
 ABSENT = "–"
-LOOKS = (FAMILIES["nominal"], FAMILIES["knn"])  # left and right, whatever they are
+LOOKS = (FAMILIES["nominal"], FAMILIES["knn"])  # left and right, whichever models these are
 ERRORS = {f"{axis} ({u})": axis for axis, u in zip(AXES, VELOCITY_UNITS, strict=True)}
 POSE = {"position (m)": "position_rmse_m", "attitude (rad)": "attitude_rmse_rad"}
 Errors = dict[str, dict[float | None, Metrics]]  # by model and horizon
 
 
 class Models:
-    """The screen, with what was chosen on it."""
+    """The screen Models on one page, and the choices made on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
@@ -82,9 +82,9 @@ class Models:
             "horizon": HORIZONS,
         }
         self.chosen = Choices(place, first, possible, self.draw, zooms=True)
-        self.models: dict[str, Model] = {}  # those shown, by name
+        self.models: dict[str, Model] = {}  # that are shown, by name
         self.traces: Traces | None = None
-        self.drawn = 0  # times
+        self.drawn = 0  # how often the screen was drawn
 
     async def show(self) -> None:
         """Build the screen."""
@@ -124,7 +124,7 @@ class Models:
             self.traces.redraw(all_panels, remark)
 
     async def draw(self) -> None:
-        """Everything below the controls."""
+        """Draw everything below the controls."""
         self.chosen.tell()
         self.area.clear()
         self.traces, self.drawn = None, self.drawn + 1
@@ -157,7 +157,7 @@ class Models:
             onward("See the test runs of all models", "/ladder")
 
     async def _panels(self) -> tuple[list[Panel], str]:
-        """The curves of both, and what is wrong with them."""
+        """Replay both models; returns the panels, and a sentence on replays that diverge."""
         motion = self.bench.data.motions[self.chosen["run"]]
         predicted = {
             name: await computed(
@@ -170,7 +170,7 @@ class Models:
         return all_panels, tell_divergence(motion.time, by_title)
 
     def _errors(self) -> Errors:
-        """Of each model at each horizon that comparison.json has."""
+        """Compute the errors of each model at each horizon of comparison.json; None: open loop."""
         horizons = (*self.bench.settings.replay.horizons, None)
         return {
             name: {h: self.bench.replays.metrics(model, self.chosen["run"], h) for h in horizons}
@@ -179,7 +179,7 @@ class Models:
 
 
 def _tell_errors(run: str, errors: Errors) -> None:
-    """Errors by axis and horizon, and by how much the right one's are smaller or larger."""
+    """Show a table of errors by axis and horizon, and of the change from the left to the right."""
     section("Errors")
     horizons = list(next(iter(errors.values())))
     names = list(map(title, errors))
@@ -208,12 +208,12 @@ def _tell_errors(run: str, errors: Errors) -> None:
 
 
 def _read(metrics: Metrics, name: str) -> float | None:
-    """The error that a row of the table shows."""
+    """Return the error that a row of the table shows."""
     return metrics.velocity_rmse[ERRORS[name]] if name in ERRORS else getattr(metrics, POSE[name])
 
 
 def tell_change(before: float | None, after: float | None) -> str:
-    """By how much an error is larger (+) or smaller (−) than another."""
+    """Say by how many percent an error is larger (+) or smaller (−) than another."""
     if not before or after is None:
         return ABSENT
     percent = round(100.0 * (after / before - 1.0))
@@ -221,7 +221,7 @@ def tell_change(before: float | None, after: float | None) -> str:
 
 
 def _tell_parameters(models: Mapping[str, Model]) -> None:
-    """Every value that an effect of one of the models has."""
+    """Show a table of all parameters of the effects that were added to either model."""
     columns = {name: _values(model) for name, model in models.items()}
     keys = dict.fromkeys(key for values in columns.values() for key in values)
     if not keys:
@@ -239,7 +239,7 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
 
 
 def _values(model: Model) -> dict[tuple[str, str], str]:
-    """What a model has beside its vehicle file, in words, by effect and parameter."""
+    """Return what a model adds to its vehicle file, as text by effect and parameter."""
     texts: dict[tuple[str, str], str] = {}
     for effect in model.added:
         units = {p.name: p.unit for p in effect.parameters}
@@ -255,7 +255,7 @@ def _values(model: Model) -> dict[tuple[str, str], str]:
 
 
 def _tell_totals(models: Mapping[str, Model], catalogue: Catalogue) -> None:
-    """What coefficients come to, where one of the models has another than the vehicle file."""
+    """Show the total of each coefficient that differs between vehicle file and models."""
     base = nominal(next(iter(models.values())).vehicle)
     bodies = {"vehicle file": base.body} | {name: model.body for name, model in models.items()}
     columns = {name: list_totals(body) for name, body in bodies.items()}

@@ -1,4 +1,4 @@
-"""Open, where nobody has described the recordings: what is in them, and what has to be asked."""
+"""The screen for recordings without campaign.yaml: what is in them, and questions about them."""
 
 from pathlib import Path
 from typing import Callable, Mapping, Sequence
@@ -31,9 +31,13 @@ def show(
     write: Callable[[Mapping[str, str]], None],
     leave: Callable[[], None],
 ) -> None:
-    """Show the screen; `write` takes answers by place, `leave` goes back to other folders.
+    """Show the screen.
 
-    `folder`: an absolute path.
+    Args:
+        proposal: of a campaign.yaml, with the questions that no file answers.
+        folder: of the recordings, an absolute path.
+        write: called with the answers by place in campaign.yaml, once all are given.
+        leave: called to go back to the choice of folders.
     """
     heading(TITLE, QUESTION)
     text(f"{shown(folder)} holds no campaign.yaml. This is what stands in its files.")
@@ -68,7 +72,7 @@ def show(
 
 
 def _guesses(proposal: CampaignProposal) -> None:
-    """What was taken for a reason that may be wrong."""
+    """Show the guesses of the proposal, each with its reason."""
     guesses = list_guesses(proposal, TOPICS)
     if not guesses:
         return
@@ -79,14 +83,19 @@ def _guesses(proposal: CampaignProposal) -> None:
 
 
 def tell_unanswered(questions: Sequence[OpenQuestion], answers: Mapping[str, str]) -> str:
-    """Which questions have no answer by place yet, by what their fields are called."""
+    """Say which questions have no answer yet, by the labels of their fields; empty if all have.
+
+    Args:
+        questions: of a proposal.
+        answers: by place in campaign.yaml.
+    """
     unanswered = [q.place for q in questions if not answers.get(q.place, "").strip()]
     names = listed([TOPICS.get(place, place) for place in unanswered])
     return f"No answer yet: {names}. Answer every question; no file does." if unanswered else ""
 
 
 def _field(question: OpenQuestion) -> Callable[[], str]:
-    """A field with the question above it; returns what tells its value."""
+    """Show a question and a field for its answer; returns a function that reads the answer."""
     label = TOPICS.get(question.place, question.place)
     text(question.asks)
     if question.free:

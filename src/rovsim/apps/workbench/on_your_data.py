@@ -1,4 +1,4 @@
-"""An effect on the user's own data: the error over a condition, without it and with it."""
+"""A chart of an effect in the user's data: the error over a condition without it and with it."""
 
 from typing import Collection
 
@@ -23,7 +23,11 @@ LOOKS = {"without it": (MARK, "dashed"), "with it": (BLUE, "solid")}
 
 
 async def show_lowered(bench: Workbench, effect: str) -> bool:
-    """Show what a found effect lowers over its condition, if that is seen in accelerations."""
+    """Show how an effect lowers the acceleration error over its condition, if that is visible.
+
+    Returns:
+        Whether it is, so that there is a chart.
+    """
     try:
         models = bench.draft.found(but=effect), bench.draft.found()
     except RovsimError:  # a diagnosis from elsewhere, of effects that are not known here
@@ -50,7 +54,7 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
 
 
 def _axes(bench: Workbench, effect: str) -> Collection[str]:
-    """Axes on which an effect acts: those of its values, if they are of axes."""
+    """Return the axes that an effect acts on: those that its parameters are named after, or all."""
     fitted = bench.draft.fitted[effect].parameters if effect in bench.draft.fitted else ()
     return [axis for axis in AXES if axis in fitted] or AXES
 
@@ -60,7 +64,7 @@ def _name(found: Lowered) -> str:
 
 
 def lowered_chart(found: Lowered) -> Options:
-    """Means of the bins with two standard errors, or their sizes, before and after."""
+    """Return a chart of the binned errors: means with two standard errors, or their RMS."""
     name, unit = found.condition.name, chart_bins(tabulate(found.before)).unit
     series = [
         curve

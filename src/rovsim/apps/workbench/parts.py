@@ -1,4 +1,4 @@
-"""Pieces that several screens share."""
+"""Text, tables, tiles and buttons that several screens share."""
 
 import asyncio
 import json
@@ -23,17 +23,17 @@ SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
 Columns = Mapping[str, Any]  # what the columns of the CSV are called: see saveValues
 NO_COLUMNS: Columns = MappingProxyType({})
 
-# One thread computes: it uses all cores, and what was asked for first is shown first.
+# One thread computes: it uses all cores, and what was requested first is shown first.
 _thread = ThreadPoolExecutor(1)
 
 
 async def in_thread(function: Callable, *given: Any) -> Any:
-    """`function(*given)` in the computing thread, while pages stay alive."""
+    """Return `function(*given)`, computed in another thread, so that pages still respond."""
     return await asyncio.get_running_loop().run_in_executor(_thread, function, *given)
 
 
 async def computed(function: Callable, *given: Any) -> Any:
-    """The same for a screen: what was to follow ends where the screen was left meanwhile."""
+    """As `in_thread`, for a screen: raises CancelledError if the screen was left meanwhile."""
     try:
         place = ui.context.slot.parent
     except RuntimeError:  # the control that was used has been drawn anew since
@@ -47,20 +47,20 @@ async def computed(function: Callable, *given: Any) -> Any:
 class Slider(ui.slider):
     """A slider that keeps up with a fast hand or key.
 
-    With NiceGUI's own, every value that reaches the server comes back and sets the slider to where
-    it was by then: of five quick keys, two or three were lost.
+    NiceGUI's own slider sends every value back from the server, which resets the slider to that
+    older position: of five quick key presses, two or three were lost.
     """
 
     LOOPBACK = False
 
 
 def marked(words: str) -> str:
-    """Text as HTML: what stands between backticks is what one types."""
+    """Return text as HTML; what stands between backticks is shown as code."""
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(words))
 
 
 class Failure(ui.html):
-    """Why something failed, beside the control that was used: it stays until that has worked."""
+    """A message beside a control that failed; it stays until the control has worked."""
 
     def __init__(self) -> None:
         super().__init__(sanitize=False)
@@ -68,33 +68,33 @@ class Failure(ui.html):
         self.visible = False
 
     def tell(self, error: Exception | str) -> None:
-        """Show it."""
+        """Show the message."""
         self.content, self.visible = marked(str(error)), True
 
     def forget(self) -> None:
-        """Show nothing: it has worked now."""
+        """Remove the message."""
         self.content, self.visible = "", False
 
 
 def heading(called: str, question: str) -> None:
-    """Title of a screen, and the question it answers."""
+    """Show the title of a screen, and the question it answers."""
     with ui.column().classes("heading"):
         ui.html(f"<h1>{escape(called)}</h1>", sanitize=False)
         ui.label(question).classes("question")
 
 
 def text(words: str, classes: str = "") -> None:
-    """A paragraph."""
+    """Show a paragraph."""
     ui.html(f"<p>{marked(words)}</p>", sanitize=False).classes(f"text {classes}")
 
 
 def about_axes(more: str = "") -> None:
-    """What the axes are: the same words on every screen that shows some."""
+    """Explain the axes, with the same words on every screen."""
     text(f"Axes are those of the body: surge ahead, sway to starboard, heave down{more}.", "soft")
 
 
 def alarm(words: str) -> str:
-    """A warning inside a line, as HTML: a sign and a colour of its own; empty without words."""
+    """Return a warning inside a line as HTML, with a sign and a colour; empty without words."""
     if not words:
         return ""
     sign = '<i class="q-icon material-icons" aria-hidden="true">warning</i>'
@@ -102,12 +102,12 @@ def alarm(words: str) -> str:
 
 
 def section(called: str) -> None:
-    """A heading inside a screen."""
+    """Show a heading inside a screen."""
     ui.html(f"<h2>{escape(called)}</h2>", sanitize=False)
 
 
 def paragraphs(called: str, sentences: Iterable[str]) -> None:
-    """Sentences under a heading; nothing where there are none."""
+    """Show sentences under a heading; nothing where there are none."""
     for place, words in enumerate(sentences):
         if not place:
             section(called)
@@ -115,9 +115,12 @@ def paragraphs(called: str, sentences: Iterable[str]) -> None:
 
 
 def cell(value: float | None, name: str = "", told: str = "") -> str:
-    """A number in a table, its full value in `data-value`, its name in `data-name`.
+    """Return a table's cell with a number, as HTML.
 
-    `told`: the number in words, where three digits of it are not what people would write.
+    Args:
+        value: in full in the attribute `data-value`; None is shown as a dash.
+        name: in the attribute `data-name`, by which tests find the number.
+        told: text to show in place of three significant digits.
     """
     attribute = "" if value is None else f' data-value="{value!r}"'
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))
@@ -126,17 +129,17 @@ def cell(value: float | None, name: str = "", told: str = "") -> str:
 
 
 def titled(models: Iterable[str]) -> dict[str, str]:
-    """Names of models to choose from: as files call them, and as every screen does."""
+    """Return the titles of models, by the names that their files have."""
     return {name: title(name) for name in models}
 
 
 def head(words: str) -> str:
-    """Text at the head of a column as HTML: a long name may go on in the next line."""
+    """Return a column's heading as HTML, with places where a long name may break."""
     return re.sub(r"([_+.])", r"\1<wbr>", escape(words))
 
 
 def words(value: Any) -> str:
-    """Text in a table."""
+    """Return a table's cell with text, as HTML."""
     return f"<td>{escape(str(value))}</td>"
 
 
@@ -146,9 +149,13 @@ def table(
     rows: Sequence[tuple[str, Sequence[str]]],
     groups: Sequence[tuple[str, int]] = (),
 ) -> None:
-    """A table of rows with a name and cells; it scrolls sideways where it is too wide.
+    """Show a table, which scrolls sideways where it is too wide.
 
-    `groups`: what stands above the columns after the first, and above how many.
+    Args:
+        caption: of the table.
+        heads: heading of each column.
+        rows: name and cells, as HTML, of each row.
+        groups: headings above the columns after the first, each with its number of columns.
     """
     numeric = [
         "",
@@ -174,12 +181,12 @@ def table(
 
 
 def tile(called: str, value: float | None, name: str, note: str = "") -> ui.html:
-    """A number that matters."""
+    """Show a tile with an important number."""
     return ui.html(tile_html(called, value, name, note), sanitize=False).classes("tile")
 
 
 def tile_html(called: str, value: float | None, name: str, note: str = "") -> str:
-    """The content of a tile, to be replaced when the number changes."""
+    """Return the content of a tile as HTML, for when its number changes."""
     attribute = "" if value is None else f' data-value="{value!r}"'
     return (
         f"<span>{escape(called)}</span><strong data-name='{escape(name)}'{attribute}>"
@@ -194,9 +201,14 @@ def chart(
     on_point_click: Callable | None = None,
     columns: Columns = NO_COLUMNS,
 ) -> ui.echart:
-    """An ECharts chart that says what it shows to those who do not see it.
+    """Show an ECharts chart, with buttons that save it as PNG, SVG and CSV.
 
-    The CSV calls its `columns` as the axes are called, unless they are named.
+    Args:
+        options: of ECharts.
+        about: what the chart shows, for screen readers.
+        height: px; 0: as the style sheet says.
+        on_point_click: called with the event of a click on a point.
+        columns: headings of the CSV; those of the axes unless given.
     """
     common = {"animation": False, "textStyle": {"fontFamily": FONT}}
     element = ui.echart({**common, **with_minus(options)}, on_point_click)
@@ -211,14 +223,14 @@ def chart(
 
 
 def saving(kind: str, about: str) -> ui.button:
-    """A button that saves what is shown as a file of this kind."""
+    """Return a button that saves what is shown as a file of this kind."""
     button = ui.button(kind).props("flat dense no-caps")
     button.props.update({"aria-label": f"{kind}: {about}"})
     return button
 
 
 def png(path: Path, about: str) -> None:
-    """A picture that lies in a file, to be saved as well."""
+    """Show a PNG file, with a button that saves it."""
     content = b64encode(path.read_bytes()).decode()
     ui.html(
         f'<img src="data:image/png;base64,{content}" alt="{escape(about)}">', sanitize=False
@@ -228,7 +240,7 @@ def png(path: Path, about: str) -> None:
 
 
 def bar(share: float, name: str = "") -> str:
-    """A share of one as a bar in a table, its number beside it."""
+    """Return a table's cell with a share (0 to 1) as a bar and in percent, as HTML."""
     width = 100.0 * max(0.0, min(1.0, share))
     return (
         f'<td class="bar" data-name="{escape(name)}" data-value="{share!r}">'
@@ -237,20 +249,20 @@ def bar(share: float, name: str = "") -> str:
 
 
 def onward(label: str, path: str) -> None:
-    """The way to the next question."""
+    """Show a button that leads to the screen of the next question."""
     ui.button(label, icon="arrow_forward", on_click=lambda: ui.navigate.to(path)).props(
         "unelevated no-caps"
     ).classes("onward")
 
 
 def in_a_terminal(line: str) -> None:
-    """The command that does the same."""
+    """Show the command that does the same in a terminal."""
     ui.label("The same in a terminal").classes("soft")
     code = ui.code(line, language="bash")
     code.copy_button.props('aria-label="Copy the command" title="Copy"')
 
 
 def formula(latex: str) -> None:
-    """An equation; a wide one scrolls sideways, with the keyboard too."""
+    """Show an equation; a wide one scrolls sideways, with the keyboard too."""
     element = ui.html(mathml(latex), sanitize=False).classes("formula")
     element.props('role="group" tabindex="0" aria-label="Equation"')

@@ -1,4 +1,4 @@
-"""The path in the tank, in three dimensions: turned with the mouse, played in time."""
+"""A chart of the path in the tank in three dimensions, to be turned and played in time."""
 
 import csv
 from contextlib import suppress
@@ -35,7 +35,7 @@ NAME = f"color: {SOFT}; background: {PAPER}; padding: 0 4px; font-size: 13px"
 
 
 class Path:
-    """Measured and simulated paths on the page, and the moment that is shown of them.
+    """Measured and simulated paths on the page, with the vehicles at one moment.
 
     Args:
         motion: the run.
@@ -111,7 +111,7 @@ class Path:
         self.play.set_icon("pause" if self.timer.active else "play_arrow")
 
     async def _tick(self) -> None:
-        """One picture on, no faster than the browser draws; from the end it starts anew."""
+        """Advance the playback by one picture, no faster than the browser draws; then restart."""
         moment = self.clock.value + TICK * SPEED
         self.clock.value = round(moment if moment <= self.time[-1] else float(self.time[0]), 2)
         self._show(self.clock.value)
@@ -119,7 +119,7 @@ class Path:
             await ui.run_javascript(DRAWN, timeout=PATIENCE)
 
     def _show(self, moment: float) -> None:
-        """Put the vehicles where they are at one moment."""
+        """Move the vehicles to where they are at one moment, s."""
         k = int(np.clip(np.searchsorted(self.time, moment), 0, len(self.time) - 1))
         for name, path in self.paths.items():
             visible = bool(np.isfinite(path[k]).all())
@@ -130,9 +130,10 @@ class Path:
 
 
 def bends(path: Array) -> list[tuple[list[float], list[float], list[float]]]:
-    """Start, control point and end of quadratic Bezier curves along a path (n, 3), without gaps.
+    """Return start, control point and end (3,) of quadratic Bezier curves along a path (n, 3).
 
-    Each passes three points of the path, thinned to `PIECES` curves.
+    Each curve passes through three points of the path, which is thinned to about `PIECES` curves;
+    those with a gap (NaN) are left out.
     """
     k = np.unique(np.linspace(0, len(path) - 1, 2 * PIECES + 1).astype(int))
     k = k[: len(k) - (len(k) + 1) % 2]  # pieces share their ends: an odd number of points
@@ -142,7 +143,7 @@ def bends(path: Array) -> list[tuple[list[float], list[float], list[float]]]:
 
 
 def room(measured: Array, tank: Array) -> tuple[Array, Array]:
-    """Lowest and highest corner (3,) of the tank, or of the path where its walls are unknown.
+    """Return lowest and highest corner (3,) of the tank, or of the path where walls are unknown.
 
     Args:
         measured: path (n, 3) north, west, up; m.
@@ -157,7 +158,7 @@ def room(measured: Array, tank: Array) -> tuple[Array, Array]:
 
 
 def far_enough(low: Array, high: Array) -> Array:
-    """From the middle of a room to an eye (3,) that sees all of it, m.
+    """Return the vector (3,) from the middle of a room to an eye that sees all of it, m.
 
     Args:
         low: lowest corner (3,), north, west, up; m.
@@ -174,7 +175,7 @@ def far_enough(low: Array, high: Array) -> Array:
 
 
 def directions(low: Array, high: Array) -> dict[str, list[float]]:
-    """What stands at the ends of three edges of the room: a direction, and what is measured along.
+    """Return labels of three edges of the room (direction and range), and where each stands (3,).
 
     Args:
         low: lowest corner (3,), north, west, up; m.
@@ -191,7 +192,7 @@ def directions(low: Array, high: Array) -> dict[str, list[float]]:
 
 
 def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[str]:
-    """Which simulated paths (n, 3) leave the tank, and when, in words.
+    """Say which simulated paths (n, 3) leave the tank, and when.
 
     Args:
         time: of the samples (n,), s.
@@ -209,7 +210,7 @@ def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[s
 
 
 def path_table(run: str, time: Array, paths: Mapping[str, Array]) -> str:
-    """Paths (n, 3) in NED by name as the text of a CSV; empty where nothing is known."""
+    """Return paths (n, 3), NED, m, as the text of a CSV; a cell is empty where nothing is known."""
     heads = [f"{run} {name}, {way} (m)" for name in paths for way in DIRECTIONS]
     values = np.hstack([time[:, None], *paths.values()])
     text = StringIO()

@@ -1,4 +1,4 @@
-"""What a screen shows stands in its address: a link opens it, reload and *back* keep it."""
+"""Choices on a screen, kept in its address: links open them, reload and *back* restore them."""
 
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
@@ -12,7 +12,10 @@ from starlette.datastructures import QueryParams
 class Place:
     """A screen in one browser tab.
 
-    `query` is what its address asks for; `kept` what this tab has chosen on each screen.
+    Attributes:
+        screen: its name.
+        query: choices that its address states.
+        kept: last choices in this tab, by screen.
     """
 
     screen: str
@@ -23,10 +26,11 @@ class Place:
     def choose(
         self, first: Mapping[str, Any], possible: Mapping[str, Sequence[Any]]
     ) -> dict[str, Any]:
-        """What is shown: as the address asks, else as it was left, else `first`.
+        """Return the choices: those of the address, else the last ones in this tab, else `first`.
 
-        `possible` values of each choice that an address may name; of lists, several. What cannot
-        be had is passed over: an address may be of another day.
+        Args:
+            first: choices to begin with, by name; a list where several values may be chosen.
+            possible: allowed values of each choice. Others are ignored: an address may be old.
         """
         chosen = {**first, **self.kept.get(self.screen, {})}
         self._possible |= possible
@@ -41,14 +45,14 @@ class Place:
         return chosen
 
     def number(self, name: str) -> float | None:
-        """A number that the address gives, None if it gives none."""
+        """Return a number that the address states; None if it states none."""
         try:
             return float(self.query[name])
         except (KeyError, ValueError):
             return None
 
     def tell(self, chosen: Mapping[str, Any]) -> None:
-        """Write what is shown into the address; None is left out where it says that nothing is."""
+        """Write the choices into the address, without None where that is no possible value."""
         pairs = {
             name: value
             for name, value in chosen.items()

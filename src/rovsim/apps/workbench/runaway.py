@@ -1,4 +1,4 @@
-"""Replays that run away: since when, and what of them a chart can show beside a measurement."""
+"""Replays that diverge: since when, and which part of them a chart can show."""
 
 from typing import Mapping
 
@@ -12,13 +12,18 @@ FASTEST = 30.0  # m/s, rad/s: no underwater vehicle moves like that, a replay th
 
 
 def find_divergence(time: Array, predicted: Prediction) -> float | None:
-    """When a replay is lost, in s from the start of the run; None: never."""
+    """Return when a replay diverges, s from the start of the run; None: never.
+
+    Args:
+        time: of the samples (n,), s.
+        predicted: the replay at these.
+    """
     diverged = (np.abs(predicted.nu) > FASTEST).any(axis=1)
     return float(time[np.argmax(diverged)] - time[0]) if diverged.any() else None
 
 
 def tell_divergence(time: Array, predicted: Mapping[str, Prediction]) -> str:
-    """Which of the replays diverge, and when, in words; empty where none does."""
+    """Say which of the replays, by name, diverge, and when; empty where none does."""
     return " ".join(
         f"The replay of {name} diverges{_when(time, prediction, seconds)}."
         for name, prediction in predicted.items()
@@ -27,7 +32,10 @@ def tell_divergence(time: Array, predicted: Mapping[str, Prediction]) -> str:
 
 
 def _when(time: Array, predicted: Prediction, at: float) -> str:
-    """After how long; not where the filter has carried the infinite to the first sample."""
+    """Say after how long (`at`, s) a replay diverges, or that no sample of it can be shown.
+
+    That is so where the filter has spread infinite values to the first sample.
+    """
     start = np.argmax(~np.isnan(predicted.nu).any(axis=1))
     if at <= time[start] - time[0]:
         return ": nothing of it can be shown"
@@ -35,7 +43,7 @@ def _when(time: Array, predicted: Prediction, at: float) -> str:
 
 
 def cut(values: Array, measured: Array) -> Array:
-    """Values (n,), NaN where they are too far from the measured ones (n,) to share a chart."""
+    """Return values (n,) with NaN where they are too far from the measured (n,) for one chart."""
     reference = np.where(np.isfinite(measured), measured, np.nan)
     low, high = limits(reference, [np.clip(values, -FASTEST, FASTEST)])
     return np.where((values >= low) & (values <= high), values, np.nan)

@@ -1,4 +1,4 @@
-"""The end of the Add screen: the draft as a file, and what it does on the test runs."""
+"""The end of the screen Add: save the draft as a file, and show its error on the test runs."""
 
 import shlex
 from pathlib import Path
@@ -22,7 +22,7 @@ from rovsim.dynamics.model import Model
 
 
 class Saving:
-    """Where to save, and what came of it."""
+    """A field for the model file, a button that saves, and the result."""
 
     def __init__(self, bench: Workbench) -> None:
         self.bench = bench
@@ -38,7 +38,7 @@ class Saving:
         self.result = ui.column().classes("area")
 
     async def _save(self) -> None:
-        """Write the model file, and show what it does on the test runs."""
+        """Write the model file, and show the model's error on the test runs."""
         path = Path(self.path.value.strip())
         try:
             model = await computed(self.bench.save, path)
@@ -54,7 +54,7 @@ class Saving:
         self._tell(path, before, after, diverges, openings)
 
     def _is_lost(self, model: Model) -> bool:
-        """Whether a replay of a test run diverges."""
+        """Whether a replay of a test run diverges (2 s windows)."""
         replays, motions = self.bench.replays, self.bench.data.motions
         return any(
             find_divergence(motions[run].time, replays.prediction(model, run, WINDOW)) is not None
@@ -91,7 +91,7 @@ def _sentence(before: float | None, after: float | None, lost: bool) -> str:
 
 
 def _counted(opened: int) -> str:
-    """How often the test runs were opened, and what that does to their number."""
+    """Say for how many models the test runs were opened, and why that matters."""
     if opened == 1:
         return "The test runs were opened for one saved model: this one."
     return (

@@ -1,4 +1,4 @@
-"""What each browser tab looks at: its campaign, and work that belongs to none. Tabs may differ."""
+"""Sessions: the campaign of each browser tab, and its long work. Tabs may show different ones."""
 
 import asyncio
 import gc
@@ -20,11 +20,21 @@ MOST = 200  # tabs remembered: one that slept for days finds its campaign
 
 
 class Session:
-    """One tab: the settings with its campaign, and long work that belongs to none.
+    """One browser tab.
 
-    `bench` is the open campaign; where another folder, as it was `typed`, could not be opened,
-    `problem` says why, and the campaign stays. `proposal` of a folder that nobody has described.
-    `pages` of the tab that are there: a reload is the next before the last is gone.
+    Attributes:
+        settings: with the folder of the campaign.
+        catalogue: all effects that are known.
+        bench: the open campaign (a Workbench); None before it is read.
+        problem: why the last folder could not be opened; the campaign then stays. Empty if it was.
+        typed: that folder, as it was typed.
+        opened_at: when the campaign was opened, s of the monotonic clock.
+        proposal: of a campaign.yaml for a folder without one; None unless one is shown.
+        described: that folder.
+        scratch: temporary folder with copies of recordings for the proposal.
+        work: long work that belongs to no campaign.
+        pages: number of pages of this tab; during a reload the new one is there before the old
+            one is gone.
     """
 
     def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue, bench: Any) -> None:
@@ -39,13 +49,13 @@ class Session:
 
     @property
     def name(self) -> str:
-        """Of the campaign."""
+        """Name of the campaign; empty where there is none."""
         if self.bench is not None:
             return self.bench.data.campaign.name
         return "" if self.problem else Path(self.settings.campaign or "").name
 
     def choose(self, folder: str) -> None:
-        """Open another campaign, or look into a folder that holds none."""
+        """Open another campaign, or start to propose one for a folder of recordings."""
         place = Path(os.path.expanduser(folder))
         self.proposal, self.typed = None, folder
         if not folder:
@@ -75,7 +85,7 @@ class Session:
         )
 
     def _begin(self, *work: Any) -> None:
-        """See `LongWork.begin`; where other work goes on, that is the problem."""
+        """Start long work, see `LongWork.begin`; while other work runs, set `problem` instead."""
         try:
             self.work.begin(*work)
         except RovsimError as error:
@@ -86,7 +96,10 @@ class Session:
         self.proposal = proposal
 
     def write(self, answers: Mapping[str, str]) -> None:
-        """Write campaign.yaml into the folder that was looked into, and open it.
+        """Write the proposed campaign.yaml into its folder, and open it.
+
+        Args:
+            answers: to the questions of the proposal, by place in campaign.yaml.
 
         Raises:
             BadInput: an answer is missing, or the file cannot be written.
@@ -98,12 +111,12 @@ class Session:
         self.choose(str(self.described))
 
     def leave(self) -> None:
-        """Forget what was looked into."""
+        """Drop the proposal."""
         self.proposal = None
         self._changes += 1
 
     def practise(self) -> None:
-        """Make the practice campaign, unless it is there, and open it."""
+        """Open the practice campaign; start to make it where it does not exist."""
         from rovsim.apps.workbench import tasks
 
         if (PRACTICE / "campaign.yaml").exists():
@@ -119,11 +132,11 @@ class Session:
 
     @property
     def unread(self) -> bool:
-        """Whether a campaign is chosen that nobody has tried to read yet."""
+        """Whether a campaign is chosen and no attempt was made to read it."""
         return self.bench is None and bool(self.settings.campaign) and not self.problem
 
     async def opened(self) -> Any:
-        """The open campaign, read now if need be; None when there is none, or it cannot be read."""
+        """Return the open campaign, which is read now if it was not; None where that fails."""
         while self.unread:
             if self._reading is None:
                 self._reading = asyncio.create_task(self._read(self.settings))
@@ -131,7 +144,7 @@ class Session:
         return self.bench
 
     async def _read(self, settings: WorkbenchSettings) -> None:
-        """Read a campaign, unless another one is chosen meanwhile."""
+        """Read a campaign and open it, unless another one was chosen meanwhile."""
         from rovsim.apps.workbench.parts import in_thread
 
         bench, problem = None, ""
@@ -154,23 +167,23 @@ class Session:
 
     @property
     def works(self) -> Iterator[LongWork]:
-        """Work of this tab alone, and on its campaign, which other tabs may look at as well."""
+        """Long work of this tab, and long work on its campaign, which tabs may share."""
         yield self.work
         if self.bench is not None:
             yield self.bench.work
 
     @property
     def busy(self) -> bool:
-        """Whether long work is going on."""
+        """Whether long work is running."""
         return any(work.now for work in self.works)
 
     @property
     def changes(self) -> tuple[int, ...]:
-        """Another one than before: the screen must be drawn again."""
+        """A value that differs from the one before when the screen must be drawn again."""
         return (self._changes, id(self.bench), *(work.ended for work in self.works))
 
     def settle(self) -> None:
-        """Look after long work: take in what came of it."""
+        """Load the results of long work that has ended."""
         if not self.busy:
             reap()
         for work in list(self.works):
@@ -179,11 +192,11 @@ class Session:
 
 
 class Sessions:
-    """The tabs by the names that they give themselves; a new one begins with what was opened last.
+    """The sessions of all tabs, by the id of the tab; a new one begins with the latest campaign.
 
-    The campaign of the settings is read for the first tab, not before: the browser could not load
-    the page meanwhile. A campaign stays in memory while a tab shows it, while work on it goes on,
-    or if it is the last.
+    The campaign of the settings is read when the first tab is open, since the browser could not
+    load the page meanwhile. A campaign stays in memory while a tab shows it, while work on it
+    runs, or if it was opened last.
     """
 
     def __init__(self, settings: WorkbenchSettings, catalogue: Catalogue) -> None:
@@ -192,12 +205,12 @@ class Sessions:
 
     @property
     def last(self) -> Session | None:
-        """The one that has opened its campaign last."""
+        """The session whose campaign was opened last; None where no campaign is open."""
         sessions = [session for session in self._by_tab.values() if session.bench is not None]
         return max(sessions, key=lambda session: session.opened_at, default=None)
 
     def enter(self, tab: str) -> Session:
-        """The session of a tab, one page more."""
+        """Return the session of a tab that has opened a page."""
         session = self._by_tab.pop(tab, None) or self._new()
         self._by_tab[tab] = session  # the newest comes last
         session.pages += 1
@@ -205,7 +218,7 @@ class Sessions:
         return session
 
     def _new(self) -> Session:
-        """What a new tab looks at."""
+        """Make a session for a new tab, with the campaign that was opened last."""
         last = self.last
         if last is None:
             return Session(*self._given, None)
@@ -214,11 +227,11 @@ class Sessions:
         return session
 
     def leave(self, session: Session) -> None:
-        """One page less."""
+        """Note that a page of a session was closed."""
         session.pages -= 1
 
     def settle(self, session: Session) -> None:
-        """Look after a tab's work, and after campaigns that no tab shows any more."""
+        """Load the results of a tab's work, and drop campaigns that no tab shows any more."""
         session.settle()
         last = self.last
         for other in self._by_tab.values():
@@ -232,14 +245,17 @@ class Sessions:
 
 
 def _open(settings: WorkbenchSettings, catalogue: Catalogue) -> Any:
-    """A campaign; what computes is imported here, while the page already says that it waits."""
+    """Read a campaign; the modules for it are imported here, when the page is already shown."""
     from rovsim.apps.workbench.workbench import Workbench
 
     return Workbench.opened(settings, catalogue)
 
 
 def _keep_loaded() -> None:
-    """Collect what the last campaign left; never look through what is loaded now, for 0.2 s."""
+    """Free the memory of the last campaign, and exempt all that is loaded from later collections.
+
+    A collection would go through all of it, which takes 0.2 s.
+    """
     if gc.get_freeze_count():
         gc.unfreeze()
         gc.collect()

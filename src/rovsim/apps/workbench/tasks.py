@@ -1,4 +1,4 @@
-"""What the workbench leaves to another process: the same work as the commands do."""
+"""Long work of the workbench, for another process: it does the same as the commands."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +25,11 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 
 def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
-    """Diagnose settings.model; writes it to `path`, a proposed effect beside it, and returns it."""
+    """Diagnose settings.model; writes the result to `path`, and a proposed effect beside it.
+
+    Returns:
+        The diagnosis.
+    """
     catalogue, data, base = _open(settings, even_unusable=True)
     options = select(settings, DiagnosisSettings)
     result = diagnose(data.runs, base, options, catalogue, digest_recordings(data.campaign))
@@ -44,7 +48,7 @@ def train_into(settings: WorkbenchSettings, path: Path) -> Path:
 
 def design_into(settings: WorkbenchSettings, question: Question, out: Path) -> Path:
     """Plan the flight that answers a question; writes it as `rovsim design` does; returns `out`."""
-    from rovsim.application.pipeline.design import design, write_flight  # a second, for a few
+    from rovsim.application.pipeline.design import design, write_flight  # takes a second
 
     catalogue, data, model = _open(settings)
     write_flight(out, design(data, model, question, catalogue))
@@ -54,7 +58,7 @@ def design_into(settings: WorkbenchSettings, question: Question, out: Path) -> P
 def report_into(
     settings: WorkbenchSettings, ladder: Ladder, diagnosis: Diagnosis | None, out: Path
 ) -> Path:
-    """Write report.html and the results it shows; returns it."""
+    """Write report.html into `out`, and the results that it shows; returns its path."""
     from rovsim.reporting.html.folder import present
 
     catalogue = load_catalogue(settings.effect_files)
@@ -74,19 +78,19 @@ def report_into(
 def _open(
     settings: WorkbenchSettings, even_unusable: bool = False
 ) -> tuple[Catalogue, MeasuredCampaign, Model]:
-    """All effects, the campaign as measured, and the one model that settings name."""
+    """Load all effects, the campaign as measured, and the one model that the settings name."""
     catalogue = load_catalogue(settings.effect_files)
     data = measure(open_campaign(settings.campaign), settings.signals, even_unusable)
     return catalogue, data, load_one_model(settings.model, data.vehicle, catalogue)
 
 
 def look_into(folder: Path, scratch: Path) -> CampaignProposal:
-    """What a campaign.yaml in a folder of recordings would say; copies lie in `scratch`."""
+    """Propose a campaign.yaml for a folder of recordings; copies of these go into `scratch`."""
     return propose([folder], folder, scratch)
 
 
 def practise(tank: TankSettings, out: Path) -> Path:
-    """Fly a synthetic campaign; returns its folder."""
+    """Make a synthetic campaign in the folder `out`, which it returns."""
     with reported("flying the practice campaign") as progress:
         make_campaign(tank, out, built_in(), progress)
     return out

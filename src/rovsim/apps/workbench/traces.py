@@ -1,4 +1,4 @@
-"""Measured and simulated over time, the difference under it: a chart that several screens use."""
+"""A chart of measured and simulated values over time, and of their difference below."""
 
 from dataclasses import replace
 from types import MappingProxyType
@@ -36,7 +36,7 @@ QUANTITIES = {
     "nu_dot": ("acceleration", ACCELERATION_UNITS),
     "eta": ("position and attitude", POSE_UNITS),
 }
-# A pose belongs to the tank: what stands in place of the axis of the body.
+# Names of the components of a pose, which is in the tank's axes, by axis of the body.
 POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
 BANDED = {"nu": "nu", "eta": "place"}  # what a band calls these; others have none
 NO_BANDS: Mapping[str, Band] = MappingProxyType({})
@@ -45,12 +45,12 @@ HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
 
 def horizon_text(horizon: float | None) -> str:
-    """A horizon in words."""
+    """Say in words after how many seconds a model is restarted; None: open loop."""
     return "open loop: never restarted" if horizon is None else f"restarted every {horizon:g} s"
 
 
 def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]) -> None:
-    """A slider over the horizons, what it stands at above it; `changed` is given each."""
+    """Show a slider over `HORIZONS` with its value above; `changed` is called with each value."""
 
     def moved(event: Any) -> Any:
         label.text = f"Horizon, {horizon_text(HORIZONS[event.args])}"
@@ -64,12 +64,12 @@ def horizon_slider(horizon: float | None, changed: Callable[[float | None], Any]
 
 
 def first_run(bench: Workbench) -> str:
-    """The first train run: test runs stay closed until somebody asks for them."""
+    """Return the first train run: test runs stay closed until somebody chooses them."""
     return next(iter([*bench.data.runs.of("train"), *bench.data.motions]))
 
 
 def excited(bench: Workbench, run: str) -> list[str]:
-    """Axes that moved in a run, at most three to begin with."""
+    """Return at most three axes that moved in a run, to be shown first."""
     quality = bench.data.quality[run]
     return list(quality.excited or quality.excitation or AXES)[:3]
 
@@ -82,10 +82,16 @@ def panels(
     thrust: Array | None = None,
     bands: Mapping[str, Band] = NO_BANDS,
 ) -> list[Panel]:
-    """A panel per axis, and under it what each model missed (measured minus model).
+    """Return a panel for each axis, with a panel of the difference (measured minus model) below.
 
-    `axes` in any order. `bands` by model: within what it may lie. Under that `thrust` (n, 6), what
-    the commands push along the axis of the body, N and N m.
+    Args:
+        motion: the run.
+        predicted: replays of it, by model.
+        axes: to be shown, in any order.
+        quantity: one of `QUANTITIES`.
+        thrust: wrench (n, 6) of the commands along the axes of the body, N and N m, for a third
+            panel; None for none.
+        bands: probability bands by model.
     """
     (quantity_name, units), run = QUANTITIES[quantity], motion.run.id
     measured = np.where(motion.usable[:, None], _measured(motion, quantity), np.nan)
@@ -117,7 +123,7 @@ def panels(
 
 
 def _thrust_panel(axis: str, values: Array, run: str) -> Panel:
-    """What the commands push along an axis."""
+    """Return the panel of the thrust (n,) that the commands cause along an axis."""
     unit = FORCE_UNITS[AXES.index(axis)]
     about = {"commanded": f"{run} {axis} thrust, commanded"}
     title = f"{axis}: thrust by the commands"
@@ -125,7 +131,7 @@ def _thrust_panel(axis: str, values: Array, run: str) -> Panel:
 
 
 def _columns(of: Motion | Prediction, quantity: str) -> Array:
-    """Six columns (n, 6) of a quantity: of a pose the position, and angles for people."""
+    """Return a quantity as (n, 6); of a pose the position, m, and Euler angles, rad."""
     values = getattr(of, quantity)
     if quantity != "eta":
         return values
@@ -134,7 +140,7 @@ def _columns(of: Motion | Prediction, quantity: str) -> Array:
 
 
 def _measured(motion: Motion, quantity: str) -> Array:
-    """The same (n, 6) of a run, NaN where nothing was measured."""
+    """Return the measured quantity (n, 6) as `_columns`, NaN on axes that were not measured."""
     values, measured = _columns(motion, quantity), motion.measured
     if measured is None or quantity != "eta":
         return blank(measured, values, np.nan)
@@ -144,7 +150,7 @@ def _measured(motion: Motion, quantity: str) -> Array:
 def beside(
     first: tuple[Motion, list[Panel]], others: Sequence[tuple[Motion, list[Panel]]]
 ) -> list[Panel]:
-    """The panels of a run with the curves of others in them, from the start of each."""
+    """Add the curves of other runs to the panels of a run, all from the start of their run."""
     motion, base_panels = first
     time = motion.time - motion.time[0]
     curves = [dict(panel.curves) for panel in base_panels]
@@ -168,7 +174,17 @@ NOT_ONE_VALUE = "role=group " + " ".join(
 
 
 class Traces:
-    """The chart on the page, a remark above it, a range slider that zooms all its panels below."""
+    """The chart on the page, with a remark above and a range slider for zooming below.
+
+    Args:
+        time: of the samples (n,), s.
+        shown: the panels.
+        about: what the chart shows, for screen readers.
+        span: start and end of the part that is shown first, s.
+        zoomed: called with the part that is shown after a change; (None, None): the whole run.
+        look: by name of a curve; chosen by name unless given.
+        remark: for instance on replays that diverge.
+    """
 
     def __init__(
         self,
@@ -210,7 +226,7 @@ class Traces:
         self._tell()
 
     def _tell(self) -> None:
-        """Say what part is shown; the whole is nothing to say."""
+        """Report which part of the run is shown."""
         part = (float(self.range.value["min"]), float(self.range.value["max"]))
         whole = part == (float(self.time[0]), float(self.time[-1]))
         self.told((None, None) if whole else part)
@@ -220,7 +236,7 @@ class Traces:
         self._zoom()
 
     def _zoomed(self, event: Any) -> None:
-        """The user zoomed in the chart: the slider follows."""
+        """Move the slider after the user has zoomed in the chart itself."""
         first, span = float(self.time[0]), float(self.time[-1] - self.time[0])
         if event.args:
             start, end = event.args
@@ -234,13 +250,13 @@ class Traces:
         self.remark.text, self.remark.visible = words, bool(words)
 
     def redraw(self, shown: Sequence[Panel], remark: str = "") -> None:
-        """New values of the same curves: only these travel to the browser."""
+        """Show new values of the same curves; only these are sent to the browser."""
         self.shown = list(shown)
         self._remark(remark)
         self.chart.run_chart_method("setOption", {"series": series_data(self.time, shown, STEADY)})
 
     def mark(self, time: float | None) -> None:
-        """Mark an instant in every panel."""
+        """Mark an instant (s) in every panel; None removes the mark."""
         marks = [cursor(k, time) for k in range(len(self.shown))]
         self.chart.run_chart_method("setOption", {"series": marks})
 

@@ -1,4 +1,4 @@
-"""Where: the error by condition; a bin shows its samples in time."""
+"""The screen Where: the error of a model by condition; a bin shows its samples in time."""
 
 from contextlib import nullcontext
 from typing import Sequence
@@ -37,7 +37,7 @@ FIRST = 4  # sentences that are not folded away
 
 
 class Where:
-    """The screen, with what was chosen on it."""
+    """The screen Where on one page, and the choices made on it."""
 
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench, self.place = bench, place
@@ -65,7 +65,7 @@ class Where:
         await self.draw()
 
     async def draw(self) -> None:
-        """Findings, map and bins of one model."""
+        """Draw findings, map and bins of the chosen model."""
         model = self.bench.models[self.chosen["model"]]
         self.searched: SearchedModel = await computed(self.bench.replays.searched, model)
         self.told = list_conditions([self.searched]).models[model.name]
@@ -84,7 +84,7 @@ class Where:
             self.choose(*chosen)
 
     def _largest(self) -> tuple[str, str] | None:
-        """Axis and condition of the first finding, else of the largest share."""
+        """Return axis and condition of the first finding, else of the largest share of an error."""
         if self.told.findings:
             finding = self.told.findings[0]
             return finding.axis, finding.condition
@@ -96,7 +96,7 @@ class Where:
         return max(shares, key=lambda pair: shares[pair]) if shares else None
 
     def _findings(self, findings: Sequence[ConditionFinding]) -> None:
-        """What was found, in sentences; the first ones, and the rest folded away."""
+        """Show the findings in sentences; all but the first `FIRST` are folded away."""
         runs = f"{self.searched.split} runs {', '.join(self.searched.runs)}"
         text(f"Acceleration error in means over half a second, on the {runs}.", "soft")
         for k, sentence in enumerate(self.told.sentences):
@@ -111,7 +111,7 @@ class Where:
                     )
 
     def choose(self, axis: str, condition: str) -> None:
-        """Show the bins of one condition."""
+        """Show the error on one axis in bins of one condition."""
         self.chosen |= {"axis": axis, "condition": condition}
         self.place.tell(self.chosen)
         table: BinnedErrors = self.searched.explanation.tables[axis][condition]
@@ -136,7 +136,7 @@ class Where:
             self.series = ui.column().classes("area")
 
     def _samples(self, axis: str, found: BinnedErrors, chosen: int) -> None:
-        """The blocks of a bin among all others, over time, run by run."""
+        """Show the samples (half-second means) of the bin number `chosen` among all, over time."""
         blocks = self.searched.explanation.blocks
         assert blocks is not None  # a table was made of them
         error, inside = blocks.error[:, AXES.index(axis)], found.binning.bin == chosen
@@ -162,7 +162,7 @@ def _span(found: BinnedErrors, k: int) -> str:
 
 
 def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
-    """Means of the bins with two standard errors, from where.json; grey: seen too rarely."""
+    """Return a chart of the bins' mean errors with two standard errors; grey: too few samples."""
     curve = chart_bins(found)
     colors = [BLUE if yes else FAINT for yes in curve.judged]
     centers = [minus(f"{c:.2g}") for c in curve.center]
@@ -220,7 +220,15 @@ WHISKER = (
 
 
 def samples_chart(time, error, inside, run: str, axis: str) -> Options:
-    """Errors of one run over time, those inside the bin as large orange dots."""
+    """Return a chart of the errors of one run over time; large orange dots are inside the bin.
+
+    Args:
+        time: of n samples, s.
+        error: at these (n,), measured minus model, m/s2 or rad/s2.
+        inside: which of these are in the bin (n,).
+        run: name of the run.
+        axis: name of the axis.
+    """
     pairs = np.round(np.stack([time, error], axis=1), 5)
     return {
         "grid": {"left": 64, "right": 16, "top": 28, "bottom": 36},

@@ -1,4 +1,4 @@
-"""Why: which effects are missing, how sure that is, and what to record next."""
+"""The screen Why: which effects are missing, how sure that is, and what to record next."""
 
 from html import escape
 from pathlib import Path
@@ -101,7 +101,7 @@ def _errors(found: Diagnosis) -> None:
 
 
 def _effect(missing: Missing) -> ui.column:
-    """A card: what it is, its values, its equation, what makes it happen; room for a picture."""
+    """Show the card of a missing effect; returns the space for its picture."""
     with ui.row().classes("card effect"):
         with ui.column().classes("words"):
             ui.html(f"<h2>{escape(missing.effect)}</h2>", sanitize=False)
@@ -118,7 +118,7 @@ def _effect(missing: Missing) -> ui.column:
 
 
 async def _show_effect(bench: Workbench, effect: str) -> None:
-    """What it does to the user's data; where accelerations do not show it, to the gallery's."""
+    """Show how an effect lowers the error in the user's data, or else the gallery's picture."""
     if await show_lowered(bench, effect):
         return
     if cls := bench.catalogue.get(effect):
@@ -127,7 +127,7 @@ async def _show_effect(bench: Workbench, effect: str) -> None:
 
 
 async def _left(bench: Workbench, found: Diagnosis) -> None:
-    """What no effect explains: a law for it, or the force in time."""
+    """Show what no effect explains: the law that is proposed for it, or the force over time."""
     law = found.unexplained.proposal
     if law is not None:
         with ui.column().classes("card effect"):
@@ -159,7 +159,7 @@ def _take(bench: Workbench, failure: Failure) -> None:
 
 
 def draw_disturbance(force: Disturbance, path: Path) -> None:
-    """The report's figure of a force in time, as a file."""
+    """Draw the report's figure of the disturbance into a file."""
     from rovsim.reporting.figures import kind
     from rovsim.reporting.figures.style import save
 
@@ -200,7 +200,7 @@ def _ranking(found: Diagnosis) -> None:
 
 
 def tell_share(one: ConditionShare) -> str:
-    """How much of the error varies with a condition; of a constant, also what pushes so."""
+    """Say which share of an error varies with a condition; of a constant error also its force."""
     share = percent(one.share_of_error)
     if one.push is None:
         return share
@@ -209,7 +209,10 @@ def tell_share(one: ConditionShare) -> str:
 
 
 def list_worth_showing(ranking: Sequence[FittedEffect]) -> list[FittedEffect]:
-    """Every effect that is not improbable, the likeliest first; then those that remove most."""
+    """List all effects that are not improbable, the likeliest first, then those that remove most.
+
+    In all `SHOWN`, unless more are likely.
+    """
     likely = [r for r in ranking if (r.probability or 0.0) >= IMPROBABLE]
     likely.sort(key=lambda r: -(r.probability or 0.0))
     rest = [r for r in ranking if r not in likely and (r.error_reduction or 0.0) > 0.0]

@@ -1,4 +1,4 @@
-"""Long work in a process of its own: it tells how far it is, and can be cancelled."""
+"""Long work in another process, which reports its progress and can be cancelled."""
 
 import multiprocessing
 import time
@@ -15,10 +15,18 @@ FEWEST = 0.1  # share that must be done before anybody can tell how long the res
 
 @dataclass(eq=False)
 class Work:
-    """A function at work in another process.
+    """A function that runs in another process.
 
-    `state`: running, done, failed, cancelled. `what` it does now; `share` done, None if unknown;
-    `said`: its result, or why it failed; `after` is called with the result by whoever looks.
+    Attributes:
+        title: of the work.
+        after: to be called with the result.
+        process: that it runs in.
+        pipe: that progress and result come through.
+        begun: when it was started, s of the monotonic clock.
+        state: running, done, failed or cancelled.
+        what: it does at present.
+        share: of the work that is done, 0 to 1; None if unknown.
+        said: the result, or why it failed.
     """
 
     title: str
@@ -33,18 +41,18 @@ class Work:
 
     @staticmethod
     def start(title: str, after: Callable[[Any], None], function: Callable, *given: Any) -> "Work":
-        """Start `function(*given)`; everything given must be able to travel between processes."""
+        """Start `function(*given)` in another process; function and arguments must be picklable."""
         context = multiprocessing.get_context("spawn")  # threads and forks do not mix
         receiver, sender = context.Pipe(duplex=False)
         process = context.Process(target=_run, args=(sender, function, given), daemon=True)
         process.start()
         sender.close()
         work = Work(title, after, process, receiver)
-        weakref.finalize(work, process.terminate)  # nobody waits for it any more
+        weakref.finalize(work, process.terminate)  # ends it once the work is forgotten
         return work
 
     def look(self) -> str:
-        """Take in what the process said since; returns the state."""
+        """Read all messages of the process since the last call; returns the state."""
         while self.state == "running" and self.pipe.poll():
             try:
                 kind, *rest = self.pipe.recv()
@@ -57,7 +65,7 @@ class Work:
         return self.state
 
     def cancel(self) -> None:
-        """End the process; files appear whole or not at all, so nothing half-done is left."""
+        """End the process; files are written whole or not at all, so none is left incomplete."""
         if self.state == "running":
             self.state = "cancelled"
             self.process.terminate()
@@ -69,17 +77,21 @@ class Work:
 
     @property
     def left(self) -> float | None:
-        """Seconds that are probably left, None as long as nobody can tell."""
+        """Estimated remaining time, s; None before `FEWEST` of the work is done."""
         reliable = self.share is not None and self.share >= FEWEST
         return self.elapsed * (1.0 / self.share - 1.0) if reliable and self.share else None
 
 
 @dataclass(eq=False)
 class LongWork:
-    """Long work, one at a time.
+    """Long work, one after the other.
 
-    `now` goes on; `said` tells of what ended last, `trouble` why it failed, until somebody has read
-    it (`why`: the reason alone); `ended`: how often any has.
+    Attributes:
+        now: the work that is running; None where none is.
+        said: a sentence on the work that ended last.
+        trouble: why work failed, with its title, until the user has read it.
+        why: the same without the title.
+        ended: how often work has ended.
     """
 
     now: Work | None = None
@@ -91,10 +103,10 @@ class LongWork:
     def begin(
         self, title: str, after: Callable[[Any], None], function: Callable, *given: Any
     ) -> None:
-        """See `Work.start`.
+        """Start work, see `Work.start`.
 
         Raises:
-            BadInput: other work goes on.
+            BadInput: other work is running.
         """
         if self.now is not None:
             raise BadInput(
@@ -106,7 +118,7 @@ class LongWork:
         self.now = Work.start(title, after, function, *given)
 
     def settle(self) -> str:
-        """Take in what came of it; the state of what has just ended, or nothing."""
+        """Load the result of work that has just ended; returns its state, or "" if none has."""
         work = self.now
         if work is None or work.look() == "running":
             return ""
@@ -125,12 +137,12 @@ class LongWork:
 
 
 def reap() -> None:
-    """Let processes go that have ended; the system keeps each until it is asked about it."""
+    """Release processes that have ended, which the system keeps until it is asked about them."""
     multiprocessing.active_children()
 
 
 def _run(pipe: Connection, function: Callable, given: tuple) -> None:
-    """In the other process."""
+    """Run a function in the other process, and send progress and result through the pipe."""
     with heard_by(lambda what, share: pipe.send(("progress", what, share))):
         try:
             result = ("done", function(*given))

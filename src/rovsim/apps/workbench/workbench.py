@@ -1,4 +1,4 @@
-"""An open campaign and its models: the same functions as the commands call."""
+"""An open campaign and its models; it calls the same functions as the commands."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -32,21 +32,33 @@ OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and 
 
 @dataclass(eq=False)
 class Workbench:
-    """One campaign, its models (the base first, then what was loaded, saved or trained)."""
+    """An open campaign: what was measured, the models, a diagnosis, and long work on them.
+
+    Attributes:
+        settings: of the workbench.
+        catalogue: all effects that are known for the vehicle.
+        data: the campaign as measured.
+        models: by name; the base first, then those that were loaded, saved or trained.
+        paths: model specifications by name: a file, or a built-in model.
+        diagnosis: what the base lacks; None if there is none.
+        study: ladder.json beside a diagnosis that was given; None if there is none.
+        choices: what a screen keeps between two visits.
+        work: long work on the campaign.
+    """
 
     settings: WorkbenchSettings
     catalogue: Catalogue
     data: MeasuredCampaign
     models: dict[str, Model]
-    paths: dict[str, str]  # of models that have a file
+    paths: dict[str, str]
     diagnosis: Diagnosis | None = None
-    study: Ladder | None = None  # ladder.json beside a diagnosis that was given
-    choices: dict[str, Any] = field(default_factory=dict)  # what a screen remembers
+    study: Ladder | None = None
+    choices: dict[str, Any] = field(default_factory=dict)
     work: LongWork = field(default_factory=LongWork)
 
     @staticmethod
     def opened(settings: WorkbenchSettings, catalogue: Catalogue) -> "Workbench":
-        """Read the campaign and the models of the settings, and a diagnosis that is there.
+        """Read the campaign and the models of the settings, and a diagnosis if there is one.
 
         Raises:
             BadInput: one of them cannot be used.
@@ -67,22 +79,22 @@ class Workbench:
 
     @property
     def base(self) -> Model:
-        """The model that is diagnosed and added to."""
+        """The model that is diagnosed, and that effects are added to."""
         return next(iter(self.models.values()))
 
     @property
     def out(self) -> Path:
-        """Where the workbench keeps what it computes."""
+        """Folder in which the workbench keeps its results."""
         return kept_folder(self.settings.out, self.data.campaign)
 
     @cached_property
     def diagnosis_path(self) -> Path:
-        """Of these recordings, settings, base and code: an outdated one is never shown."""
+        """File of a diagnosis of these recordings, settings, base and code, never outdated."""
         settings = select(self.settings, DiagnosisSettings)
         return kept_diagnosis(self.out, self.data.campaign, settings, self.base, self.catalogue)
 
     def flight_folder(self, name: str, question: Question) -> Path:
-        """Where the flight lies that answers a question about a model.
+        """Return the folder of the flight that answers a question about a model.
 
         Raises:
             BadInput: its file holds no model.
@@ -92,31 +104,31 @@ class Workbench:
 
     @cached_property
     def replays(self) -> KeptReplays:
-        """What models make of the recordings."""
+        """Replays of models on the runs of the campaign."""
         return KeptReplays(self.data.runs, self.settings)
 
     @cached_property
     def baseline(self) -> Model:
-        """The model to beat: a vehicle that keeps its velocity."""
+        """The model that others must beat: a vehicle that keeps its velocity."""
         return zero_acceleration(self.data.vehicle)
 
     @cached_property
     def draft(self) -> Draft:
-        """The model that is being put together."""
+        """The model that the user puts together by hand."""
         return Draft(self.base, self.diagnosis, self.catalogue)
 
     def found(self, diagnosis: Diagnosis) -> None:
-        """Take in a new diagnosis; a draft begins with what it selected."""
+        """Replace the diagnosis; a new draft begins with the effects that it selected."""
         self.diagnosis = diagnosis
         self.__dict__.pop("draft", None)
 
     def take_law(self) -> None:
-        """Take in the law that the diagnosis proposes; a draft begins with it.
+        """Load the law that the diagnosis proposes; a new draft begins with it.
 
-        Its file is run here and nowhere before: because the user asked for it.
+        Its file, which is Python, is run here for the first time, since the user asked for it.
 
         Raises:
-            BadInput: its file is not there, or cannot be used any more.
+            BadInput: its file is missing, or cannot be used any more.
         """
         files = [*self.settings.effect_files, self.law_path]
         self.catalogue = load_catalogue(files).on(self.data.vehicle)
@@ -125,27 +137,27 @@ class Workbench:
 
     @property
     def law_path(self) -> Path:
-        """File of the effect that the diagnosis proposes."""
+        """File of the law that the diagnosis proposes, written as an effect."""
         diagnosis = self.settings.diagnosis
         return law_beside(Path(diagnosis) if diagnosis else self.diagnosis_path)
 
     def add(self, model: Model, path: Path) -> None:
-        """Take in a model that was saved or trained."""
+        """Add a model that was saved or trained."""
         self.models[model.name], self.paths[model.name] = model, str(path)
 
     @property
     def saved_in(self) -> Path:
-        """Where models are saved unless another place is named."""
+        """Folder in which models are saved unless another place is named."""
         return Path("results") / self.data.campaign.name / "models"
 
     def known_models(self) -> dict[str, Path]:
-        """Files by the name of their model, the base first: those open, and those saved before."""
+        """Return files by the name of their model, open or saved before; the base first."""
         files = {path.stem: path for path in self.saved_in.glob("*.yaml")}
         files |= {name: Path(path) for name, path in self.paths.items()}
         return {name: files[name] for name in (self.base.name, *sorted(files))}
 
     def known_model(self, name: str) -> Model:
-        """One of `known_models`, its file read now if it is not open.
+        """Return one of `known_models`; its file is read now if it is not open.
 
         Raises:
             BadInput: the file holds no model.
@@ -153,10 +165,10 @@ class Workbench:
         return self.models.get(name) or self.open_model(self.known_models()[name])
 
     def open_model(self, path: Path) -> Model:
-        """Take in the model of a file; one that is open is left as it is.
+        """Open the model of a file; one that is open already is left as it is.
 
         Raises:
-            BadInput: the file holds no model, or another one is called as this one is.
+            BadInput: the file holds no model, or another model has its name.
         """
         existing = self.paths.get(path.stem)
         if existing is not None and Path(existing).resolve() == path.resolve():
@@ -173,10 +185,10 @@ class Workbench:
         return model
 
     def save(self, path: Path) -> Model:
-        """Write the draft as a model file, and take it in as it is read back.
+        """Write the draft as a model file, read it back, and add it to the models.
 
         Raises:
-            BadInput: no such model can be, or the place is taken by something else.
+            BadInput: the draft is no possible model, or the place is not allowed or taken.
         """
         allowed = (Path(), self.out, self.data.campaign.file.parent)
         _check_place(path, allowed, {*BUILT_IN, self.base.name})
@@ -192,29 +204,29 @@ class Workbench:
         return model
 
     def free_path(self) -> Path:
-        """Where the next model may be saved without taking the place of another."""
+        """Return a path for the next model at which there is no file yet."""
         ends = chain([""], (f"_{k}" for k in count(2)))
         paths = (self.saved_in / f"with_effects{end}.yaml" for end in ends)
         return next(path for path in paths if not path.exists())
 
     def note_opening(self, model: Model) -> int:
-        """Write down that the test runs were opened for a model; how often they were by now."""
+        """Note in a file that the test runs were opened for a model; returns how often so far."""
         log = self.out / OPENINGS
         before = read_text(log) if log.exists() else "model,error\n"
         write_text(log, f"{before}{model.name},{self.replays.step(model).windows_2s}\n")
         return len(before.splitlines())
 
     def only(self, *names: str) -> WorkbenchSettings:
-        """The settings, with these models."""
+        """Return the settings with these models alone."""
         return self.settings.model_copy(update={"model": [self.paths[name] for name in names]})
 
     @property
     def goes_on(self) -> str:
-        """What long work is going on; nothing where none is."""
+        """Title of the long work that is running; empty where none is."""
         return self.work.now.title if self.work.now else ""
 
     def ladder(self) -> Ladder:
-        """All that is known: baseline, base, found effects, models, noise floor."""
+        """Return the ladder of all models: baseline, base, effects found, others, noise floor."""
         if self.study is not None:
             extra = [self.replays.step(m) for n, m in self.models.items() if m is not self.base]
             study_steps = self.study.steps
@@ -238,7 +250,7 @@ def _check_base(model: Model) -> None:
 
 
 def _check_place(path: Path, inside: Sequence[Path], taken: set[str]) -> None:
-    """Refuse to write elsewhere or over a file, and to call a model as another is."""
+    """Refuse a model file outside the folders `inside`, over another file, or with a name taken."""
     problem = ""
     if not any(path.resolve().is_relative_to(folder.resolve()) for folder in inside):
         problem = "lies outside the folder in which the workbench was started"
