@@ -1,4 +1,4 @@
-"""Figures, tables, sentences and pages. Decides nothing, computes no physics.
+"""Figures, tables, sentences and pages of results; nothing is simulated or decided here.
 
 report_data  all results that figures and reports can show
 charts       data of the ladder and of the conditions of error, for paper and screen

@@ -1,4 +1,4 @@
-"""What the ladder and the conditions of error show: decided here, drawn on paper and on screen."""
+"""Data of the charts that are drawn on paper and on screen alike: ladder and error conditions."""
 
 from dataclasses import dataclass
 from typing import Mapping, Sequence
@@ -22,7 +22,14 @@ FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the mode
 
 @dataclass(frozen=True)
 class LadderBar:
-    """One step: its name as shown, its `windows_2s` (NaN if unknown), the look of its kind."""
+    """One step of the ladder.
+
+    Attributes:
+        model: its name in files.
+        label: its name on the chart.
+        value: its 2 s error (`windows_2s`), in standard deviations; NaN if unknown.
+        look: that of its kind of model.
+    """
 
     model: str
     label: str
@@ -32,9 +39,12 @@ class LadderBar:
 
 @dataclass(frozen=True)
 class LadderChart:
-    """Bars from the first step down, and the noise floor, a bound and no model (NaN if unknown).
+    """The bars of a ladder.
 
-    `end` of the axis; a bar that is longer is cut there.
+    Attributes:
+        bars: from the first step down.
+        noise_floor: a lower bound of the error, not a model; NaN if unknown.
+        end: of the axis; a longer bar is cut there.
     """
 
     bars: tuple[LadderBar, ...]
@@ -43,12 +53,12 @@ class LadderChart:
 
     @property
     def beyond(self) -> tuple[LadderBar, ...]:
-        """Bars that are cut."""
+        """The bars that are cut at the end of the axis."""
         return tuple(bar for bar in self.bars if bar.value > self.end)
 
 
 def chart_ladder(ladder: Ladder) -> LadderChart:
-    """The bars of a ladder."""
+    """Return the bars of a ladder, and where their axis ends."""
     bars = tuple(
         LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), family_look(s.model))
         for s in ladder.models
@@ -58,7 +68,7 @@ def chart_ladder(ladder: Ladder) -> LadderChart:
 
 
 def _end(steps: Mapping[str, float], floor: float) -> float:
-    """Where the axis ends; a baseline that is far higher than all models is cut."""
+    """Return where the axis ends: a baseline that is far higher than all models is cut."""
     values = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
     models = max((v for n, v in values.items() if n != ZERO_ACCELERATION), default=0.0)
     cut = 0.0 < FAR * models < values.get(ZERO_ACCELERATION, 0.0)
@@ -66,16 +76,19 @@ def _end(steps: Mapping[str, float], floor: float) -> float:
 
 
 def tell_beyond(bars: Sequence[LadderBar]) -> str:
-    """Which bars are cut, in words."""
+    """Say which bar is longer than the axis; empty where none is."""
     return f"The bar of {bars[0].label} is longer than the axis." if bars else ""
 
 
 @dataclass(frozen=True, eq=False)
 class ConditionMap:
-    """Share (c, a) of the squared error of each of a axes that varies with each of c conditions.
+    """Which share of each axis' squared error varies with which condition.
 
-    What is constant is the share of `throughout` alone. Conditions that explain most come first;
-    `found` pairs of axis and condition beyond chance.
+    Attributes:
+        axes: names of a axes.
+        conditions: names of c conditions; those that explain most come first.
+        share: (c, a), 0 to 1. A constant error counts for the condition `throughout` alone.
+        found: pairs of axis and condition that are more than chance.
     """
 
     axes: tuple[str, ...]
@@ -85,7 +98,7 @@ class ConditionMap:
 
 
 def chart_conditions(model: ModelConditions, most: int | None = None) -> ConditionMap:
-    """The map of one model; `most` conditions, or all."""
+    """Return the map of one model, with at most `most` conditions; None: with all."""
     axes = tuple(axis for axis in AXES if model.axes.get(axis))
     shares = {axis: find_varying_shares(model.axes[axis]) for axis in axes}
     largest = {
@@ -98,10 +111,11 @@ def chart_conditions(model: ModelConditions, most: int | None = None) -> Conditi
 
 
 def find_varying_shares(tables: Mapping[str, ConditionTable]) -> dict[str, float]:
-    """Share of one axis' squared error that varies with each condition, without what is constant.
+    """Return the share of one axis' squared error that varies with each condition.
 
-    The mean square of bins holds that of a constant error, whatever the condition: a vehicle that
-    is too light errs at every speed and depth. `throughout` has it alone.
+    The mean square of bins contains that of a constant error, whatever the condition: the error of
+    a vehicle that is too light is there at every speed and depth. It is therefore subtracted from
+    all conditions but `throughout`.
     """
     constant = tables[THROUGHOUT].share_of_error if THROUGHOUT in tables else 0.0
     return {
@@ -112,9 +126,16 @@ def find_varying_shares(tables: Mapping[str, ConditionTable]) -> dict[str, float
 
 @dataclass(frozen=True, eq=False)
 class BinCurve:
-    """Mean error (n,) in n bins of a condition, with two standard errors; angles in degrees.
+    """Mean error of one axis in n bins of a condition.
 
-    `edges` (n+1,) and `center` (n,) of the bins in `unit`; `judged` often enough; `seen` at all.
+    Attributes:
+        unit: of the condition; angles are in degrees.
+        edges: of the bins (n+1,), in this unit.
+        center: of the bins (n,), in this unit.
+        mean: error (n,), measured minus model.
+        error: two standard errors (n,) of the mean.
+        judged: which bins (n,) have enough samples to be judged.
+        seen: which bins (n,) have any sample.
     """
 
     unit: str
@@ -127,7 +148,7 @@ class BinCurve:
 
 
 def chart_bins(table: ConditionTable) -> BinCurve:
-    """The curve of one axis over one condition."""
+    """Return the mean error of one axis over one condition."""
     angle = table.unit == "rad"
     edges, center = (np.degrees(x) if angle else np.array(x) for x in (table.edges, table.center))
     return BinCurve(

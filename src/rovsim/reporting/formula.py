@@ -1,13 +1,14 @@
-"""Equations as MathML: every browser shows it, nothing is fetched, nothing in it is ever run."""
+"""Equations as MathML, which browsers show without fetching or running anything."""
 
 from html import escape
 
 
 def mathml(latex: str) -> str:
-    """An equation in LaTeX as MathML; one that is none, or hides something, as it is written.
+    """Convert an equation from LaTeX to MathML; return it as code where it is invalid or unsafe.
 
-    Equations come from files, of strangers too. The converter passes text on as it is, so that
-    `\\text{<img onerror=…>}` would be an element of the page, and knows links and styles.
+    Equations come from files, also from those of strangers. The converter passes text on as it is,
+    so that `\\text{<img onerror=…>}` would become an element of the page, and it knows links and
+    styles.
     """
     from latex2mathml.converter import convert
 

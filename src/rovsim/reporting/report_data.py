@@ -1,4 +1,4 @@
-"""What figures and reports show: measured and predicted, by run and model, and all results."""
+"""All data that figures and reports show: measurements, predictions and results."""
 
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -34,10 +34,19 @@ R = TypeVar("R", bound=Result)
 
 @dataclass(frozen=True, eq=False)
 class ReportData:
-    """Motions by run, replays and bands by model and run, budgets of one model by run, and results.
+    """What is known of a campaign; what would show an unknown result (None) is left out.
 
-    A result that is not known is None, and what would show it is left out. `drawn`: runs of which
-    each has its figures.
+    Attributes:
+        motions: what was measured, by run.
+        replays: by model and run.
+        bands: probability bands by model and run; None for a model without one.
+        budgets: forces of one model, by run.
+        quality: quality reports, by run.
+        comparison: see comparison.json; likewise the other results.
+        coverage: how much of the test runs lies inside the bands.
+        steps: of a ladder of the compared models, on the test runs.
+        forces: totals of the budgets.
+        drawn: runs that have figures of their own.
     """
 
     motions: Mapping[str, Motion] = field(default_factory=dict)
@@ -60,7 +69,11 @@ class ReportData:
 
     @staticmethod
     def read(results: Mapping[str, Path], quality: Mapping[str, Path]) -> "ReportData":
-        """Results by the names they have here, and quality reports by run.
+        """Read results from files.
+
+        Args:
+            results: files by the name of an attribute of this class.
+            quality: quality reports by run.
 
         Raises:
             BadInput: a file is missing or damaged.
@@ -83,12 +96,12 @@ class ReportData:
 
     @property
     def disturbance(self) -> Disturbance | None:
-        """The force in time that follows no law."""
+        """The force over time that follows no law; None where there is none."""
         return self.diagnosis.unexplained.disturbance if self.diagnosis else None
 
     @property
     def figures(self) -> list[str]:
-        """Figures of what is known, of those that are drawn once."""
+        """Names of the figures of all runs that can be drawn of these results."""
         return [
             figure.name
             for figure in list_study_figures()
@@ -96,7 +109,7 @@ class ReportData:
         ]
 
     def draw(self, figure: str, run: str = "") -> "Figure":
-        """A figure of what is known, or of one run of it.
+        """Draw a figure of the results, or of one run.
 
         Raises:
             BadInput: there is no such figure.
@@ -104,7 +117,7 @@ class ReportData:
         return kind(figure).draw(**self.select(figure, run))
 
     def select(self, figure: str, run: str = "") -> dict[str, Any]:
-        """What a figure takes of what is known, or of one run of it: arrays and results.
+        """Return the arguments of a figure's `draw` from the results, or from one run.
 
         Raises:
             BadInput: there is no such figure.
@@ -116,14 +129,14 @@ class ReportData:
 
 @dataclass(frozen=True, eq=False)
 class RunData:
-    """What is known of one run: measured, and by model what it predicts."""
+    """What is known of one run: the arguments of figures that are drawn for each run."""
 
     known: ReportData
     run: str
 
     @property
     def time(self) -> Array:
-        """Of the samples (n,), s."""
+        """Time of the samples (n,), s."""
         return self._motion.time
 
     @property
@@ -133,17 +146,17 @@ class RunData:
 
     @property
     def nu(self) -> Array:
-        """Measured velocity (n, 6); NaN on axes that nobody measured."""
+        """Measured velocity (n, 6), body axes; NaN on axes that were not measured."""
         return blank(self._motion.measured, self._motion.nu, np.nan)
 
     @property
     def nu_dot(self) -> Array:
-        """Measured acceleration (n, 6); NaN on axes that nobody measured."""
+        """Measured acceleration (n, 6), body axes; NaN on axes that were not measured."""
         return blank(self._motion.measured, self._motion.nu_dot, np.nan)
 
     @property
     def eta(self) -> Array:
-        """Measured position (n, 3), NED; NaN where nobody measured it."""
+        """Measured position (n, 3), NED, m; NaN unless all coordinates were measured."""
         motion, place = self._motion, self._motion.eta[:, :3]
         if motion.measured is not None and not motion.measured.coordinates.all():
             return np.full_like(place, np.nan)
@@ -151,34 +164,34 @@ class RunData:
 
     @property
     def tank(self) -> Array | None:
-        """Walls (3, 2) of the tank, NED, if they are known."""
+        """Lower and upper limits (3, 2) of the tank, NED, m; None unless all are known."""
         walls = self._motion.site.tank
         return walls if np.isfinite(walls).all() else None
 
     @property
     def predicted_nu(self) -> dict[str, Array]:
-        """Velocity (n, 6) by model, in 2 s windows."""
+        """Predicted velocity (n, 6) by model, in 2 s windows."""
         return self._predicted(HORIZON, "nu")
 
     @property
     def predicted_nu_dot(self) -> dict[str, Array]:
-        """Acceleration (n, 6) by model, in 2 s windows."""
+        """Predicted acceleration (n, 6) by model, in 2 s windows."""
         return self._predicted(HORIZON, "nu_dot")
 
     @property
     def predicted_eta(self) -> dict[str, Array]:
-        """Pose (n, 7) by model, in open loop."""
+        """Predicted pose (n, 7) by model, in open loop: position, NED, m, and quaternion."""
         return self._predicted(OPEN_LOOP, "eta")
 
     @property
     def bands(self) -> dict[str, Array]:
-        """Bands (2, n, 6) of the velocity by model, of those that have one."""
+        """Lower and upper end (2, n, 6) of the velocity's band, by model that has one."""
         candidates = {model: by_run.get(self.run) for model, by_run in self.known.bands.items()}
         return {model: band.nu for model, band in candidates.items() if band is not None}
 
     @property
     def budget(self) -> ForceBudget | None:
-        """Forces of one model."""
+        """Forces of one model on the run; None if unknown."""
         return self.known.budgets.get(self.run)
 
     @property
@@ -193,7 +206,7 @@ class RunData:
         }
 
 
-# How models were replayed for what a figure shows of them.
+# How models were replayed for the predictions that a figure shows.
 REPLAYED = {
     "predicted_nu": f"{HORIZON} s windows",
     "predicted_nu_dot": f"{HORIZON} s windows",
@@ -202,12 +215,12 @@ REPLAYED = {
 
 
 def list_study_figures() -> list[FigureKind]:
-    """Figures that are drawn once."""
+    """List the figures that are drawn once."""
     return [figure for figure in kinds().values() if not _is_of_run(figure)]
 
 
 def list_run_figures() -> list[FigureKind]:
-    """Figures that are drawn for each run."""
+    """List the figures that are drawn for each run."""
     return [figure for figure in kinds().values() if _is_of_run(figure)]
 
 
@@ -220,7 +233,7 @@ def _is_of_run(figure: FigureKind) -> bool:
 
 
 def describe(figure: str, run: str, data: ReportData | None = None) -> str:
-    """What a figure of one run shows, in a few words."""
+    """Say in a few words what a figure of one run shows; empty for a figure of all runs."""
     if not run:
         return ""
     needs = kind(figure).needs

@@ -36,7 +36,15 @@ QUANTITIES = {
 
 @dataclass(frozen=True)
 class Column:
-    """A column: name in CSV, heading and unit on paper, if paper shows it, if high is good."""
+    """A column of a table.
+
+    Attributes:
+        name: in the CSV.
+        heading: on paper.
+        unit: of the numbers.
+        printed: whether it is shown on paper.
+        high_is_good: whether its largest number is the best.
+    """
 
     name: str
     heading: str
@@ -47,7 +55,14 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Numbers by model (rows) and name of a column; NaN where there is no value."""
+    """A table of numbers.
+
+    Attributes:
+        caption: on paper.
+        label: of the LaTeX table.
+        columns: from left to right.
+        frame: a row for each model, a column for each name; NaN where there is no value.
+    """
 
     caption: str
     label: str
@@ -56,11 +71,11 @@ class Table:
 
     @property
     def printed(self) -> list[Column]:
-        """The columns that paper shows."""
+        """The columns that are shown on paper."""
         return [column for column in self.columns if column.printed]
 
     def best(self) -> DataFrame:
-        """Whether a number is its column's best as printed; a bound is no model, never the best.
+        """Find the best numbers of each column as printed; the noise floor is never one of them.
 
         Returns:
             Like `frame`, True or False.
@@ -75,12 +90,12 @@ class Table:
         return rounded.eq(best).reindex(self.frame.index, fill_value=False)
 
     def csv(self) -> str:
-        """All columns at full precision; an empty cell where there is no value."""
+        """Return all columns as CSV at full precision; a cell is empty where there is no value."""
         heads = [f"{c.name} [{c.unit}]" for c in self.columns]
         return self.frame.set_axis(heads, axis=1).to_csv(index_label="model", lineterminator="\n")
 
     def latex(self) -> str:
-        """A complete `table`, the best number of each column bold, all at their decimal points."""
+        """Return a complete LaTeX `table`, with the best number of each column in bold."""
         names = [column.name for column in self.printed]
         heads = [(column.heading, f"({column.unit})") for column in self.printed]
         levels = MultiIndex.from_tuples(heads, names=["model", None])
@@ -111,7 +126,7 @@ class Table:
 
 
 def _number(value: float) -> str:
-    """A number as siunitx reads it; in braces, and not aligned, a power of ten, and a dash."""
+    """Return a number for siunitx; in braces, so not aligned, with a power of ten or as a dash."""
     text = significant(value).replace("−", "-")
     if "e" in text:
         return rf"{{\num{{{text}}}}}"
@@ -119,7 +134,7 @@ def _number(value: float) -> str:
 
 
 def _aligned(column: Series) -> str:
-    """A column as wide as its numbers are before and after their decimal points."""
+    """Return the column type of siunitx that fits the digits before and after the decimal point."""
     numbers = [_number(value) for value in column]
     parts = [number.partition(".") for number in numbers if not number.startswith("{")]
     before = max((len(whole) for whole, _, _ in parts), default=1)
@@ -133,7 +148,10 @@ def tabulate_errors(
     split: str = "test",
     quantity: str = "velocity_rmse",
 ) -> Table:
-    """One row per model of a comparison, one column per axis, runs of the split pooled."""
+    """Return the table of a comparison: a row for each model, a column for each axis.
+
+    The errors are pooled over the runs of a split, see `pool`.
+    """
     heading, units = QUANTITIES[quantity]
     columns = [
         Column(f"{axis}_{quantity}", axis, unit) for axis, unit in zip(AXES, units, strict=True)
@@ -149,7 +167,7 @@ def tabulate_errors(
 
 
 def tabulate_ladder(ladder: Ladder) -> Table:
-    """One row per step of a ladder; velocity MAE only in the CSV, to fit the page."""
+    """Return the table of a ladder, a row for each step; velocity MAE is only in the CSV."""
     columns = [
         Column("windows_2s", ERROR, "–"),
         Column("fit", "fit", "%", high_is_good=True),
@@ -181,7 +199,10 @@ def tabulate_ladder(ladder: Ladder) -> Table:
 
 
 def tabulate_published_errors(published_errors: PublishedErrors) -> Table:
-    """One row per model, others' last; the metrics apart only in the CSV."""
+    """Return the table of errors against published ones, a row for each model.
+
+    The ratios of the single metrics are only in the CSV.
+    """
     columns = [Column("not_below", "not below", "%"), Column("ratio", "all", "–")]
     columns += [Column(f"{axis}_ratio", axis, "–") for axis in AXES]
     columns += [Column(f"{metric}_ratio", metric, "–", printed=False) for metric in METRICS]

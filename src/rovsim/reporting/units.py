@@ -2,5 +2,5 @@
 
 
 def unit(si: str | None) -> str:
-    """A unit with its powers raised; 1 is no unit."""
+    """Return a unit with superscript powers, "m/s2" as "m/s²"; empty for "1" or None."""
     return "" if si in (None, "1") else si.replace("2", "²").replace("3", "³")

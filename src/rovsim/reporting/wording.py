@@ -1,4 +1,4 @@
-"""Names and numbers as people write them."""
+"""Write names and numbers as people do."""
 
 import math
 import re
@@ -51,14 +51,14 @@ MOST = 8  # names told of many: a line of run ids
 
 
 def list_learners() -> Mapping[str, "Learner"]:
-    """Every learner by kind, with what people call it."""
+    """Return every learner by kind, with its title and meaning."""
     from rovsim.learning.learner import learners  # imports Numba, which most sentences need not
 
     return learners()
 
 
 def _learned() -> re.Pattern[str]:
-    """Names of the study's models with a residual: BASE+KIND_CONTROL."""
+    """Return the pattern of names of the study's models with a residual: BASE+KIND_CONTROL."""
     return re.compile(rf"(?:(.*)\+)?({'|'.join(list_learners())})_({'|'.join(CONTROLS)})")
 
 
@@ -81,7 +81,7 @@ def title(model: str, length: int = LONGEST) -> str:
 
 
 def explain_model(model: str) -> str:
-    """What a model of the study is; nothing of one that its user made."""
+    """Say what a model of the study is; empty for a model that its user made."""
     if learned := _learned().fullmatch(model):
         base, kind, control = learned.groups()
         condition = "" if control == "all" else f" under {CONTROLS[control]} control"
@@ -98,12 +98,12 @@ def explain_model(model: str) -> str:
 
 
 def percent(share: float | None) -> str:
-    """A share as a whole number of percent."""
+    """Return a share as a whole number of percent."""
     return "an unknown share" if share is None else f"{100 * share:.0f}\u202f%"
 
 
 def several(names: Sequence[str]) -> str:
-    """Names that may be hundreds: of many the first ones, and how many more."""
+    """Return names as text; of very many the first `MOST`, and how many more there are."""
     if len(names) <= MOST + 1:
         return ", ".join(names)
     return f"{', '.join(names[:MOST])} and {len(names) - MOST} more"
@@ -116,17 +116,17 @@ def listed(names: Iterable[str]) -> str:
 
 
 def fit(error: float) -> float:
-    """An error in standard deviations as the NRMSE fit of system identification, in percent."""
+    """Convert an error in standard deviations to the NRMSE fit of system identification, %."""
     return 100.0 * (1.0 - error)
 
 
 def known(value: float | None) -> str:
-    """A number as `significant` writes it, and a dash for what is not known."""
+    """Return a number as `significant` writes it, and a dash for None."""
     return "–" if value is None else significant(value)
 
 
 def tell_probability(probability: float | None) -> str:
-    """A probability to three decimals, also at its ends, where nobody knows more of them."""
+    """Return a probability to three decimals; near 0 or 1 as "below 0.001" or "above 0.999"."""
     if probability is None:
         return "–"
     if probability < IMPROBABLE:

@@ -1,4 +1,4 @@
-"""The catalogue page: what every effect is, and what it looks like where a model lacks it.
+"""Write the catalogue page: what each effect is, and what it looks like where a model lacks it.
 
 `make catalogue` writes docs/catalogue.md and a picture per effect, the same every time.
 """

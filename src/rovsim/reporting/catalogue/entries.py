@@ -1,4 +1,4 @@
-"""The text of the page, from nothing but the declarations of the effects."""
+"""Write the text of the catalogue page from the declarations of the effects alone."""
 
 import inspect
 from itertools import groupby
@@ -67,7 +67,10 @@ edit those.
 
 
 def page(effects: Mapping[str, type[Effect]]) -> str:
-    """Markdown of all these effects, by where they act; as a set, whatever their order."""
+    """Return the Markdown of the page with these effects, grouped by where they act.
+
+    It does not depend on the order of `effects`.
+    """
     chapters = chaptered(effects)
     parts = [INTRODUCTION, *(_contents(title, classes) for title, classes in chapters.items())]
     for title, classes in chapters.items():
@@ -76,11 +79,14 @@ def page(effects: Mapping[str, type[Effect]]) -> str:
 
 
 def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect]]]:
-    """The effects by chapter; what sits in an autopilot is on the way of a command."""
+    """Sort effects into chapters by where they act.
+
+    Effects of an autopilot or of thrusters belong to the chapter on commands.
+    """
     command = list(KINDS)[1]
     chapters: dict[str, list[type[Effect]]] = {title: [] for title in KINDS}
     for _, cls in sorted(effects.items()):
-        # what smooths poses also moves the clock of the commands: the last that fits
+        # a filter of poses also shifts the clock of the commands: the last that fits counts
         title = next(t for t, kinds in reversed(KINDS.items()) if issubclass(cls, kinds))
         on_the_way = issubclass(cls, Autopilot) or cls.__module__.endswith(".thrusters")
         chapters[command if on_the_way else title].append(cls)
@@ -93,7 +99,7 @@ def _contents(title: str, found: Iterable[type[Effect]]) -> str:
 
 
 def entry(cls: type[Effect]) -> str:
-    """One effect: sentence, equation, symbols, picture, cause, what settles it, parameters."""
+    """Return the Markdown of one effect: its equation, picture, cause and parameters."""
     summary, _, details = (inspect.getdoc(cls) or "").partition("\n\n")
     more = f"\n{_flat(details)}\n" if details else ""
     return f"""\
@@ -135,7 +141,7 @@ def _picture(name: str, signature: Signature | None, units: Mapping[str, str]) -
 
 
 def _table(parameters: Iterable[Parameter]) -> str:
-    """Parameters that differ only in name share a row."""
+    """Return a table of parameters; those that differ only in name share a row."""
     rows = ["| parameter | symbol | unit | range | default | scale |", "|---|---|---|---|---|---|"]
     alike = groupby(parameters, key=lambda p: (p.unit, p.low, p.high, _default(p), p.scale))
     for (si, low, high, default, scale), group in alike:
@@ -150,7 +156,7 @@ def _table(parameters: Iterable[Parameter]) -> str:
 
 
 def _symbols(same: list[Parameter]) -> str:
-    """Symbols of a row: all of up to three, else the first and the last."""
+    """List the symbols of the parameters in a row: up to three, else the first and the last."""
     symbols = [f"$`{p.symbol}`$" for p in same]
     return ", ".join(symbols) if len(symbols) <= 3 else f"{symbols[0]} … {symbols[-1]}"
 

@@ -1,4 +1,4 @@
-"""One run in a small tank with an effect hidden, and what the nominal model misses of it."""
+"""Simulate a run with a hidden effect, and compare the nominal model with it for a picture."""
 
 import tempfile
 from pathlib import Path
@@ -43,9 +43,10 @@ RUN = TankRun(id="run", control="6dof", split="train")
 
 
 def settings(cls: type[Effect], signature: Signature) -> TankSettings:
-    """A calm tank small enough for walls and surface to matter, cameras better than usual.
+    """Return settings of a tank in which an effect is hidden with the values of its signature.
 
-    Where another vehicle shows the effect: a tank that suits it.
+    The water is calm, the cameras are better than usual, and the tank is small enough for walls and
+    surface to matter. An effect of another kind of vehicle gets a tank that suits that vehicle.
     """
     calm = TankSettings(
         seed=3,
@@ -66,7 +67,7 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
 
 
 def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
-    """The run as it is measured from its raw exports."""
+    """Simulate the run of a tank, and measure it from its raw exports."""
     with tempfile.TemporaryDirectory() as folder:
         make_campaign(tank, Path(folder) / "raw", catalogue)
         campaign = mark_angles(load_campaign(Path(folder) / "raw"), load_vehicle(tank.vehicle))
@@ -75,7 +76,7 @@ def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
 
 
 def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen:
-    """What the nominal model misses in this tank, and what the hidden effect adds to it."""
+    """Compute the error of the nominal model in this tank, and the hidden effect's part of it."""
     motion, truth = fly(tank, catalogue), true_model(tank, catalogue)
     missing, remaining = (
         average_blocks(motion, sample_run(model, motion, SimulationSettings()))
@@ -91,10 +92,10 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
 
 
 def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
-    """The condition of this name and its values (n,).
+    """Return the condition of this name, and its values (n,) at n blocks.
 
     Raises:
-        BadInput: there is none.
+        BadInput: there is no such condition.
     """
     conditions = {c.name: (c, x) for c, x in list_shown_conditions(missing).items()}
     if name in conditions:

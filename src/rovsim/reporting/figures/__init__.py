@@ -33,7 +33,16 @@ SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "qua
 
 @dataclass(frozen=True)
 class FigureKind:
-    """A figure: what its module declares, and what its `draw` takes and cannot do without."""
+    """A figure, as its module declares it.
+
+    Attributes:
+        name: of the module.
+        section: of the report that shows it.
+        caption: in one or two sentences.
+        place: within the section.
+        takes: parameters of its `draw`.
+        needs: those of them without a default.
+    """
 
     name: str
     section: str
@@ -44,16 +53,16 @@ class FigureKind:
 
     @cached_property
     def draw(self) -> "Callable[..., Figure]":
-        """The function that draws it; only its own module is imported."""
+        """The function that draws the figure; only its own module is imported."""
         return import_module(f"{__name__}.{self.name}").draw
 
 
 @cache
 def kinds() -> dict[str, FigureKind]:
-    """Every figure found in this folder, by name, in the order of the report.
+    """Return every figure in this folder by name, in the order of the report.
 
     Raises:
-        BadInput: one of them does not declare what a figure does.
+        BadInput: one of them does not declare what a figure has to.
     """
     figures = [kind for path in Path(__file__).parent.glob("*.py") if (kind := read_kind(path))]
     figures.sort(key=lambda figure: (SECTIONS.index(figure.section), figure.place, figure.name))
@@ -73,10 +82,10 @@ def kind(name: str) -> FigureKind:
 
 
 def read_kind(path: Path) -> FigureKind | None:
-    """The figure of a module; None where it only helps others to draw.
+    """Read the figure that a module declares; None where it only helps others to draw.
 
     Raises:
-        BadInput: it does not declare what a figure does.
+        BadInput: it does not declare what a figure has to.
     """
     draw, consts = None, dict[str, Any](PLACE=1)
     for node in _parse(path).body:
@@ -114,7 +123,7 @@ def _parse(path: Path) -> ast.Module:
 
 
 def _constant(node: ast.expr | None, path: Path, name: str) -> Any:
-    """What a declaration says, without running it."""
+    """Return the value of a declaration, without running the module."""
     try:
         return ast.literal_eval(node or "")
     except (ValueError, SyntaxError):
@@ -122,7 +131,7 @@ def _constant(node: ast.expr | None, path: Path, name: str) -> Any:
 
 
 def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
-    """Refuse a figure that does not say where and under which words it is shown."""
+    """Refuse a figure that does not declare section, caption and parameters as it should."""
     if told.get("SECTION") not in SECTIONS:
         problem = f"SECTION is {told['SECTION']!r}" if "SECTION" in told else "there is no SECTION"
         raise _refused(path, problem, f"one of {', '.join(SECTIONS)}")
@@ -135,10 +144,10 @@ def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
 
 
 def refuse_unknown(figure: FigureKind, known: Iterable[str]) -> None:
-    """Refuse a figure that cannot do without something that nobody has.
+    """Refuse a figure that needs something other than the `known` names.
 
     Raises:
-        BadInput: names what it asks for.
+        BadInput: it does.
     """
     if unknown := [name for name in figure.needs if name not in (known := set(known))]:
         path = Path(__file__).with_name(f"{figure.name}.py")

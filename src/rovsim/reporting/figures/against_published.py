@@ -1,4 +1,4 @@
-"""Every held-out run and axis: our errors divided by the smallest that anybody published."""
+"""Draw our error on each held-out run and axis, divided by the smallest published one."""
 
 from typing import Mapping, Sequence
 
@@ -31,7 +31,7 @@ TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 @styled()
 def draw(*, published_errors: PublishedErrors) -> Figure:
-    """Draw the ratios of `published_errors.json`, one panel a metric."""
+    """Draw the ratios of `published_errors.json`, a panel for each metric."""
     names = _shown(published_errors)
     style = looks(names)
     figure = sheet(60 + 60 * len(COUNTED))
@@ -48,7 +48,10 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
 
 
 def _shown(published_errors: PublishedErrors) -> list[str]:
-    """Our models of every cell; of residuals those on top of effects, if there are any."""
+    """List our models that have a ratio in every cell.
+
+    A residual on top of the nominal model is left out if there is one on top of effects.
+    """
     own_models = [n for n in published_errors.models if not n.startswith(PUBLISHED)]
     complete = [n for n in own_models if all(n in cell.ratios for cell in published_errors.cells)]
     stacked = {n.partition("+")[2] for n in complete if n.startswith(f"{EFFECTS}+")}
@@ -90,7 +93,7 @@ def _vertical(axes: Axes, lowest: float) -> None:
 
 
 def _ratio(cell: PublishedCell, name: str) -> float:
-    """Ratio of one model; infinite where it has no value, NaN where it is not in the cell."""
+    """Return a model's ratio; infinite where it has no value, NaN where the cell has no model."""
     if name not in cell.ratios:
         return float("nan")
     value = or_nan(cell.ratios[name])
@@ -102,7 +105,7 @@ def _label(cell: PublishedCell) -> str:
 
 
 def _look(k: int, look: Look) -> Style:
-    """A marker of its own for each model."""
+    """Return the style of model number k, with a marker of its own."""
     return {
         "color": look.color,
         "marker": SHAPES[k % len(SHAPES)],

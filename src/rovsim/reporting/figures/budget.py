@@ -1,4 +1,4 @@
-"""Budget of forces: who pushes how much over time, and what is missing, axis by axis."""
+"""Draw the budget of forces: each part of a model over time, and the force that is missing."""
 
 from typing import Mapping
 
@@ -79,7 +79,7 @@ def draw(*, budget: ForceBudget) -> Figure:
 
 
 def _looks(names: list[str]) -> dict[str, Look]:
-    """The same look for a part in every figure; added effects share what is left."""
+    """Return a look for each part, the same in every figure; added effects share the others."""
     added = [n for n in names if n not in KNOWN]
     return {n: KNOWN.get(n) or ADDED[added.index(n) % len(ADDED)] for n in names}
 
@@ -90,7 +90,12 @@ def _excerpt_told(time: Array, at: slice) -> str:
 
 
 def _largest(parts: Mapping[str, Array], known: Array) -> list[str]:
-    """Parts that matter most on some axis, in the order given."""
+    """List the parts with the largest share on some axis, at most `SHOWN`, in the order given.
+
+    Args:
+        parts: wrench (n, 6) of each, N and N m.
+        known: at which of the n samples the missing force is known.
+    """
     size = {n: np.sqrt(np.mean(f[known] ** 2, axis=0)) for n, f in parts.items() if known.any()}
     whole = np.sqrt(sum((s**2 for s in size.values()), np.zeros(6)))
     share = {n: float(np.max(s / np.where(whole > 0, whole, 1.0))) for n, s in size.items()}
@@ -99,7 +104,7 @@ def _largest(parts: Mapping[str, Array], known: Array) -> list[str]:
 
 
 def _smoothed(time: Array, values: Array) -> Array:
-    """Running mean over `SMOOTH` s of values (n, 6), of what is known in it."""
+    """Return the running mean over `SMOOTH` s of values (n, 6), NaN left out."""
     count = max(round(SMOOTH / float(np.median(np.diff(time)))), 1)
     valid, window = np.isfinite(values), np.ones(count)
     total = [
@@ -111,7 +116,7 @@ def _smoothed(time: Array, values: Array) -> Array:
 
 
 def _common(curves: dict[str, Array]) -> dict[str, Array]:
-    """The curves, the missing force drawn last, on top of the others."""
+    """Return the curves with the missing force last, so that it is drawn on top."""
     others = {name: values for name, values in curves.items() if name != "missing"}
     return {**others, "missing": curves["missing"]}
 

@@ -1,4 +1,4 @@
-"""Where something pushed that follows no law: its force on the path, in time and by frequency."""
+"""Draw a disturbance that follows no law: on the path, over time and by frequency."""
 
 from typing import Any, Sequence
 
@@ -33,7 +33,7 @@ BETWEEN = 0.2  # s: lines of a force are as far apart
 
 @styled()
 def draw(*, disturbance: Disturbance | None) -> Figure:
-    """Draw a force, a row a run: its path, and the axis where most of it acts."""
+    """Draw a row for each run: its path, and the force over time on the axis where most acts."""
     force = disturbance
     if force is None or not force.runs:
         figure = sheet(50)
@@ -62,7 +62,7 @@ def draw(*, disturbance: Disturbance | None) -> Figure:
 
 
 def _lay_out(force: Disturbance) -> tuple[Figure, Array, list[Axes]]:
-    """A row of two panels (n, 2) for each run, and below them one for each family of spectra."""
+    """Lay out two panels (n, 2) for each of n runs, and below one for each family of spectra."""
     count, families = len(force.runs), _list_families(force)
     figure = sheet(20 + 42 * (count + bool(families)))
     grid = figure.add_gridspec(count + bool(families), 2, width_ratios=(1, 2))
@@ -73,14 +73,14 @@ def _lay_out(force: Disturbance) -> tuple[Figure, Array, list[Axes]]:
 
 
 def _list_families(force: Disturbance) -> list[list[int]]:
-    """Forces and moments that have a spectrum: they have two units."""
+    """List the axes with a spectrum, forces and moments apart, since their units differ."""
     axes = [AXES.index(a) for a in force.axes] if force.spectrum else []
     families = [[i for i in axes if i < 3], [i for i in axes if i >= 3]]
     return [family for family in families if family]
 
 
 def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> None:
-    """Densities of forces, or of moments; not at zero, where the logarithm has no place."""
+    """Draw the spectral densities of forces, or of moments, without the one at zero frequency."""
     if force.spectrum is None:
         return
     frequency, density = np.array(force.spectrum.frequency_hz), np.array(force.spectrum.density)
@@ -106,7 +106,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
 
 
 def _list_strong(run: ForceOfRun, force: Disturbance) -> list[StrongMoment]:
-    """Its strongest moments; of a long run there may be several parts."""
+    """List the strongest moments within this part of a run; a long run may have several parts."""
     first, last = run.time_s[0] - BETWEEN, run.time_s[-1] + BETWEEN
     return [p for p in force.strongest if p.run == run.run and first <= p.time_s <= last]
 
@@ -121,9 +121,9 @@ def _draw_time(axes: Any, run: ForceOfRun, i: int, most: float, force: Disturban
 
 
 def _circle(axes: Any, places: Sequence[Sequence[float]]) -> None:
-    """Circles around points; none at all where there is no point.
+    """Draw circles around points (x, y); no artist at all where there is no point.
 
-    matplotlib counts a line without points, if it is not clipped, to the corner of the figure.
+    Matplotlib would reckon an unclipped line without points at the corner of the figure.
     """
     if places:
         x, y = zip(*places, strict=True)

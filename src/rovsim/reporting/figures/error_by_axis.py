@@ -1,4 +1,4 @@
-"""Error of every model on every axis: velocity and acceleration, absolute and against nominal."""
+"""Draw the velocity and acceleration errors of all models by axis, also divided by nominal."""
 
 from typing import Mapping
 
@@ -91,7 +91,7 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
 
 
 def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
-    """From the lowest to the highest run, over the bars."""
+    """Draw lines from the lowest to the highest run over the bars."""
     width = 0.8 / max(len(low), 1)
     for k, (least, most) in enumerate(zip(low.to_numpy(), high.to_numpy(), strict=True)):
         places = np.arange(len(least)) + (k + 0.5) * width - 0.4

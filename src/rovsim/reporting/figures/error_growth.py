@@ -1,4 +1,4 @@
-"""How the velocity error grows with the time since the model was last set to the measurement."""
+"""Draw how the velocity error grows with the time since the model was set to the measurement."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,7 +21,7 @@ CAPTION = (
 
 @styled()
 def draw(*, growth: Growth) -> Figure:
-    """Draw `growth.json`: by model, `horizon_s` [..] and `velocity_rmse` {axis: [..]}."""
+    """Draw `growth.json`: the velocity RMSE of each model over the horizon, axis by axis."""
     style = looks(growth.models)
     figure = sheet(110)
     panels = figure.subplots(2, 3, sharex=True)

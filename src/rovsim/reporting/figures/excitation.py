@@ -1,4 +1,4 @@
-"""Quality of every run at a glance: which axes were excited, and when the vehicle was seen."""
+"""Draw the quality of all runs: which axes were excited, and when the vehicle was seen."""
 
 from typing import Mapping
 
@@ -26,7 +26,7 @@ EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
 
 @styled()
 def draw(*, quality: Mapping[str, Quality]) -> Figure:
-    """Draw the quality reports {run: quality/<run>.json}."""
+    """Draw the quality reports, by run."""
     runs, remarks = _choose(quality), []
     figure = sheet(34 + 7 * max(len(runs), 2))
     cells, timeline = figure.subplots(1, 2, width_ratios=[3, 2])
@@ -60,14 +60,14 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
 
 
 def _choose(quality: Mapping[str, Quality]) -> list[str]:
-    """Runs that fit on a page: all, or those that lack most, in their order."""
+    """Choose the runs that fit on a page: all, or those with most missing frames."""
     runs = list(quality)
     lacking = [-q.not_found / q.frames - (q.unusable is not None) for q in quality.values()]
     return [runs[k] for k in sorted(np.argsort(lacking, kind="stable")[:MOST].tolist())]
 
 
 def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
-    """A cell for each axis; with a dash where nothing was measured."""
+    """Draw a cell for each axis of a run, with a dash where nothing was measured."""
     for k, axis in enumerate(AXES):
         entry = excitation.get(axis)
         color = EXCITED if entry and entry.excited else STILL

@@ -1,4 +1,4 @@
-"""Time of one prediction: the library's call next to the exported predictor, against deadlines."""
+"""Draw the time of one prediction: by the library and by the exported predictor, with deadlines."""
 
 from typing import Mapping
 
@@ -23,7 +23,7 @@ MARKERS = {"median_us": ("o", "median"), "p99_us": ("|", "p99"), "p999_us": (">"
 
 @styled()
 def draw(*, timing: Timing) -> Figure:
-    """Draw `timing.json`: {"inference": {NAME: {"library": STATS, "exported": STATS}}}, in µs."""
+    """Draw `timing.json`: the times of each predictor, in µs."""
     names = list(timing.inference)
     figure = sheet(34 + 11 * max(len(names), 2))
     axes = figure.subplots()

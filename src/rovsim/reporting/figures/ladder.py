@@ -1,4 +1,4 @@
-"""The ladder: the error on held-out runs falling, step by step."""
+"""Draw the ladder: the error on the test runs, step by step."""
 
 from typing import Sequence
 
@@ -51,7 +51,7 @@ def draw(*, ladder: Ladder) -> Figure:
 
 
 def _value(axes: Axes, y: int, value: float, top: float) -> None:
-    """The number of one step, behind its bar, or on it where the bar leaves the axes."""
+    """Write the number of one step behind its bar, or on a bar that is cut."""
     beyond = value > top
     text = significant(value) if np.isfinite(value) else "no value"
     place = (top, y) if beyond else (float(np.nan_to_num(value)), y)

@@ -1,4 +1,4 @@
-"""Legends and notes, placed so that they never cover what is plotted."""
+"""Place legends and notes so that they never cover what is plotted."""
 
 import math
 import textwrap
@@ -20,17 +20,17 @@ EM = FONT_SIZE / 72  # inches
 
 
 def lines(looks: dict[str, Look]) -> list[Artist]:
-    """Legend entries for lines."""
+    """Return legend entries for lines."""
     return [Line2D([], [], label=title(n), **look.line()) for n, look in looks.items()]
 
 
 def patches(looks: dict[str, Look]) -> list[Artist]:
-    """Legend entries for bars."""
+    """Return legend entries for bars."""
     return [Patch(label=title(n), **look.bar()) for n, look in looks.items()]
 
 
 def areas(looks: dict[str, Look]) -> list[Artist]:
-    """Legend entries for areas behind lines."""
+    """Return legend entries for areas behind lines."""
     return [Patch(label=name, **look.area()) for name, look in looks.items()]
 
 
@@ -51,7 +51,12 @@ def legend(figure: Figure, handles: Sequence[Any]) -> None:
 
 
 def _width(lengths: Sequence[int], rows: int) -> float:
-    """Width in inches of a legend in `rows` rows; a letter is half an em, a handle 4.8 em."""
+    """Estimate the width in inches of a legend: a letter is half an em wide, a handle 4.8 em.
+
+    Args:
+        lengths: number of letters of each entry.
+        rows: of the legend.
+    """
     columns = math.ceil(len(lengths) / rows)
     # matplotlib fills column by column, the first ones one entry longer than the last
     full, longer = divmod(len(lengths), columns)

@@ -1,4 +1,4 @@
-"""Colours of every figure, and what each model looks like: one colour and line style per family.
+"""The colours of all figures: each family of models has one colour and one line style.
 
 Colours: Okabe and Ito, "Color Universal Design" (2008), told apart by colour-blind readers. Brown,
 sky and olive are their orange, sky blue and yellow made darker: as they are, they have 2.3:1, 2.3:1
@@ -57,7 +57,7 @@ FAMILIES = {
     "commanded": Look("#666666", "-"),
     "noise_floor": Look("#555555", (0, (8, 3))),
 }
-# Of learners that have no colour of their own, in the order of their names.
+# For learners that have no colour of their own, in the order of their names.
 FURTHER = (Look(SKY, (0, (5, 1, 1, 1))), Look(OLIVE, (0, (4, 1, 2, 1))))
 
 # Members of a family differ by lightness, dash and hatch: (share of white or black, dash, hatch).
@@ -88,7 +88,7 @@ def is_learned(name: str) -> bool:
 
 
 def family_look(name: str) -> Look:
-    """What all models of a family have in common."""
+    """Return the look that all models of a family vary."""
     kind = family(name)
     if kind in FAMILIES:
         return FAMILIES[kind]
@@ -97,7 +97,7 @@ def family_look(name: str) -> Look:
 
 
 def looks(names: Iterable[str]) -> dict[str, Look]:
-    """Return one distinct look per name; those of the study's own models never change."""
+    """Return a distinct look for each name; those of the study's own models never change."""
     taken: set[tuple[str, int]] = set()
     found = {}
     for name in names:
@@ -126,7 +126,7 @@ def _variant(look: Look, member: int) -> Look:
 
 
 def _mix(color: str, share: float) -> str:
-    """A colour with a share of white, or of black where it is negative."""
+    """Mix a colour with a share of white, or of black where the share is negative."""
     from matplotlib.colors import to_hex, to_rgb
 
     target = 1.0 if share > 0.0 else 0.0
@@ -134,7 +134,7 @@ def _mix(color: str, share: float) -> str:
 
 
 def contrast(color: str) -> float:
-    """Contrast of a colour with white, 1 to 21, as WCAG 2.1 defines it."""
+    """Return the contrast of a colour with white, 1 to 21, as WCAG 2.1 defines it."""
     from matplotlib.colors import to_rgb
 
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(color)]

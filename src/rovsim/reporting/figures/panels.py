@@ -1,4 +1,4 @@
-"""Six panels over one time axis, one per body axis: the frame of every time series."""
+"""Draw time series in six panels over one time axis, one for each body axis."""
 
 from typing import Mapping, Sequence
 
@@ -18,7 +18,12 @@ SHARED = "Axes of one unit share their scale."
 
 
 def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, list[Axes]]:
-    """Return an empty sheet with six labelled panels that share the time axis."""
+    """Return an empty sheet with six labelled panels that share the time axis.
+
+    Args:
+        letters: symbol of the quantity on each axis.
+        units: of the quantity on each axis.
+    """
     figure = sheet(180)
     axes = list(figure.subplots(6, 1, sharex=True))
     for axis, name, letter, unit in zip(axes, AXES, letters, units, strict=True):
@@ -36,9 +41,18 @@ def plot_all(
     looks: Mapping[str, Look],
     shared: bool = False,
 ) -> list[str]:
-    """Plot curves {name: (n, 6)}; the first, measured, sets the scale. Returns remarks.
+    """Plot curves in six panels; the first of them sets the scale.
 
-    `shared`: axes of one unit have one scale, so that noise on an axis at rest stays small.
+    Args:
+        axes: the six panels.
+        time: of the samples (n,), s.
+        curves: (n, 6) by name.
+        looks: by name.
+        shared: whether axes of one unit have one scale, so that noise on an axis at rest looks
+            small.
+
+    Returns:
+        Remarks for a note below the figure; an empty one says nothing.
     """
     for k, axis in enumerate(axes):
         for order, (name, values) in enumerate(curves.items()):
@@ -62,7 +76,7 @@ def plot_all(
 
 
 def share_scales(axes: Sequence[Axes]) -> None:
-    """Give the panels of one unit the widest scale of those that show something."""
+    """Give all panels of one unit the same scale: the range of those that show something."""
     for group in (axes[:3], axes[3:]):
         ranges = [axis.get_ylim() for axis in group if _shows(axis)]
         for axis in group if ranges else ():

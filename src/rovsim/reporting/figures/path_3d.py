@@ -1,4 +1,4 @@
-"""Measured and simulated path in the tank, up on paper = up in the water."""
+"""Draw measured and simulated paths in the tank, with up in the water upwards on paper."""
 
 from typing import Any, Mapping
 
@@ -37,10 +37,17 @@ def draw(
     usable: Array | None = None,
     tank: Array | None = None,
 ) -> Figure:
-    """Draw positions `eta[:, :3]` and {model: (n, >= 3)}; `tank` (3, 2) low and high; NED, m.
+    """Draw the measured and the simulated paths of a run.
 
-    Plotted are north, west and up (NED turned half a turn about x, so nothing is mirrored); for a
-    z-up motion capture these are its own axes. What leaves the view is cut and named.
+    They are plotted north, west and up (NED turned half a turn about x, so nothing is mirrored),
+    which are the axes of a z-up motion capture. What leaves the view is cut and named.
+
+    Args:
+        time: of the samples (n,), s.
+        eta: measured pose (n, >= 3), of which the position is drawn; NED, m.
+        predicted_eta: the same by model.
+        usable: which samples (n,) may be used.
+        tank: lower and upper limits (3, 2), NED, m; None where unknown.
     """
     paths = {"measured": masked(eta[:, :3], usable)}
     paths |= {name: masked(values[:, :3], usable) for name, values in predicted_eta.items()}
@@ -120,7 +127,7 @@ def _frame(axes: Any, low: Array, high: Array) -> None:
 
 
 def _zoom(size: Array) -> float:
-    """Largest magnification of the box `size` (3,) at which its labels still fit the sheet."""
+    """Return the largest zoom at which the labels of a box of `size` (3,) still fit the sheet."""
     x, y, z = size / np.linalg.norm(size)
     elevation, azimuth = np.radians([ELEVATION, AZIMUTH])
     deep = x * np.cos(azimuth) + y * np.sin(azimuth)

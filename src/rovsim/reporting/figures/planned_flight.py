@@ -1,4 +1,4 @@
-"""A designed flight: where it leads in the tank, and its commands. No figure of the study."""
+"""Draw a planned flight: its path in the tank, and its commands. No figure of the study."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -36,9 +36,15 @@ ROOM = 0.3  # m shown around the paths where no wall is known
 
 @dataclass(frozen=True, eq=False)
 class PlannedFlight:
-    """`paths` (s, k, 3) m NED, the likeliest first; `tank` (3, 2) m NED, NaN where unknown.
+    """A planned flight: possible paths and commands.
 
-    `values` (m, c) of the commands at `time` (m,) s, by `names`, in `unit`.
+    Attributes:
+        paths: s sampled paths (s, k, 3), the likeliest first; NED, m.
+        tank: limits (3, 2), NaN where unknown; NED, m.
+        time: of the commands (m,), s.
+        values: commands (m, c) at these times.
+        names: of the c columns of commands.
+        unit: of the commands.
     """
 
     paths: Array

@@ -1,4 +1,4 @@
-"""One number per model and axis out of a comparison: its runs pooled."""
+"""Pool the runs of a comparison: one error for each model and axis."""
 
 from pandas import DataFrame, MultiIndex
 
@@ -10,7 +10,7 @@ from rovsim.results.comparison import Comparison
 
 
 def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> DataFrame:
-    """One quantity at one horizon on the runs of a split: a row a model, run and axis."""
+    """Return one quantity at one horizon on the runs of a split, a row per model, run and axis."""
     rows = [
         (name, run, axis, value)
         for name, model in comparison.models.items()
@@ -24,11 +24,19 @@ def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> Dat
 def pool(
     comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
 ) -> DataFrame:
-    """`quantity` over the runs of `split`, every run weighing the same: a row a model.
+    """Return the mean error over the runs of a split, all with the same weight.
 
-    A mean absolute error is averaged, an RMSE squared first. Every model answers for the same
-    runs: one without a value on a run where another has one gets NaN there, never an easier mean.
-    `horizon` is "open_loop" or the window's length in seconds as in the file.
+    A mean absolute error is averaged as it is, an RMSE is squared first. All models are compared on
+    the same runs: a model without a value on a run where another has one gets NaN.
+
+    Args:
+        comparison: the errors of all models and runs.
+        quantity: for instance "velocity_rmse".
+        horizon: "open_loop", or the length of windows in s as in the file.
+        split: "train" or "test".
+
+    Returns:
+        A row for each model, a column for each axis.
     """
     power = 2 if quantity.endswith("rmse") else 1
     models = list(comparison.models)
@@ -47,14 +55,17 @@ def pool(
 def between_runs(
     comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
 ) -> tuple[DataFrame, DataFrame]:
-    """Lowest and highest value of the runs that `pool` puts together: a row a model, each."""
+    """Return the lowest and the highest value among the runs that `pool` averages.
+
+    Each has a row for each model and a column for each axis; see `pool` for the arguments.
+    """
     runs = tidy(comparison, quantity, horizon, split).groupby(["model", "axis"])["value"]
     shape = {"index": list(comparison.models), "columns": list(AXES)}
     return runs.min().unstack().reindex(**shape), runs.max().unstack().reindex(**shape)
 
 
 def relate(errors: DataFrame, base: str = NOMINAL) -> DataFrame:
-    """Every model's errors divided by those of `base`; NaN where there is nothing to divide."""
+    """Divide the errors of all models by those of `base`; NaN where it has none."""
     reference = errors.reindex([base]).loc[base]
     return errors / reference.where(reference > 0)
 

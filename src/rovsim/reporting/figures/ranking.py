@@ -1,4 +1,4 @@
-"""The ranking: how much of the error each effect removes by itself, the selected ones marked."""
+"""Draw the ranking: the share of the error that each effect removes alone, selected ones first."""
 
 from typing import Sequence
 
@@ -29,11 +29,11 @@ LOWEST, HIGHEST = -0.2, 1.0  # a share outside is drawn as an arrow at that end
 
 @styled()
 def draw(*, diagnosis: Diagnosis) -> Figure:
-    """Draw `ranking` and `selected` of `diagnosis.json`, a bar an effect: the selected ones first.
+    """Draw `ranking` and `selected` of `diagnosis.json`, a bar for each effect.
 
-    Those follow each other as in the verdict, the others by their share. A diamond is what a
-    selected effect adds in the final model. One that the ranking does not list has no bar: others
-    had to be there to bring it to light.
+    The selected effects come first, in the order of the verdict, then the others by their share. A
+    diamond marks what a selected effect removes in the final model. A selected effect that is not
+    in the ranking has no bar: it was found only beside others.
     """
     alone = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.ranking}
     selected = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.selected}
@@ -64,7 +64,7 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
 
 
 def _scale(axes: Axes, shares: Sequence[float], harm: bool) -> None:
-    """As wide as the largest share and its number need; no mark beyond the whole error."""
+    """Set the axis as wide as the largest share and its number need, with no tick above 100 %."""
     most = 100 * float(np.clip(np.nan_to_num([*shares, 0.1]).max(), 0.0, HIGHEST))
     axes.set_xlim(-25 if harm else 0, 1.25 * most)
     marks = MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(100 * LOWEST if harm else 0, most)

@@ -1,4 +1,4 @@
-"""Acceleration residual a_real - a_sim over time, six axes."""
+"""Draw the acceleration residual, measured minus simulated, over time on six axes."""
 
 from typing import Mapping
 
@@ -31,9 +31,15 @@ def draw(
     predicted_nu_dot: Mapping[str, Array],
     usable: Array | None = None,
 ) -> Figure:
-    """Draw `nu_dot` (n, 6) minus each model's acceleration {model: (n, 6)} over `time` (n,) s.
+    """Draw the acceleration residual of each model; the first model sets the scale.
 
-    The first model sets the scale; gaps and excerpt as in `velocities`.
+    Gaps and excerpt are as in `velocities`.
+
+    Args:
+        time: of the samples (n,), s.
+        nu_dot: measured acceleration (n, 6), body axes, m/s2 and rad/s2.
+        predicted_nu_dot: the same by model.
+        usable: which samples (n,) may be used.
     """
     measured = masked(nu_dot, usable)
     part = excerpt(time, measured)

@@ -1,4 +1,4 @@
-"""Time series on paper: gaps stay gaps, long runs are cut to an excerpt, axes stay readable."""
+"""Prepare time series for paper: keep gaps, cut long runs to an excerpt, limit the axes."""
 
 from typing import Iterable
 
@@ -21,7 +21,7 @@ def broken(time: Array, values: Array) -> tuple[Array, Array]:
 
 
 def masked(values: Array, usable: Array | None) -> Array:
-    """Copy of `values` (n, ...) with NaN where `usable` (n,) is False."""
+    """Return a copy of `values` (n, ...) with NaN where `usable` (n,) is False."""
     values = np.array(values, dtype=float)
     if usable is not None:
         values[~np.asarray(usable, dtype=bool)] = np.nan
@@ -29,7 +29,7 @@ def masked(values: Array, usable: Array | None) -> Array:
 
 
 def averaged(time: Array, values: Array, seconds: float) -> Array:
-    """Means of `values` (n, ...) over so many seconds around each sample; NaN stays NaN."""
+    """Return means of `values` (n, ...) over so many seconds around each sample; NaN stays NaN."""
     if len(time) < 2:
         return values
     half = max(0, round(0.5 * seconds / float(np.median(np.diff(time)))))
@@ -46,9 +46,14 @@ def averaged(time: Array, values: Array, seconds: float) -> Array:
 
 
 def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
-    """Return the liveliest stretch of at most `length` seconds; all of a shorter run.
+    """Return the samples of the excerpt of `length` s with most motion; all of a shorter run.
 
-    Liveliest: most measured samples, weighted by motion in units of each axis' own spread.
+    Motion is the sum of the absolute values, each axis divided by its own RMS; NaN counts nothing.
+
+    Args:
+        time: of the samples (n,), s.
+        values: at these (n, k).
+        length: s.
     """
     if not len(time) or time[-1] - time[0] <= length:
         return slice(0, len(time))
@@ -62,7 +67,7 @@ def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
 
 
 def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float]:
-    """Return low and high of an axis that shows `reference`; `others` may leave it."""
+    """Return the limits of an axis that shows `reference`; `others` may go beyond them."""
     stacked = [a[np.isfinite(a)] for a in (reference, *others)]
     everything = np.concatenate(stacked)
     if not len(everything):

@@ -1,4 +1,4 @@
-"""What an effect looks like to a model that lacks it: a small picture for the catalogue page.
+"""Draw what an effect looks like to a model that lacks it: a small picture for the catalogue.
 
 Not a figure of the study, so there is no `draw` here.
 """
@@ -33,11 +33,16 @@ LINE: Style = {"color": ORANGE, "linewidth": 1.8}
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What is drawn: an axis' error over a condition and over time, n blocks.
+    """An axis' acceleration error over a condition and over time, in n blocks of half a second.
 
-    `missed` is the table of what the nominal model misses, `effect` that of what the true effect
-    adds to the model; `condition` (n,) its values, `error` and `added` (n,) m/s2 or rad/s2 the same
-    two block by block at `time` (n,) s.
+    Attributes:
+        signature: axis and condition that show the effect best.
+        missed: error of the nominal model, in bins of the condition.
+        effect: acceleration that the true effect adds to the model, in the same bins.
+        condition: its value in each block (n,).
+        time: of the blocks (n,), s.
+        error: of the nominal model in each block (n,), m/s2 or rad/s2.
+        added: by the true effect in each block (n,), m/s2 or rad/s2.
     """
 
     signature: Signature
@@ -51,7 +56,7 @@ class Seen:
 
 @styled()
 def signature(seen: Seen) -> Figure:
-    """Draw the error over the condition, and beside it over time."""
+    """Draw the error over the condition on the left, over time on the right."""
     figure = Figure(figsize=(WIDTH * MM, HEIGHT * MM), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(0.85, 1.0), sharey=not seen.signature.size)
     _bins(left, seen)
@@ -69,7 +74,7 @@ def signature(seen: Seen) -> Figure:
 
 
 def write(figure: Figure, path: Path) -> None:
-    """Write a PNG of few colours; same figure, same bytes."""
+    """Write a figure as a PNG of few colours; the same figure gives the same bytes."""
     buffer = io.BytesIO()
     with styled():
         figure.savefig(buffer, format="png", dpi=PIXELS / (WIDTH * MM), metadata={"Software": None})
@@ -80,7 +85,7 @@ def write(figure: Figure, path: Path) -> None:
 
 
 def _bins(axes: Axes, seen: Seen) -> None:
-    """Bin means (or sizes) with what the effect makes of them; dots: single blocks."""
+    """Draw the means (or RMS) of bins, with those of the effect; dots are single blocks."""
     size, binning = seen.signature.size, seen.missed.binning
     convert = np.degrees if binning.condition.unit == "rad" else np.asarray
     dots = np.abs(seen.error) if size else seen.error
@@ -103,7 +108,10 @@ def _height(table: BinnedErrors, size: bool) -> Array:
 
 
 def _trace(axes: Axes, seen: Seen) -> None:
-    """The same block by block: the liveliest stretch, or the whole run where time matters."""
+    """Draw error and effect over time: an excerpt with most motion, or the whole run.
+
+    The whole run is drawn where time itself is the condition.
+    """
     whole = seen.signature.condition == "time in the run"
     part = slice(None) if whole else liveliest(seen.time, seen.added, EXCERPT)
     axes.axhline(0.0, color="#444444", linewidth=0.6)
@@ -122,7 +130,7 @@ def _trace(axes: Axes, seen: Seen) -> None:
 
 
 def liveliest(time: Array, values: Array, length: float) -> slice:
-    """The stretch of that length in which the values vary most; all of a shorter run."""
+    """Return the excerpt of `length` s with the largest absolute values; all of a shorter run."""
     count = int(np.searchsorted(time - time[0], length))
     if count >= len(time):
         return slice(None)

@@ -1,4 +1,4 @@
-"""One thesis style for every figure: an A4 text column, 9 pt Times-like type, light grids.
+"""The style of all figures: as wide as an A4 text column, 9 pt Times-like type, light grids.
 
 Matplotlib's settings are global, so `styled` sets them under a lock and puts them back: figures
 may be drawn from several threads and leave no state behind.
@@ -64,7 +64,7 @@ _lock = threading.RLock()
 def styled() -> Iterator[None]:
     """Draw in the thesis style; usable as `@styled()` on a function."""
     with _lock, matplotlib.rc_context(STYLE), warnings.catch_warnings():
-        # a run named in a script neither font has is drawn with boxes, not refused
+        # a run whose name has letters that neither font has is drawn with boxes
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
 
@@ -93,7 +93,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Place everything once and for all: both files would do it again, for half of their time."""
+    """Lay out a figure once for both files; else each would do it again, for half of its time."""
     figure.set_dpi(DPI)
     engine = figure.get_layout_engine()
     if engine is not None:
@@ -105,12 +105,12 @@ def _lay_out(figure: Figure) -> None:
 
 
 def _draw_pdf(figure: Figure, content: BytesIO) -> None:
-    # it would otherwise carry the time of writing
+    # without this the file would hold the time of writing
     FigureCanvasPdf(figure).print_pdf(content, metadata={"CreationDate": None})
 
 
 def _draw_png(figure: Figure, content: BytesIO) -> None:
-    figure.set_dpi(DPI)  # the PDF's canvas leaves its own
+    figure.set_dpi(DPI)  # the PDF's canvas has changed it
     FigureCanvasAgg(figure).print_png(content)
 
 
@@ -118,7 +118,7 @@ _KINDS = {"pdf": _draw_pdf, "png": _draw_png}
 
 
 def _save(figure: Figure, path: Path) -> Path:
-    content = BytesIO()  # what fails amid a file of its own leaves the PDF's canvas in disorder
+    content = BytesIO()  # an error while writing to a file would leave the PDF's canvas in disorder
     _KINDS[path.suffix[1:]](figure, content)
     write_bytes(path, content.getvalue())
     return path

@@ -1,4 +1,4 @@
-"""Measured against simulated body velocity, six axes over time."""
+"""Draw measured and simulated body velocity over time on six axes."""
 
 from types import MappingProxyType
 from typing import Mapping
@@ -34,11 +34,17 @@ def draw(
     usable: Array | None = None,
     bands: Mapping[str, Array] = NO_BANDS,
 ) -> Figure:
-    """Draw measured velocity `nu` (n, 6) and each model's {model: (n, 6)} over `time` (n,) s.
+    """Draw the measured velocity and that of each model.
 
-    NaN, samples that are not `usable` (n,) and jumps of `time` stay gaps. A run longer than a
-    minute is cut to its liveliest minute. `bands` {model: (2, n, 6)}: within what its velocity may
-    lie.
+    NaN, samples that are not usable and jumps of time stay gaps. A run longer than a minute is cut
+    to the minute with most motion.
+
+    Args:
+        time: of the samples (n,), s.
+        nu: measured velocity (n, 6), body axes, m/s and rad/s.
+        predicted_nu: the same by model.
+        usable: which samples (n,) may be used.
+        bands: lower and upper end (2, n, 6) of the probability band, by model.
     """
     measured = masked(nu, usable)
     part = excerpt(time, measured)

@@ -1,4 +1,4 @@
-"""Error by condition: small multiples of the conditions that explain most, one row an axis."""
+"""Draw the error over the conditions that explain most of it, a row of panels for each axis."""
 
 from typing import Mapping, Sequence
 
@@ -27,7 +27,7 @@ SHOWN = 4  # models in one panel
 
 @styled()
 def draw(*, where: ErrorConditions) -> Figure:
-    """Draw `where.json`: for each axis the conditions that explain most of any model's error."""
+    """Draw `where.json`: for each axis the conditions that explain most of some model's error."""
     models = dict(list(where.models.items())[-SHOWN:])
     style = looks(models)
     searched = [axis for axis in AXES if any(m.axes[axis] for m in models.values())] or AXES
@@ -53,7 +53,7 @@ def draw(*, where: ErrorConditions) -> Figure:
 
 
 def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
-    """Names of the conditions with more than one bin that explain most, the best first."""
+    """List the `COLUMNS` conditions with several bins that explain most of some model's error."""
     shares: dict[str, float] = {}
     for tables in models:
         for name, share in find_varying_shares(tables).items():
@@ -63,7 +63,7 @@ def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
 
 
 def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:
-    """Name and unit of a condition; below, the shares that it explains, model by model."""
+    """Return a panel's title: name and unit of a condition, below it the share of each model."""
     matching = [tables for tables in models if name in tables]
     if not matching:
         return ""
@@ -106,7 +106,7 @@ def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
 
 
 def _counts(axes: Axes, table: ConditionTable) -> None:
-    """How many blocks lie in each bin, as grey bars along the lower edge."""
+    """Draw the number of blocks in each bin as grey bars along the lower edge."""
     count, edges = np.array(table.blocks, float), chart_bins(table).edges
     share = 0.25 * count / max(count.max(), 1.0)
     axes.bar(

@@ -1,4 +1,4 @@
-"""The whole search at a glance: share of the error each condition explains on each axis."""
+"""Draw a map of the share of the error that each condition explains on each axis."""
 
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
@@ -22,7 +22,7 @@ BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
 
 @styled()
 def draw(*, where: ErrorConditions) -> Figure:
-    """Draw `share_of_error` of the last model of `where.json`; framed where it is a finding."""
+    """Draw the map of the last model of `where.json`; findings are framed."""
     name, model = list(where.models.items())[-1] if where.models else ("", None)
     chart = chart_conditions(model) if model else None
     rows = chart.conditions if chart else ()

@@ -1,4 +1,4 @@
-"""A command's results for the eye: figures as files, and all of them on one page."""
+"""Write the figures and the report of a command's results into a folder."""
 
 from concurrent.futures import Executor, Future, wait
 from pathlib import Path
@@ -22,9 +22,19 @@ def present(
     drawn: Iterable[Drawn] = (),
     other: Executor | None = None,
 ) -> list[Path]:
-    """Draw what is known and not yet `drawn`, write `out`/report.html; returns all files.
+    """Draw all figures that are not yet drawn, and write report.html.
 
-    `other`, a second process, draws half of it.
+    Args:
+        out: the folder.
+        campaign: its name.
+        data: the results.
+        provenance: nested plain values: settings, code digest, versions.
+        catalogue: effects of the diagnosis, by id.
+        drawn: figures that are drawn already.
+        other: a second process, which draws half of them; None for none.
+
+    Returns:
+        All files that were written.
     """
     figures = draw(out, data, drawn, other)
     page = report.Report(campaign, data, [f.picture for f in figures], provenance, catalogue)
@@ -35,7 +45,7 @@ def present(
 def draw(
     out: Path, data: ReportData, drawn: Iterable[Drawn] = (), other: Executor | None = None
 ) -> list[Drawn]:
-    """All figures of what is known; those that are not yet `drawn` go into `out`/figures."""
+    """Return all figures of the results; those that are not yet `drawn` go into `out`/figures."""
     finished = {figure.wanted: figure for figure in drawn}
     elsewhere: dict[Wanted, Future[Drawn]] = {}
     pending = [figure for figure in list_wanted(data) if figure not in finished]
@@ -47,7 +57,7 @@ def draw(
             else:
                 finished[figure] = draw_selected(out, *figure, *content)
         finished |= {figure: future.result() for figure, future in elsewhere.items()}
-    finally:  # nothing is drawn any more into a folder that an error takes away
+    finally:  # after an error the folder is removed: nothing may still be drawn into it
         for future in elsewhere.values():
             future.cancel()
         wait(elsewhere.values())
@@ -55,20 +65,28 @@ def draw(
 
 
 def list_wanted(data: ReportData) -> list[Wanted]:
-    """All figures of what is known, in the order of the page."""
+    """List all figures that can be drawn of the results, in the order of the page."""
     once = [(figure, "") for figure in data.figures]
     return once + [(figure.name, run) for run in data.drawn for figure in list_run_figures()]
 
 
 def draw_one(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
-    """Draw one figure of what is known, or of one run of it, into `out`/figures."""
+    """Draw one figure of the results, or of one run, into `out`/figures."""
     return draw_selected(out, figure, run, describe(figure, run, data), data.select(figure, run))
 
 
 def draw_selected(
     out: Path, figure: str, run: str, about: str, content: Mapping[str, Any]
 ) -> Drawn:
-    """Draw one figure of its content, as `ReportData.select` gives it, into `out`/figures."""
+    """Draw one figure into `out`/figures.
+
+    Args:
+        out: the folder of the report.
+        figure: its name.
+        run: that it shows; empty for a figure of all runs.
+        about: what it shows, see `Picture`.
+        content: arguments of its `draw`, as `ReportData.select` returns them.
+    """
     plot = kind(figure).draw(**content)
     paths = save(plot, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")

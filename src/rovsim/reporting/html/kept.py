@@ -1,4 +1,4 @@
-"""Reports already in the folder that one is written to: kept if another command's, or outdated."""
+"""Earlier reports in a folder: those of another command are kept, outdated ones removed."""
 
 import os
 import re
@@ -8,15 +8,20 @@ from html import unescape
 from pathlib import Path
 from typing import Iterable, Sequence
 
-# What only the report of that command shows; one of a study shows both.
+# What only the report of a command contains; that of a study contains both.
 SECTIONS = {"compare": 'id="compare"', "diagnose": 'id="verdict"'}
 FOLDER = re.compile(r'<meta name="campaign" content="([^"]*)">')
 
 
 def keep_other(page: Path, command: str) -> str:
-    """Rename the report `page` if another command wrote it, so that one of `command` replaces none.
+    """Rename the report `page` if another command wrote it, so that it is not overwritten.
 
-    Returns a sentence that says so; empty where there was nothing to keep.
+    Args:
+        page: where a report is about to be written.
+        command: that writes it.
+
+    Returns:
+        A sentence that says so; empty where nothing was renamed.
     """
     writer = _find_kind(page)
     if writer in ("", command):
@@ -31,9 +36,9 @@ class Outdated:
     """What the next report of a command makes outdated.
 
     Attributes:
-        figures: PNG files beside the earlier reports of this command that these show.
-        pages: those of them that do not have the name of the new one.
-        told: a sentence where they were of another campaign; empty where not.
+        figures: PNG files that the earlier reports of this command show.
+        pages: earlier reports that the new one does not overwrite.
+        told: a sentence if the earlier reports are of another campaign; else empty.
     """
 
     figures: tuple[Path, ...] = ()
@@ -41,7 +46,7 @@ class Outdated:
     told: str = ""
 
     def remove(self, drawn: Iterable[Path]) -> None:
-        """Remove what the new report, with these figures, did not replace."""
+        """Remove all that the new report did not overwrite; `drawn` are its figures."""
         names = {path.stem for path in drawn}
         for path in self.figures:
             if path.stem not in names:
@@ -52,10 +57,15 @@ class Outdated:
 
 
 def find_outdated(page: Path, command: str, campaign: str | None) -> Outdated:
-    """What a report `page` that `command` is about to write makes outdated; changes nothing.
+    """Find what a new report makes outdated; changes nothing.
 
-    To be asked before the first of its figures is drawn. A figure that an earlier report shows
-    belongs to it, whatever it is called; one that was drawn anew since does not.
+    Call it before the first figure of the new report is drawn: a figure belongs to an earlier
+    report if that contains the same picture, whatever its file is called.
+
+    Args:
+        page: where the report is about to be written.
+        command: that writes it.
+        campaign: folder of its campaign; None if there is none.
     """
     other_page = _kept(page, command)
     earlier = [report for report in (page, other_page) if _find_kind(report) == command]
@@ -75,7 +85,7 @@ def _shows(texts: Sequence[str], picture: bytes) -> bool:
 
 
 def _tell_other(out: Path, text: str, campaign: str | None) -> str:
-    """What is replaced, if it is of another campaign that is still there."""
+    """Say that results of another campaign were replaced; empty if that is the same or is gone."""
     match = FOLDER.search(text)
     other = Path(unescape(match[1])) if match else Path()
     if not match or campaign is None or not other.exists():
@@ -93,7 +103,7 @@ def _kept(page: Path, command: str) -> Path:
 
 
 def _find_kind(page: Path) -> str:
-    """Which command wrote a report, or `study`; empty: there is none that a command wrote."""
+    """Return which command wrote a report, or "study"; empty where there is no such report."""
     if not page.is_file():
         return ""
     text = page.read_text(encoding="utf-8", errors="replace")

@@ -1,7 +1,7 @@
-"""Figures that are drawn, as pictures for a page.
+"""Drawn figures as pictures for a page.
 
-This needs no library for drawing: another process draws, and who asked for it may hold the result
-without waiting for those to be loaded.
+This module imports no drawing library: where another process draws, the first one can use the
+results without loading Matplotlib.
 """
 
 from base64 import b64encode
@@ -17,7 +17,14 @@ Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn on
 
 @dataclass(frozen=True)
 class Picture:
-    """A drawn figure: registered name, PNG, what it shows ("run 6dof-2, 2 s windows"), its run."""
+    """A drawn figure.
+
+    Attributes:
+        name: of the figure.
+        png: content of the file.
+        about: what it shows of a run, as "run 6dof-2, 2 s windows"; empty for all runs.
+        run: that it shows; empty for all runs.
+    """
 
     name: str
     png: bytes
@@ -44,19 +51,19 @@ class Picture:
 
     @property
     def source(self) -> str:
-        """The picture as a data address."""
+        """The picture as a data URL."""
         return f"data:image/png;base64,{b64encode(self.png).decode()}"
 
     @property
     def caption(self) -> str:
-        """What is seen, and of which run."""
+        """The caption of the figure, with the run that it shows."""
         text = kind(self.name).caption
         return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """A figure that was wanted, as a picture and as files."""
+    """A figure that was asked for (figure and run), as a picture and as files."""
 
     wanted: Wanted
     picture: Picture

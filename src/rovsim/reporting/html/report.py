@@ -1,4 +1,4 @@
-"""Put the numbers, sentences and figures of a study into one self-contained HTML page."""
+"""Write the numbers, sentences and figures of results into one self-contained HTML page."""
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -45,10 +45,15 @@ COMPARED = (
 
 @dataclass(frozen=True, eq=False)
 class Report:
-    """Everything the report shows; a section without content is left out.
+    """Everything that the report shows; a section without content is left out.
 
-    `pictures` in order of appearance; `provenance`: nested plain values (settings, code digest,
-    versions); `catalogue`: what the effects of the diagnosis are; `made`: when and where.
+    Attributes:
+        campaign: its name.
+        data: the results.
+        pictures: in order of appearance.
+        provenance: nested plain values: settings, code digest, versions.
+        catalogue: effects of the diagnosis, by id.
+        made: when and where the report was made.
     """
 
     campaign: str
@@ -94,7 +99,7 @@ def render(report: Report) -> str:
 
 
 def _subtitle(data: ReportData) -> str:
-    """What the report is about: that of `compare`, of `diagnose`, or of a study."""
+    """Return the subtitle of a report of `compare`, of `diagnose`, or of a study."""
     if data.diagnosis is None:
         return "How far the models are from the measurement, and where"
     if data.comparison is None:
@@ -103,7 +108,7 @@ def _subtitle(data: ReportData) -> str:
 
 
 def _folder(provenance: Mapping[str, object]) -> str:
-    """Where the campaign lies, absolute, so that the next report tells whether it is of another."""
+    """Return the absolute folder of the campaign, by which a later report recognizes it."""
     settings = provenance.get("settings")
     campaign = settings.get("campaign") if isinstance(settings, Mapping) else None
     return str(Path(campaign).expanduser().absolute()) if isinstance(campaign, str) else ""
@@ -127,12 +132,12 @@ def _environment() -> Environment:
 
 
 def write(path: Path, report: Report) -> None:
-    """Write the report, whole or not at all; it says when and where."""
+    """Write the report, whole or not at all, with the time and place of making it."""
     write_text(path, render(replace(report, made=tell_making())))
 
 
 def list_rows(content: Mapping[str, object], above: str = "") -> list[tuple[str, str]]:
-    """Nested values as rows of a section's dotted name and all its values."""
+    """Return nested values as rows: the dotted name of a section, and all its values as text."""
     rows, values = [], {}
     for name, value in content.items():
         place = f"{above}.{name}" if above else name
@@ -157,7 +162,7 @@ def _errors(comparison: Comparison) -> list[Table]:
 
 
 def _explained(data: ReportData) -> dict[str, str]:
-    """What the models are, by the names they have in the report."""
+    """Return explanations of the study's models, by their titles in the report."""
     compared = list(data.comparison.models) if data.comparison else []
     steps = [step.model for step in data.ladder.steps] if data.ladder else []
     meanings = {title(name): explain_model(name) for name in (*steps, *compared)}
@@ -169,7 +174,7 @@ def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
 
 
 def _tell_undrawn(data: ReportData) -> str:
-    """Which runs have figures of their own, where not all of them do."""
+    """Say which runs have figures of their own; empty where all have or none has."""
     if len(data.drawn) in (0, len(data.motions)):
         return ""
     return (
@@ -180,7 +185,7 @@ def _tell_undrawn(data: ReportData) -> str:
 
 
 def _by_section(pictures: Sequence[Picture]) -> dict[str, dict[str, list[Picture]]]:
-    """Pictures by section and run; those of no run in particular come first."""
+    """Sort pictures by section and run; those of all runs (run "") come first."""
     sections: dict[str, dict[str, list[Picture]]] = {section: {"": []} for section in SECTIONS}
     for picture in pictures:
         sections[kind(picture.name).section].setdefault(picture.run, []).append(picture)

@@ -1,4 +1,4 @@
-"""Pages of docs/ with results in them; the words around these are written by hand.
+"""Write results into pages of docs/, whose other text is written by hand.
 
 marked             replaces tables between two marks
 against_published  tables of folds beside published errors

@@ -1,4 +1,4 @@
-"""`published_errors.json` as tables of a page."""
+"""Write `published_errors.json` as Markdown tables."""
 
 from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED, stand
 from rovsim.reporting.pages.marked import table
@@ -7,11 +7,11 @@ from rovsim.reporting.wording import known, significant
 from rovsim.reporting.words.published_errors import tell_standings
 from rovsim.results.published_errors import PublishedErrors
 
-SIMULATOR = f"{PUBLISHED}zero_shot"  # theirs without a residual: what any gain is measured from
+SIMULATOR = f"{PUBLISHED}zero_shot"  # the authors' simulator without a residual: the baseline
 
 
 def write_markdown(published_errors: PublishedErrors) -> list[str]:
-    """Paragraphs of Markdown of `published_errors.json`."""
+    """Return the paragraphs of Markdown on `published_errors.json`."""
     lacking = published_errors.without_published
     parts = [*tell_standings(published_errors), _standings(published_errors)]
     parts += _on_one_baseline(published_errors)
@@ -39,7 +39,10 @@ def _standings(published_errors: PublishedErrors) -> str:
 
 
 def _on_one_baseline(published_errors: PublishedErrors) -> list[str]:
-    """Every model against the same errors, those of the authors' simulator, if it is there."""
+    """Return a table of all models' errors divided by those of the authors' simulator.
+
+    Empty where that simulator is not among the published models.
+    """
     if SIMULATOR not in published_errors.models:
         return []
     rows = [
@@ -62,7 +65,7 @@ def _against_simulator(published_errors: PublishedErrors, name: str, metric: str
 
 
 def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
-    """Heading and table of one metric: the mark, whose it is, and the ratios of our models."""
+    """Return heading and table of one metric: the smallest published errors, and our ratios."""
     heading, units = QUANTITIES[metric]
     own_models = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
     rows = [

@@ -23,7 +23,7 @@ from rovsim.results.timing import Timing
 
 
 def tabulate_selected(diagnoses: Mapping[str, Diagnosis]) -> str:
-    """What the diagnosis chose while each run was held out: a row a parameter, a column a run."""
+    """Return a table of the fitted parameters: a row for each, a column for each held-out run."""
     values = {
         run: {name: interval(value) for name, value in _fitted(diagnosis)}
         for run, diagnosis in diagnoses.items()
@@ -40,7 +40,7 @@ def _fitted(diagnosis: Diagnosis) -> Iterator[tuple[str, FittedValue]]:
 
 
 def tell_known(diagnoses: Mapping[str, Diagnosis]) -> str:
-    """How many of the fitted numbers the train runs tell from zero, and which in every fold."""
+    """Say how many fitted parameters differ from zero in each fold, and which do in all folds."""
     values = {run: dict(_fitted(diagnosis)) for run, diagnosis in diagnoses.items()}
     nonzero = {
         run: [n for n, v in by_name.items() if differs_from_zero(v)]
@@ -57,7 +57,10 @@ def tell_known(diagnoses: Mapping[str, Diagnosis]) -> str:
 
 
 def tabulate_together(diagnoses: Mapping[str, Diagnosis]) -> str:
-    """What the runs fixed only jointly in half of the folds or more, the most frequent first."""
+    """Return a table of the parameters that were known only together in half of the folds or more.
+
+    The most frequent groups come first.
+    """
     groups = [group for diagnosis in diagnoses.values() for group in diagnosis.known_together]
     counts = {group: n for group in groups if 2 * (n := groups.count(group)) >= len(diagnoses)}
     frequent = sorted(counts, key=lambda group: (-counts[group], group))
@@ -66,7 +69,11 @@ def tabulate_together(diagnoses: Mapping[str, Diagnosis]) -> str:
 
 
 def describe_folds(results: Path) -> str:
-    """Markdown of all that was found."""
+    """Return the Markdown of all results of the folds.
+
+    Args:
+        results: folder of a study that held out each run once.
+    """
     published_errors = PublishedErrors.read(results / "published_errors.json")
     diagnoses = {
         run: Diagnosis.read(results / f"folds/{run}/diagnosis.json")

@@ -1,4 +1,4 @@
-"""A page with results in it: tables between two marks, replaced when there are newer ones."""
+"""Replace the tables between two marks of a page."""
 
 from pathlib import Path
 from typing import Iterable, Sequence
@@ -10,16 +10,16 @@ BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
+    """Return a Markdown table."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def replace_tables(path: Path, text: str) -> None:
-    """Put the tables between the marks of a page.
+    """Replace what stands between the marks of a page.
 
     Raises:
-        BadInput: the page has no such marks.
+        BadInput: the page does not have each mark once.
     """
     page = read_text(path)
     if page.count(BEGIN) != 1 or page.count(END) != 1:

@@ -1,14 +1,14 @@
-"""What numbers say, in plain language: one statement for terminal, report, workbench and notebook.
+"""Say in sentences what results mean; terminal, report, workbench and notebook share them.
 
 verdict           says what a diagnosis found
-apart             says what these runs cannot tell apart
-sureness          how sure a name is, and why no probability is given where none is
+apart             says what the runs cannot tell apart
+sureness          says how sure an effect's name is, and why some have no probability
 sentences         the report's summary
-speed             what the timing says about control loops
+speed             says what control loops predictors are fast enough for
 published_errors  says how folds compare with published errors, and what pitfalls cost
 experiment        says what a designed flight promises
 shown             says what recordings could not show
-totals            a coefficient of the vehicle file with what a diagnosis adds to it
-symbols           what the letters of an equation stand for
-terminal          what `compare` and `diagnose` print when they are done
+totals            sums of coefficients of the vehicle file and of a diagnosis
+symbols           explains the symbols of an equation
+terminal          what `compare`, `train` and `diagnose` print when they are done
 """

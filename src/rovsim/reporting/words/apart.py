@@ -1,4 +1,4 @@
-"""What these runs cannot tell apart: effects, values, names that come next, a common factor."""
+"""Say what the runs cannot tell apart: effects, parameters, rivals, a common factor of forces."""
 
 from typing import Sequence
 
@@ -12,7 +12,7 @@ MANY = 1e6  # odds that need no number
 
 
 def apart_sentences(found: Diagnosis) -> list[str]:
-    """Which effects the runs cannot tell apart, and how far behind the next names are."""
+    """Say which effects and parameters the runs cannot tell apart, and how likely rivals are."""
     sentences = [
         f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
     ]
@@ -28,7 +28,7 @@ def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
 
 
 def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
-    """Of each selected effect the next best name, but for those that cannot be told from it."""
+    """List the likeliest rival of each selected effect among those that can be told from it."""
     best = []
     for fit in found.selected:
         rivals = [r for r in found.rivals if r.instead_of == fit.effect]
@@ -41,7 +41,7 @@ def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
 
 
 def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
-    """How far behind the next names are; one sentence for all that nobody would argue about."""
+    """Say how much less likely the rivals are; one sentence for all that are quite improbable."""
     odds = [(r, odds_of(or_nan(r.deficit))) for r in best]
     near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
     far = [r for r, times in odds if times > MANY]
@@ -61,7 +61,7 @@ def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
 
 
 def scale_sentences(scale: ScaleOfForces | None) -> list[str]:
-    """That forces are known to a common factor only, where they are."""
+    """Say that forces are known only up to a common factor; empty where they are fully known."""
     if scale is None:
         return []
     owners = listed(list(dict.fromkeys(name.split(".")[0] for name in scale.parameters)))

@@ -1,4 +1,4 @@
-"""What a designed flight promises, in words: on the terminal and in the workbench."""
+"""Say what a designed flight promises, for the terminal and the workbench."""
 
 from typing import Sequence
 
@@ -13,9 +13,11 @@ SURE = 1e6
 
 
 def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
-    """What the flight is expected to tell, what usual manoeuvres would, and what it keeps to.
+    """Say what a flight is expected to tell, compared with usual manoeuvres, and its limits.
 
-    `thrusters`: their names in the vehicle file.
+    Args:
+        found: the designed flight.
+        thrusters: names of the thrusters in the vehicle file.
     """
     lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
     lines += [_odds(name, item) for name, item in found.expects.odds.items()]
@@ -30,7 +32,7 @@ def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
 
 
 def tell_share(usual: UsualManoeuvre) -> str:
-    """How much of the designed flight's information a usual manoeuvre gives."""
+    """Say how much of the designed flight's information a usual manoeuvre gives."""
     if usual.designed_is_better is None:
         return "leaves the limits at any amplitude"
     return f"tells {significant(1.0 / usual.designed_is_better)} of it"
@@ -41,14 +43,14 @@ def _odds(name: str, one: RivalOdds) -> str:
 
 
 def size_of_odds(odds: float) -> str:
-    """Odds as people say them: what is beyond a million is no number any more."""
+    """Return odds as text; beyond a million to one without a number."""
     if odds > SURE:
         return "over a million"
     return significant(odds) if odds > 1.0 / SURE else "under one in a million"
 
 
 def _std(name: str, one: Surer) -> str:
-    """How sure a value is now and then: ± is the 95 % interval, as in a verdict."""
+    """Say how sure a parameter is now and after the flight: ± is its 95 % interval."""
     now, then = (
         f"± {significant(Z_95 * or_nan(x), 2)} {unit(one.unit)}".strip()
         for x in (one.now, one.then)
@@ -57,7 +59,7 @@ def _std(name: str, one: Surer) -> str:
 
 
 def tell_limits(found: Experiment) -> str:
-    """How near to walls and limits it comes."""
+    """Say how near the flight comes to walls, and its largest speed, turn rate and tilt."""
     limits = found.keeps
     wall = "" if limits.nearest_wall_m is None else f"{limits.nearest_wall_m:.2f} m from any wall, "
     return (
@@ -67,7 +69,10 @@ def tell_limits(found: Experiment) -> str:
 
 
 def list_steps(instructions: Sequence[str]) -> list[tuple[str, list[str]]]:
-    """Steps to be numbered, each with what belongs to it: all that follows one with a colon."""
+    """Group instructions into steps, each with its parts.
+
+    All lines after the first one that ends in a colon are parts of that step.
+    """
     ends = next((k for k, line in enumerate(instructions) if line.endswith(":")), len(instructions))
     steps: list[tuple[str, list[str]]] = [(line, []) for line in instructions[: ends + 1]]
     if steps:

@@ -1,4 +1,4 @@
-"""`published_errors.json` and `pitfalls.json` in words: for the report, docs/thesis.md."""
+"""Say what `published_errors.json` and `pitfalls.json` show, for the report and docs/thesis.md."""
 
 from typing import Mapping
 
@@ -11,7 +11,7 @@ from rovsim.results.published_errors import ModelStanding, PublishedErrors
 
 
 def tell_standings(published_errors: PublishedErrors) -> list[str]:
-    """One sentence for each residual on top of effects: how many cells, how far, which not."""
+    """Say for each residual on top of effects in how many cells it is below the published error."""
     models = published_errors.models
     return [_sentence(n, standing) for n, standing in models.items() if n.startswith(f"{EFFECTS}+")]
 
@@ -27,7 +27,7 @@ def _sentence(name: str, found: ModelStanding) -> str:
 
 
 def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
-    """One sentence for each mistake: what was done, and what it cost on each run."""
+    """Say for each mistake what was done, and what it cost on each run."""
     return [
         f"{name[0].upper()}{name[1:]}: {mistake}. {measure[0].upper()}{measure[1:]}: {costs}."
         for name, (mistake, measure) in PITFALLS.items()

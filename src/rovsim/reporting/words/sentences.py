@@ -1,4 +1,4 @@
-"""The report's summary in plain language. A sentence says only what its numbers show."""
+"""Write the report's summary; a sentence says only what its numbers show."""
 
 import math
 from typing import Mapping, Sequence
@@ -58,7 +58,10 @@ def band_sentences(coverage: Bands) -> list[str]:
 
 
 def _held(model: ModelBands) -> list[str]:
-    """Share of the velocities at the ends of windows, all test runs and axes, by their length."""
+    """Say which share of the velocities at the ends of windows is inside, by length of the window.
+
+    All test runs and axes are pooled.
+    """
     by_duration: dict[str, list[tuple[float, int]]] = {}
     for run in model.runs.values():
         for seconds, windows in run.windows.items():
@@ -88,7 +91,7 @@ def runs_sentences(quality: Mapping[str, Quality]) -> list[str]:
 
 
 def doubt_sentences(quality: Mapping[str, Quality]) -> list[str]:
-    """Say what can make results wrong, once each, behind the runs of which it is true."""
+    """Say what can make results wrong: each doubt once, with the runs that it concerns."""
     runs: dict[str, list[str]] = {}
     for run, report in quality.items():
         for doubt in report.doubts:
@@ -164,7 +167,7 @@ def _without_value(names: Sequence[str]) -> list[str]:
 
 
 def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, float], str]:
-    """One error per model, relative to nominal, and what it measures."""
+    """Return the error of each model divided by that of nominal, and what that error measures."""
     if steps.get(NOMINAL) and any(is_learned(name) for name in steps):
         ratios = {name: value / steps[NOMINAL] for name, value in steps.items()}
         return ratios, f"the {ERROR}"
@@ -198,8 +201,13 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
 
 
 def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
-    """That physics without a residual does better, where it does."""
-    # a ladder has the effects one by one, the last of them on top of all others; then an equation
+    """Say that effects without a residual are better than `learned`, if they are.
+
+    Args:
+        ratios: error of each model, divided by that of nominal.
+        learned: the lowest ratio of a model with a residual.
+    """
+    # in a ladder each effect is added to those above; the last step may be a proposed equation
     steps = {name: r for name, r in ratios.items() if name == EFFECTS or STEP.fullmatch(name)}
     alone = [r for name, r in steps.items() if name != f"+{PROPOSED}"][-1:]
     if alone:
@@ -234,9 +242,11 @@ def _others(learned: Mapping[str, float], best: str) -> list[str]:
 
 
 def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]:
-    """Say how far the best step has come and how far the noise floor is.
+    """Say which model has the lowest error, and how far the noise floor is below it.
 
-    `unexplained`: whether the floor counts as noise what is none.
+    Args:
+        steps: 2 s error of each step of the ladder.
+        unexplained: whether unexplained physics counts as noise in the noise floor.
     """
     models = {name: value for name, value in steps.items() if name != NOISE_FLOOR}
     if len(models) < 2:

@@ -1,4 +1,4 @@
-"""What the recordings of a diagnosis could show, and which of them were used."""
+"""Say what the recordings of a diagnosis could not show, and which parts were not used."""
 
 from typing import Mapping, Sequence
 
@@ -9,7 +9,7 @@ from rovsim.results.diagnosis import Diagnosis, LookedAt, Standstill
 
 
 def shown_sentences(found: Diagnosis) -> list[str]:
-    """All that the recordings could not show, or were not used for."""
+    """Say all that the recordings could not show, and which parts of them were not used."""
     return [
         *held_sentences(found.standstills),
         *still_sentences(found.not_excited),
@@ -21,7 +21,7 @@ def shown_sentences(found: Diagnosis) -> list[str]:
 
 
 def held_sentences(standstills: Sequence[Standstill]) -> list[str]:
-    """Runs that stand still although the model would move: held, or on the floor?"""
+    """Say which runs stand still although the model would move: they may have been held."""
     return [_held(one) for one in standstills]
 
 
@@ -35,21 +35,21 @@ def _held(one: Standstill) -> str:
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:
-    """Axes that nobody moved."""
+    """Say on which axes no train run moves."""
     if not axes:
         return []
     return [f"Nothing can be said about {listed(axes)}: no train run moves on that axis."]
 
 
 def idle_sentences(names: Sequence[str]) -> list[str]:
-    """Thrusters, surfaces or axes that nobody commanded."""
+    """Say which thrusters, surfaces or axes were never commanded."""
     if not names:
         return []
     return [f"Never commanded in a train run, and so not judged: {listed(names)}."]
 
 
 def silent_sentences(found: Diagnosis) -> list[str]:
-    """Axes that nobody measured, and effects that the recordings could not show."""
+    """Say which axes were not measured, and which effects the recordings could not show."""
     axes, effects = found.not_measured, found.not_observable
     unmeasured = f"Not measured, and so without errors: {listed(axes)}."
     unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
@@ -57,7 +57,11 @@ def silent_sentences(found: Diagnosis) -> list[str]:
 
 
 def lost_sentences(lost: Mapping[str, float]) -> list[str]:
-    """Train runs of which a part was left out, because the model runs away there."""
+    """Say which parts of train runs were left out, because the model diverges there.
+
+    Args:
+        lost: start of that part by run, s.
+    """
     if not lost:
         return []
     parts = listed(f"{run} from {start:.1f} s on" for run, start in lost.items())
@@ -65,7 +69,7 @@ def lost_sentences(lost: Mapping[str, float]) -> list[str]:
 
 
 def part_sentences(looked_at: LookedAt | None) -> list[str]:
-    """How much of long train runs was looked at, and what that costs."""
+    """Say how much of long train runs was used, and how much wider that makes intervals."""
     if looked_at is None or looked_at.wider <= 1.0:
         return []
     part, whole = (significant(s / 60.0, 3) for s in (looked_at.seconds, looked_at.of))

@@ -1,4 +1,4 @@
-"""What the timing says about control loops, in plain language."""
+"""Say which control loops the predictors are fast enough for."""
 
 from typing import Mapping
 

@@ -1,4 +1,4 @@
-"""How sure a name is, why no probability is given where none is, and which values are unsure."""
+"""Say how sure the name of an effect is, or why it has no probability, and which values are not."""
 
 from typing import Mapping
 
@@ -16,14 +16,14 @@ from rovsim.results.fitted import FittedEffect, FittedValue
 def tell_sureness(
     one: FittedEffect, found: Diagnosis, catalogue: Mapping[str, type[Effect]]
 ) -> str:
-    """The probability of a selected effect's name, or what speaks against giving one."""
+    """Say the probability of a selected effect's name, or why none is given."""
     if one.probability is not None:
         return f"probability {tell_probability(one.probability)}"
     return f"no probability: {_say_why(one, found, catalogue.get(one.effect))}"
 
 
 def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
-    """Effects that surely act, of which some values by themselves might be those of absence."""
+    """Say which effects surely act although some of their values may be those of no effect."""
     sentences = []
     for fit in found.selected:
         cls = catalogue.get(fit.effect)
@@ -41,7 +41,7 @@ def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) ->
 
 
 def _holds(value: FittedValue, other: float) -> bool:
-    """Whether a value's 95 % interval holds another; False where it has none."""
+    """Whether a value's 95 % interval contains another; False where it has no interval."""
     return abs(or_nan(value.value) - other) <= Z_95 * or_nan(value.std)
 
 

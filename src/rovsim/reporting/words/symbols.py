@@ -1,4 +1,4 @@
-"""What the symbols of an effect's equation stand for, from what the effect declares."""
+"""Explain the symbols of an effect's equation, from what the effect declares."""
 
 import re
 from typing import Collection, Iterator
@@ -6,7 +6,7 @@ from typing import Collection, Iterator
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.parameters import Parameter
 
-# What effects share; one that means something else by a symbol declares it (`Effect.symbols`).
+# Symbols that effects share; an effect that uses one otherwise declares it (`Effect.symbols`).
 COMMON = {
     r"\tau_i": "force or moment on the vehicle along axis i",
     r"\tau": "force and moment on the vehicle",
@@ -27,9 +27,12 @@ Meaning = tuple[str, str]  # symbol in LaTeX, what it is
 
 
 def explain_symbols(effect: type[Effect], values: Collection[str] | None = None) -> list[Meaning]:
-    """The symbols of an effect's equation in the order in which they appear.
+    """Explain the symbols of an effect's equation, in the order in which they appear.
 
-    Of parameters that have no `values` it says what stands for them; without, that is left out.
+    Args:
+        effect: with its equation.
+        values: names of the parameters that have a value. For all others the explanation states
+            their neutral value. None: for no parameter.
     """
     meanings = COMMON | dict(effect.symbols) | dict(_name_parameters(effect, values))
     remaining, by_place = WORDS.sub(lambda words: " " * len(words[0]), effect.equation), {}
@@ -43,7 +46,10 @@ def explain_symbols(effect: type[Effect], values: Collection[str] | None = None)
 
 
 def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> Iterator[Meaning]:
-    """Parameters by name; those that share an indexed symbol together: d_i is surge and sway."""
+    """Explain the symbols of parameters by their names.
+
+    An indexed symbol is explained by all its parameters: d_i is surge and sway.
+    """
     together: dict[str, list[str]] = {}
     for parameter in effect.parameters:
         yield parameter.symbol, _name(parameter, values)

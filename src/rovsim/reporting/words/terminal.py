@@ -1,4 +1,4 @@
-"""What `compare`, `train` and `diagnose` say on the terminal."""
+"""Write what `compare`, `train` and `diagnose` print on the terminal."""
 
 from typing import Mapping, Sequence
 
@@ -41,9 +41,14 @@ def tell_comparison(
     coverage: Bands | None = None,
     away: Sequence[str] = (),
 ) -> str:
-    """A table {model: normalised 2 s error}, what bands hold, the last searched model's findings.
+    """Return a table of 2 s errors, what bands contain, and where the last model fails.
 
-    Without a test run (`tested`) a sentence stands for the table; `away`: models that run away.
+    Args:
+        errors: 2 s error by model, in standard deviations; None where it has none.
+        where: the errors over conditions.
+        tested: whether there is a test run; if not, a sentence takes the place of the table.
+        coverage: how much of the test runs lies inside the bands; None if unknown.
+        away: models that diverge on the test runs.
     """
     table = _errors(errors) if tested else ["", *fold(NO_TEST)]
     if tested and away:
@@ -54,7 +59,12 @@ def tell_comparison(
 
 
 def tell_residual(without: float | None, corrected: float | None) -> str:
-    """Whether a residual helps on the test runs, from the errors; empty where these are unknown."""
+    """Say whether a residual helps on the test runs; empty where an error is unknown.
+
+    Args:
+        without: 2 s error of the base.
+        corrected: 2 s error of the base with the residual.
+    """
     if without is None or corrected is None:
         return ""
     share = corrected / without - 1.0
@@ -81,7 +91,7 @@ def _told(error: float | None) -> str:
 
 
 def tell_doubts(quality: Mapping[str, Quality]) -> str:
-    """What to check of the recordings before anything is believed; nothing where all is well."""
+    """Say what to check in the recordings before results are trusted; empty without doubts."""
     doubts = doubt_sentences(quality)
     printed, hidden = doubts[:MOST], len(doubts) - MOST
     lines = ["", "", "check the recordings first", ""] if doubts else []
@@ -103,7 +113,7 @@ def _findings(where: ErrorConditions) -> list[str]:
 
 
 def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
-    """The verdict, the selected effects and those most worth by themselves, with bars."""
+    """Return the verdict, the selected effects, and the best effects alone, with bars."""
     verdict = explain(found, catalogue)
     lines = ["", *fold(f"{verdict.sentence} (verdict: {verdict.name})")]
     lines += [""] if verdict.missing else []
@@ -118,7 +128,7 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
 
 
 def tell_roles(quality: Mapping[str, Quality]) -> str:
-    """A line for each run: whether it is a train or a test run, and why it is not used."""
+    """Say for each run whether it is a train or a test run, and why it is not used."""
     lines = []
     for name, report in quality.items():
         reason = f", not used: {report.unusable}" if report.unusable else ""

@@ -1,4 +1,4 @@
-"""What a coefficient comes to: that of the base, the change, and whether such a vehicle brakes."""
+"""Totals of coefficients: that of the base and a change of it, and whether the sum is possible."""
 
 from typing import NamedTuple
 
@@ -8,14 +8,24 @@ from rovsim.reporting.wording import listed, significant
 
 
 class Total(NamedTuple):
-    """What a coefficient comes to, and what is wrong with that, in words."""
+    """The total of a coefficient in words, and what is wrong with it; empty if nothing is."""
 
     told: str
     wrong: str
 
 
 def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str = "") -> Total:
-    """The sum of what the base has and a change of it; nothing where there is no sum."""
+    """Say what a coefficient of the base and a change of it add up to.
+
+    Empty where the effect is no coefficient of the base, or the parameter no axis.
+
+    Args:
+        body: of the base.
+        effect: id of the effect that changes the coefficient.
+        parameter: of this effect.
+        value: of this parameter, in its unit.
+        unit: as text.
+    """
     if effect not in body.stated or parameter not in AXES:
         return Total("", "")
     before = float(body.stated[effect][AXES.index(parameter)])
@@ -26,14 +36,14 @@ def tell_total(body: Body, effect: str, parameter: str, value: float, unit: str 
 
 
 def warn(effect: str, total: float) -> str:
-    """What is wrong with a coefficient below zero; empty where nothing is."""
+    """Say what is wrong with a coefficient below zero; empty where it is not."""
     if total >= 0.0:
         return ""
     return "no water weighs less" if effect == "added_mass" else "water would push, not brake"
 
 
 def list_totals(body: Body) -> dict[tuple[str, str], float]:
-    """What each coefficient of a body comes to, by effect and axis."""
+    """Return the total of each coefficient of a body, by effect and axis."""
     return {
         (effect, axis): float(value)
         for effect, six in body.stated.items()
@@ -42,7 +52,7 @@ def list_totals(body: Body) -> dict[tuple[str, str], float]:
 
 
 def warn_totals(body: Body) -> str:
-    """Which coefficients of a body are below zero, and what that does; empty where none is."""
+    """Say which coefficients of a body are below zero, and what follows; empty where none is."""
     sentences = []
     for effect, six in body.stated.items():
         wrong = {axis: float(v) for axis, v in zip(AXES, six, strict=True) if v < 0.0}

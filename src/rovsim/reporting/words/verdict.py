@@ -1,4 +1,4 @@
-"""What a diagnosis found, in plain language: for the report and for the terminal."""
+"""Say what a diagnosis found, for the report, the workbench and the terminal."""
 
 import math
 from dataclasses import dataclass
@@ -25,9 +25,7 @@ from rovsim.reporting.words.shown import shown_sentences
 from rovsim.reporting.words.sureness import tell_sureness, unsure_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import (
-    Diagnosis,
-)
+from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect, FittedValue
 
 VERDICTS = {
@@ -51,10 +49,16 @@ AWAY = "The model cannot be judged: it runs away from the train runs."
 
 @dataclass(frozen=True)
 class Missing:
-    """A selected effect: its id, what it is, its parameters as text, and how sure it is.
+    """A selected effect in words; of one that is no longer in the catalogue, part is empty.
 
-    `equation` in LaTeX, its `symbols` with their meanings and `cause` are empty where the effect is
-    not in the catalogue any more.
+    Attributes:
+        effect: its id.
+        meaning: the first sentence of its description; this and the last three may be empty.
+        parameters: each with its name, value and 95 % interval.
+        worth: the share of the error that it removes, and how sure its name is.
+        equation: in LaTeX.
+        symbols: of the equation, with their meanings.
+        cause: what usually makes it happen.
     """
 
     effect: str
@@ -68,10 +72,16 @@ class Missing:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A diagnosis in words: a sentence, the missing effects, what else to know, what to record.
+    """A diagnosis in words.
 
-    `key` says how to read the missing effects; empty where none is. `error`: that on the test runs,
-    and what it means.
+    Attributes:
+        name: of the verdict, as in diagnosis.json.
+        sentence: that states it.
+        missing: the selected effects.
+        key: how to read these; empty where there is none.
+        error: sentences on the error on the test runs.
+        remarks: what else to know.
+        next: what to record next; empty if nothing.
     """
 
     name: str
@@ -84,12 +94,12 @@ class Verdict:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Error and remarks, as they are told one after the other."""
+        """The sentences on the error, then the remarks."""
         return (self.error, *self.remarks)
 
 
 def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
-    """A diagnosis in words; the catalogue says what its effects are."""
+    """Say in words what a diagnosis found; the catalogue tells what its effects are."""
     remarks = [
         *unsure_sentences(found, catalogue),
         *apart_sentences(found),
@@ -119,7 +129,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
 
 
 def _sentence(found: Diagnosis) -> str:
-    """The verdict; where nothing could be judged, also what there was none of, or what was lost."""
+    """Return the sentence of the verdict; where nothing could be judged, one that says why."""
     unjudged = found.verdict == "insufficient_data" and not found.ranking
     if unjudged and found.not_followed_from_s:
         return AWAY
@@ -131,7 +141,7 @@ def _sentence(found: Diagnosis) -> str:
 
 
 def _key(effects: int) -> str:
-    """How to read the effects: intervals, probabilities, shares of several."""
+    """Say how to read intervals, probabilities and shares of so many effects."""
     if not effects:
         return ""
     text = "± is the 95 % interval. The probability compares a name with those tried in its place."
@@ -147,9 +157,10 @@ def _key(effects: int) -> str:
 def _missing(
     one: FittedEffect, known: type[Effect] | None, thrusters: Sequence[str], sure: str, above: bool
 ) -> Missing:
-    """`thrusters`: their names; `sure`: how its name is; `above`: whether effects stand above it.
+    """Describe a selected effect.
 
-    What it removes then comes on top of these.
+    `known` is its class, if it is in the catalogue, `sure` says how sure its name is, and `above`
+    whether the error that it removes is beyond that of effects above it.
     """
     meaning = (known.__doc__ or "").split("\n")[0] if known else ""
     equation, cause = (known.equation, known.cause) if known else ("", "")
@@ -166,7 +177,7 @@ def _missing(
 
 
 def _value(effect: str, value: FittedValue, thrusters: Sequence[str]) -> str:
-    """A value with its interval; an output that is swapped, by its thruster's name as well."""
+    """Return a value with its interval as text; an order of thrusters with their names."""
     if effect == ThrusterOrder.id:
         return ThrusterOrder.describe(or_nan(value.value), thrusters)
     return interval(value)
@@ -181,7 +192,7 @@ def _removed(share: float | None, above: bool) -> str:
 
 
 def interval(value: FittedValue) -> str:
-    """A fitted value with its 95 % interval and unit: 0.181 ± 0.002 s."""
+    """Return a fitted value with its 95 % interval and unit as text: "0.181 ± 0.002 s"."""
     half = Z_95 * or_nan(value.std)
     if not math.isfinite(half) or half <= 0.0:
         return f"{significant(or_nan(value.value), 4)} {unit(value.unit)}".strip()
@@ -191,12 +202,12 @@ def interval(value: FittedValue) -> str:
 
 
 def differs_from_zero(value: FittedValue) -> bool:
-    """Whether a fitted value's 95 % interval leaves zero out; False where it has none."""
+    """Whether a fitted value's 95 % interval excludes zero; False where it has no interval."""
     return abs(or_nan(value.value)) > Z_95 * or_nan(value.std) > 0.0
 
 
 def error_sentence(found: Diagnosis) -> str:
-    """The error on the test runs before and after, and what a perfect model would show."""
+    """Say the error on the test runs without and with the effects, and the noise floor."""
     error = found.error
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
     if found.runs_away_in:
@@ -218,7 +229,7 @@ def error_sentence(found: Diagnosis) -> str:
 
 
 def _change(before: float, after: float) -> str:
-    """What became of an error, as far as its printed digits tell."""
+    """Say how an error changed, as far as its printed digits show it."""
     then, now = significant(before), significant(after)
     if then == now:
         return f"stays at {now}"
@@ -226,7 +237,10 @@ def _change(before: float, after: float) -> str:
 
 
 def _away_sentence(runs: Sequence[str], after: float) -> str:
-    """That the model has no error on the test runs, and why; the one with effects may have one."""
+    """Say that the model has no error, as it diverges in these test runs.
+
+    `after` is the error of the model with effects, which may have one; NaN if not.
+    """
     text = (
         f"The model has no error on the test runs: in {listed(runs)} it runs away within 2 s of "
         "the measured state. Usually its total drag on an axis is negative, or a value has the "
@@ -238,12 +252,12 @@ def _away_sentence(runs: Sequence[str], after: float) -> str:
 
 
 def leaves_unexplained(found: Diagnosis) -> bool:
-    """Whether something is left for which no law was found: it was fitted as noise."""
+    """Whether significant physics without a law is left, which was then fitted as noise."""
     return found.unexplained.significant and found.unexplained.proposal is None
 
 
 def unexplained_sentences(found: Diagnosis) -> list[str]:
-    """What no effect of the catalogue explains."""
+    """Say what no effect of the catalogue explains; empty if that is not significant."""
     unexplained = found.unexplained
     return (
         [f"Unexplained: {unexplained.hint}", *_law_sentences(found)]
@@ -253,7 +267,7 @@ def unexplained_sentences(found: Diagnosis) -> list[str]:
 
 
 def _law_sentences(found: Diagnosis) -> list[str]:
-    """The law that is proposed for it: what it is worth, and how to use it."""
+    """Say which law is proposed for what is unexplained, how good it is, and how to use it."""
     law = found.unexplained.proposal
     if law is None:
         return _disturbance_sentences(found)
@@ -270,7 +284,7 @@ def _law_sentences(found: Diagnosis) -> list[str]:
 
 
 def _disturbance_sentences(found: Diagnosis) -> list[str]:
-    """The force in time where no law holds: how large, how fast, and when it was strongest."""
+    """Say how large the force without a law is, how fast it changes, and when it is strongest."""
     force = found.unexplained.disturbance
     if force is None:
         return []
