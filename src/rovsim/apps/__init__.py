@@ -1,4 +1,4 @@
-"""Ways in.
+"""Programs around the simulator and the diagnosis.
 
 cli        the command `rovsim`
 workbench  the four questions in a browser

@@ -70,7 +70,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Array, dict[str, Any]]:
-        """A new heading and a new goal; `options` may give `state` (13,) and `goal` (3,)."""
+        """Start with a random heading and goal; `options` may set `state` (13,) and `goal` (3,)."""
         super().reset(seed=seed)
         options = options or {}
         self.stepper.reset()
@@ -80,7 +80,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         return self._seen(), {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
-        """Hold an action for dt; actions beyond [-1, 1] count as -1 or 1."""
+        """Hold an action (n,) for `dt` s; values beyond [-1, 1] count as -1 or 1."""
         action = np.clip(action, -1.0, 1.0)
         self.state = self.stepper.step(self.state, self.limit * action, self.dt)
         terminated = bool(np.abs(self.state[:3]).max() > 3.0 * self.reach)
@@ -88,7 +88,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         return self._seen(), self.reward(action), terminated, truncated, {}
 
     def reward(self, action: Array) -> float:
-        """What an action that led to the present state is worth."""
+        """Return the reward of the action (n,) that led to the present state."""
         distance = float(np.linalg.norm(self.state[:3] - self.goal))
         return -distance - float(np.mean(action**2))
 

@@ -1,8 +1,8 @@
 """The command `rovsim`: one command a file in `commands`.
 
 main        the entry point: one message and exit code 2 for input that cannot be used
-complaint   how such a message looks
-untaken     refuses keys that a command has no use for
+complaint   prints such a message
+untaken     refuses keys that a command does not use
 dispatch    from composed settings to a command
 commands    the commands
 opening     opens the campaign of a command, and finds where it writes

@@ -1,4 +1,4 @@
-"""Messages beside a result, and instead of one; unlike half of the package it is fast to import."""
+"""Error messages and warnings on stderr; this module imports fast, for errors at the start."""
 
 import sys
 from typing import NoReturn
@@ -21,5 +21,5 @@ def warn(message: str) -> None:
 
 
 def describe_os_error(error: OSError) -> str:
-    """A full disk, a file that may not be read, a name too long: which file, and why."""
+    """Return which file the system refused and why, for instance since the disk is full."""
     return f"{error.filename or NAMELESS}: {error.strerror or error}"

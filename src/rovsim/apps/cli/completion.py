@@ -1,4 +1,4 @@
-"""`rovsim completion SHELL`: what the shell's Tab key asks, answered without importing anything.
+"""`rovsim completion SHELL`: suggestions for the shell's Tab key, found without slow imports.
 
 Hydra's own completion knows keys alone, neither commands nor files nor effects, and needs more than
 a second. Here the configuration and the effects are read as text: an answer takes about 0.1 s.
@@ -60,24 +60,27 @@ complete -c rovsim -f -a '(_rovsim)'""",
 
 @dataclass(frozen=True)
 class Word:
-    """A word as it was typed, and what it stands for."""
+    """A word as it was typed (`raw`), and the value that it stands for."""
 
     raw: str
     value: str
     quote: str  # the one that is still open
 
     def typed(self, value: str) -> str:
-        """A longer value as it would be typed on: after a quote as it is, else escaped."""
+        """Return a longer value as one would type it: escaped, unless after an open quote."""
         if self.quote:
             return self.quote + value
         return re.sub(r"([^\w\[\],.=/:+~@%-])", r"\\\1", value)
 
 
 def complete(words: Sequence[str]) -> str:
-    """The script of a shell, or what may stand where a line ends.
+    """Return the script of a shell, or suggestions for the end of a line, one a line.
+
+    Args:
+        words: name of the shell, then the unfinished line, if suggestions are asked for.
 
     Raises:
-        BadInput: no shell that is known.
+        BadInput: the shell is not known.
     """
     shell, *line = words or [""]
     if shell not in SCRIPTS:
@@ -103,7 +106,13 @@ def _answer(shell: str, line: str) -> list[str]:
 
 
 def _as(shell: str, word: Word, found: str) -> str:
-    """As a shell wants it: what is finished ends in a blank, where the shell adds none."""
+    """Return a suggestion as a shell expects it: a finished word ends in a blank, but for fish.
+
+    Args:
+        shell: its name.
+        word: that is being typed.
+        found: value that the word may become.
+    """
     typed = word.typed(found)
     if shell == "bash" and not word.quote:  # it takes a word to begin after the last = or :
         typed = typed[max(word.raw.rfind(mark) for mark in "=:") + 1 :]
@@ -116,7 +125,7 @@ def _as(shell: str, word: Word, found: str) -> str:
 
 
 def split(line: str) -> list[Word]:
-    """The words of an unfinished line; the last is what is being typed, perhaps nothing."""
+    """Split an unfinished line into words; the last one is being typed, and may be empty."""
     words, raw, value, quote, escaped = [], "", "", "", False
     for letter in line:
         if not (quote or escaped) and letter.isspace():
@@ -139,7 +148,7 @@ def split(line: str) -> list[Word]:
 
 
 def suggest(given: Sequence[str], word: str) -> list[str]:
-    """What `word` may become after the words that were given, commands first."""
+    """List what `word` may become after the words `given`, of which the first is the command."""
     if not given:
         return _beginning(word, [*commands(), "completion"])
     command, *rest = given
@@ -157,7 +166,7 @@ def suggest(given: Sequence[str], word: str) -> list[str]:
 
 
 def commands() -> list[str]:
-    """Names of the commands."""
+    """List the names of the commands."""
     return sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
 
 
@@ -166,13 +175,13 @@ def _beginning(word: str, names: Iterable[str]) -> list[str]:
 
 
 def _last_item(value: str) -> tuple[str, str]:
-    """What stands before the last item of a list, and that item."""
+    """Split a list that is being typed into what stands before its last item, and that item."""
     start = max(value.rfind("["), value.rfind(",")) + 1
     return (value[:start], value[start:]) if value.startswith("[") else ("", value)
 
 
 def _keys(command: str, word: str, taken: set[str]) -> list[str]:
-    """Keys that the command's own help names; once something is typed, all of the configuration."""
+    """List keys of a command's help; once something is typed, also all of the configuration."""
     helped = own_keys(command)
     keys = [*helped, *settings()] if word else helped
     ends = [key[len(word) :] for key in keys if key.startswith(word) and key not in taken]
@@ -180,19 +189,19 @@ def _keys(command: str, word: str, taken: set[str]) -> list[str]:
 
 
 def own_keys(command: str) -> list[str]:
-    """Keys that the command's own help names, dotted, in its order."""
+    """List the dotted keys that the help of a command names, in its order."""
     source = (COMMANDS / f"{command}.py").read_text(encoding="utf-8")
     return re.findall(r"(?<![\w.])([a-z_]+(?:\.\w+)*)=", source.split('"""')[1])
 
 
 def _step(end: str) -> str:
-    """The end of a key up to its next dot."""
+    """Return the rest of a key up to its next dot, or with `=` where there is none."""
     inner, dot, _ = end.partition(".")
     return f"{inner}{dot or '='}"
 
 
 def _values(command: str, key: str, value: str) -> list[str]:
-    """What a value may become: names first, then files."""
+    """List what a value may become: names first, then files."""
     if key == "to" and command == "export":
         return _beginning(value, [module.name for module in pkgutil.iter_modules([str(TARGETS)])])
     names = [*conf_names(key), *settings().get(key, ())]
@@ -205,7 +214,10 @@ def _values(command: str, key: str, value: str) -> list[str]:
 
 
 def _files(start: str, ending: str) -> list[str]:
-    """Folders, and files that end so, which begin with what was typed; "/": folders alone."""
+    """List folders and files whose path begins with `start`; files only with this ending.
+
+    The ending "/" stands for folders alone.
+    """
     _, _, name = start.rpartition("/")
     before = start[: len(start) - len(name)]
     place = Path(os.path.expanduser(before or "."))
@@ -220,7 +232,7 @@ def _files(start: str, ending: str) -> list[str]:
 
 
 def effects() -> list[str]:
-    """Ids of the built-in effects, as their files declare them."""
+    """List the ids of the built-in effects, as their files declare them."""
     texts = (path.read_text(encoding="utf-8") for path in EFFECTS.glob("*.py"))
     classes = (body for text in texts for body in text.split("\nclass ") if UNLISTED not in body)
     return sorted(name for body in classes for name in re.findall(r'^    id = "(\w+)"', body, re.M))
@@ -228,7 +240,7 @@ def effects() -> list[str]:
 
 @cache
 def settings() -> dict[str, tuple[str, ...]]:
-    """Keys of the configuration, dotted, with the values that their lines name."""
+    """Return the dotted keys of the configuration, with the values that their lines name."""
     main = _text("config.yaml")
     groups = re.findall(r"^  - ([\w/]+): (\w+)", main, re.M)
     keys = _listed(main, "")
@@ -245,7 +257,10 @@ def _text(name: str) -> str:
 
 
 def _listed(text: str, before: str) -> dict[str, tuple[str, ...]]:
-    """Keys of one file of settings: plain mappings, one key a line."""
+    """Return the dotted keys of one file of settings, with the values that their lines name.
+
+    The file holds plain mappings, one key a line; `before` is put before each key.
+    """
     choices: dict[str, tuple[str, ...]] = {}
     above: list[tuple[int, str]] = []
     for space, key, value in re.findall(r"^( *)(\w+):(.*)$", text, re.M):
@@ -259,7 +274,7 @@ def _listed(text: str, before: str) -> dict[str, tuple[str, ...]]:
 
 
 def _choices(value: str) -> tuple[str, ...]:
-    """Values that a line of settings names: true and false, or `a | b` of its comment."""
+    """Return the values that a line of settings names: true and false, or `a | b` of a comment."""
     current, _, comment = value.partition("#")
     if current.strip() in ("true", "false"):
         return ("true", "false")

@@ -1,4 +1,4 @@
-"""From composed settings to a command, which sees its own part of them."""
+"""Run a command with its own part of the composed settings."""
 
 from contextlib import nullcontext
 

@@ -105,7 +105,7 @@ def asks_for_help(words: Sequence[str]) -> bool:
 
 
 def _doc(name: str) -> str:
-    """What a command says of itself; it is not imported, which would take seconds."""
+    """Return the docstring of a command without importing it, which would take seconds."""
     import ast
 
     source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
@@ -113,17 +113,17 @@ def _doc(name: str) -> str:
 
 
 def is_file(word: str) -> bool:
-    """Whether a word names a file and no key: it is there, or looks like no `key=value`."""
+    """Whether a word names a file: one that exists, or a word that is no `key=value`."""
     return re.match(r"[\w.]+=", word) is None or os.path.exists(word)
 
 
 def override(word: str, sweep: bool = False) -> str:
-    """One word of the command line as a Hydra override; plain values are quoted.
+    """Return a word of the command line as a Hydra override; values of `PLAIN` keys are quoted.
 
-    In a sweep, files and folders that are there, with commas between them, are one value each.
+    In a sweep, existing files and folders with commas between them are one value each.
 
     Raises:
-        BadInput: an option that is not known, or a word without `=`.
+        BadInput: the option is not known, or the word has no `=`.
     """
     key, equals, value = word.partition("=")
     if not equals and word.startswith("-"):
@@ -147,7 +147,7 @@ def override(word: str, sweep: bool = False) -> str:
 
 
 def listed(text: str) -> list[str]:
-    """Items of a comma-separated list; a comma that belongs to an existing path stays in it."""
+    """Split a comma-separated list; a comma that belongs to an existing path stays in it."""
     pieces, items = text.split(","), []
     while pieces:
         count = next(
@@ -160,7 +160,7 @@ def listed(text: str) -> list[str]:
 
 
 def quoted(value: str) -> str:
-    """A string that Hydra and OmegaConf take literally."""
+    """Quote a string so that Hydra and OmegaConf take it literally; empty becomes null."""
     if value in ("null", "None", ""):
         return "null"
     literal = value.replace("'", "\\'").replace("${", "\\${")

@@ -1,4 +1,4 @@
-"""The campaign of a command, and where it writes."""
+"""Open the campaign of a command, and choose the folder that it writes to."""
 
 from pathlib import Path
 
@@ -10,10 +10,18 @@ from rovsim.apps.cli.output import choose_folder
 def measure_campaign(
     settings: CampaignSettings, what: str, even_unusable: bool = False
 ) -> tuple[MeasuredCampaign, Path]:
-    """The campaign, measured once it is clear that the folder of `what` can be written.
+    """Measure the campaign of a command, after a check that its results can be written.
+
+    Args:
+        settings: with the campaign, and the folder of results if one is given.
+        what: last part of the default folder, results/CAMPAIGN/`what`.
+        even_unusable: whether it is enough that runs exist, even if none of them can be used.
+
+    Returns:
+        The campaign as measured, and the folder.
 
     Raises:
-        BadInput: it cannot be read, no run can be used, or the folder holds something else.
+        BadInput: the campaign cannot be read, no run can be used, or the folder cannot be written.
     """
     campaign = open_campaign(settings.campaign)
     out = choose_folder(settings, f"results/{campaign.name}/{what}")

@@ -1,4 +1,4 @@
-"""Where a command writes, and what it says when it is done: words, JSON, or nothing."""
+"""Choose where a command writes, and print its result: as text, as JSON, or not at all."""
 
 import json
 import os
@@ -18,15 +18,15 @@ def say(settings: CommandSettings, text: str, content: object) -> None:
 
 
 def join_files(text: str, files: str, *became: str) -> str:
-    """A text, the files that were written, and what became of those that were there."""
+    """Append to a text the files that were written, and sentences on earlier files (`became`)."""
     return "\n".join([text, "", files, *(line for part in became if part for line in fold(part))])
 
 
 def choose_folder(settings: CommandSettings, default: str) -> Path:
-    """The folder a command writes to, after a look whether it can; it need not exist yet.
+    """Return the folder that a command writes to, which need not exist yet.
 
     Raises:
-        BadInput: it or something on its way is a file, or may not be written to.
+        BadInput: the folder, or one that it is to be made in, is a file or may not be written to.
     """
     out = Path(settings.out or default)
     whole = out.absolute()

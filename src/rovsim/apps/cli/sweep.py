@@ -1,7 +1,7 @@
 """A Hydra multirun, and one job of it; importable, so that every launcher can send it to a worker.
 
-A run that fails leaves `failed.txt` in its folder, and the others go on: where they run, and in
-what order, is the launcher's, and of what they return Hydra hands nothing on.
+A run that fails leaves `failed.txt` in its folder, and the others continue: the launcher decides
+where and in what order they run, and Hydra does not pass on what they return.
 """
 
 import os
@@ -30,7 +30,9 @@ NAMED = ("command", "campaign", "residual", "control", "out", "output")
 def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
     """Let Hydra run a command once for every combination of the given values.
 
-    `campaigns`: those that `check_sweep` found.
+    Args:
+        overrides: of the command line; some of them have several values.
+        campaigns: folders that `check_sweep` returned.
 
     Raises:
         BadInput: there is no launcher, a campaign cannot be read, or some of the runs failed; all
@@ -54,12 +56,13 @@ def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
 
 
 def choose_sweep_folder(folder: Path, given: bool) -> Path:
-    """The folder of a sweep, made: one that is `given` as it is, else one that no other has.
+    """Make the folder of a sweep.
 
-    Two sweeps that begin in the same second would write over each other's runs.
+    Unless the user has `given` it, a number is added where another sweep has the same: two sweeps
+    that begin in the same second would write over each other's runs.
 
     Raises:
-        BadInput: it cannot be made.
+        BadInput: the folder cannot be made.
     """
     if given:
         make_folder(folder)
@@ -94,9 +97,9 @@ def refuse_failed(folder: Path) -> None:
 
 
 def job(composed: Any) -> None:
-    """Run the command of one combination; its results go to the job's own folder.
+    """Run the command for one combination of values; its results go to the job's own folder.
 
-    What it cannot do is said, and noted for the end of the sweep, which goes on.
+    An error is printed, and noted in a file for the end of the sweep, which continues.
     """
     from hydra.core.hydra_config import HydraConfig
 
@@ -116,15 +119,16 @@ def job(composed: Any) -> None:
 
 
 def first_values(overrides: Sequence[str]) -> list[str]:
-    """Overrides of a sweep's first run."""
+    """Return the overrides of a sweep's first run: the first value of each."""
     pairs = [(word, _list_values(word)) for word in overrides]
     return [f"{word.partition('=')[0]}={v[0]}" if v else word for word, v in pairs]
 
 
 def check_sweep(overrides: Sequence[str]) -> list[Path]:
-    """Compose the run of each value, the others at their first, before any of them begins.
+    """Check the settings of a sweep before any run begins: each value with the others' first.
 
-    Returns the campaigns that they name, each once.
+    Returns:
+        The campaigns that the values name, each once.
 
     Raises:
         BadInput: one of the values cannot be used.
@@ -136,7 +140,7 @@ def check_sweep(overrides: Sequence[str]) -> list[Path]:
 
 
 def check_campaigns(folders: Sequence[Path]) -> None:
-    """Look at the campaigns of a sweep; each of its runs would fail alike.
+    """Check that the campaigns of a sweep can be read; otherwise all its runs would fail.
 
     Raises:
         BadInput: one of them cannot be read.
@@ -146,7 +150,7 @@ def check_campaigns(folders: Sequence[Path]) -> None:
 
 
 def _vary_one(overrides: Sequence[str]) -> list[list[str]]:
-    """Overrides of the first run, and of each further value with all others at their first."""
+    """Return the overrides of the first run, and of each further value with the others' first."""
     first = first_values(overrides)
     others = [
         (k, f"{word.partition('=')[0]}={value}")
@@ -157,10 +161,10 @@ def _vary_one(overrides: Sequence[str]) -> list[list[str]]:
 
 
 def check_launcher(overrides: Sequence[str]) -> None:
-    """Look for Slurm, where runs are to go to one: by `srun`, as the launcher does.
+    """Check that Slurm is there if runs are to be sent to it: by `srun`, as the launcher does.
 
     Raises:
-        BadInput: there is none.
+        BadInput: it is not.
     """
     if SLURM in overrides and which("srun") is None:
         raise BadInput(
@@ -172,7 +176,7 @@ def check_launcher(overrides: Sequence[str]) -> None:
 
 
 def _list_values(word: str) -> list[str]:
-    """The values that an override sweeps over; none where it has one, or cannot be read."""
+    """Return the values that an override sweeps over; none for a single or unreadable value."""
     from hydra.core.override_parser.overrides_parser import OverridesParser
     from hydra.errors import OverrideParseException
 
@@ -184,12 +188,12 @@ def _list_values(word: str) -> list[str]:
 
 
 def choose_out(given: str | None, own: str, name: str) -> str:
-    """Folder of a job: `own` is Hydra's; in a folder that is given, one of the same name."""
+    """Return the folder of a job: `own`, which Hydra chose, or `name` in a folder that is given."""
     return own if given is None else str(Path(given, name))
 
 
 def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:
-    """The settings, with a name that tells one MLflow run of a sweep from another."""
+    """Return the settings with a name by which MLflow distinguishes the runs of a sweep."""
     words = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED]
     if settings.tracking.name or not words:
         return settings

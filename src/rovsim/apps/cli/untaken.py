@@ -1,4 +1,4 @@
-"""Keys of the configuration that a command has no use for: it would ignore them silently."""
+"""Refuse keys of the configuration that a command does not use and would silently ignore."""
 
 import re
 from typing import Sequence
@@ -15,10 +15,10 @@ FEW = 3  # commands that are asked for; of a key that most take, none can be mea
 
 
 def require_taken(command: str, overrides: Sequence[str]) -> None:
-    """Refuse overrides of sections that a command does not take; what none is, Hydra refuses.
+    """Refuse overrides of sections that a command does not use; Hydra refuses unknown sections.
 
     Raises:
-        BadInput: there is one.
+        BadInput: there is such an override.
     """
     fields = import_large(f"rovsim.apps.cli.commands.{command}").Settings.model_fields
     for word in overrides:
@@ -34,7 +34,7 @@ def require_taken(command: str, overrides: Sequence[str]) -> None:
 
 
 def section(key: str) -> str:
-    """The section of the settings that an override changes; a group's file says where it goes."""
+    """Return the section of the settings that a key belongs to, as the file of its group says."""
     options = conf_names(key)
     if options and (path := conf_file(f"{key}/{options[0]}.yaml")):
         package = re.search(r"@package (\w+)", path.read_text(encoding="utf-8"))
@@ -43,7 +43,7 @@ def section(key: str) -> str:
 
 
 def _remedy(name: str) -> str:
-    """Who takes it, as far as their help says."""
+    """Suggest the commands whose help names a section."""
     users = [user for user in commands() if name in {section(key) for key in own_keys(user)}]
     if not 0 < len(users) <= FEW:
         return "Leave it out."

@@ -1,4 +1,4 @@
-"""What is inside the unit: a `Stepper` behind FMI's variables. Goes into the .fmu as it stands."""
+"""The code inside the unit: a `Stepper` behind FMI's variables. It is packed as it stands."""
 
 from pathlib import Path
 from xml.etree.ElementTree import SubElement
@@ -17,8 +17,8 @@ MODEL = "model.yaml"  # among the unit's resources
 class Vehicle(Fmi2Slave):
     """A vehicle in water; SI units, NED, body axes FRD at CO, quaternion q0..q3 body to world.
 
-    Parameters `start_x` … are the state to begin with, inputs `command_1` … the thrusters' commands
-    in [-1, 1], which hold over a step, outputs `x` … the state.
+    Parameters `start_x` … are the initial state, inputs `command_1` … the thrusters' commands in
+    [-1, 1], which are held over a step, and outputs `x` … the state.
     """
 
     def __init__(self, **given):
@@ -38,9 +38,9 @@ class Vehicle(Fmi2Slave):
             self._real(name, Fmi2Causality.output, self.state, i, initial=begins)
 
     def to_xml(self, *options):
-        """What describes the unit, with the outputs' part in initialisation.
+        """Return the description of the unit, with the outputs listed as initial unknowns.
 
-        pythonfmu 0.7 leaves that out; pythonfmu3 does not, but its FMI 3.0 few tools read.
+        pythonfmu 0.7 leaves these out; pythonfmu3 does not, but few tools read its FMI 3.0.
         """
         root = super().to_xml(*options)
         structure = root.find("ModelStructure")
@@ -50,7 +50,7 @@ class Vehicle(Fmi2Slave):
         return root
 
     def _real(self, name, causality, array, i, **more):
-        """A variable that is an element of an array."""
+        """Register a variable whose value is an element of an array."""
         self.register_variable(
             Real(
                 name,
@@ -62,11 +62,11 @@ class Vehicle(Fmi2Slave):
         )
 
     def exit_initialization_mode(self):
-        """Begin where the parameters say."""
+        """Set the state to that of the start parameters."""
         self.stepper.reset()
         self.state[:] = self.start
 
     def do_step(self, current_time, step_size):
-        """Hold the commands for a step."""
+        """Simulate a step of `step_size` s, over which the commands are held."""
         self.state[:] = self.stepper.step(self.state, self.command, step_size)
         return True

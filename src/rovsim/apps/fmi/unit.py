@@ -1,4 +1,4 @@
-"""A model packed as an FMI 2.0 co-simulation unit, by pythonfmu."""
+"""Pack a model as an FMI 2.0 co-simulation unit with pythonfmu."""
 
 import shutil
 import sys
@@ -18,12 +18,12 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
     """Write a model as a unit.
 
     Args:
-        model: what is packed.
-        source: its file, beside which the arrays of its residual lie; None for a built-in model.
-        out: the .fmu.
+        model: to be packed.
+        source: its file, in the folder with the arrays of its residual; None if it is built in.
+        out: the .fmu file.
 
     Raises:
-        BadInput: `out` is no .fmu, or cannot be written.
+        BadInput: `out` is no .fmu file, or cannot be written.
     """
     if out.suffix != ".fmu":
         raise BadInput(
@@ -48,7 +48,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
 
 
 def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
-    """The model's files in a folder, the vehicle written into them where it is no built-in one."""
+    """Write the files of a model into a folder, with its residual; returns all files there."""
     residual = read_yaml(source).get("residual") if source else None
     write_model(model, folder / MODEL, residual=residual)
     if source and residual:

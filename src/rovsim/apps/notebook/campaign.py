@@ -1,4 +1,4 @@
-"""An open campaign in a notebook: the functions that the commands call, with their settings."""
+"""An open campaign in a notebook: it calls the functions of the commands, with their settings."""
 
 import hashlib
 from dataclasses import dataclass, field
@@ -43,11 +43,11 @@ Spec = str | PathLike[str]
 
 @dataclass(eq=False)
 class Campaign:
-    """Recordings that were read and cleaned; models are names or files, as for the commands.
+    """A campaign whose recordings were read and cleaned.
 
-    What was computed before is not computed again: comparisons while the notebook runs, diagnoses
-    ever after, in the folder of the workbench, as long as recordings, settings and code are the
-    same.
+    Methods take models as the commands do: a name or a file. Comparisons are kept while the
+    notebook runs. Diagnoses are kept in the folder of the workbench, and are read from there as
+    long as recordings, settings, model and code are the same.
     """
 
     settings: Settings
@@ -57,12 +57,12 @@ class Campaign:
 
     @property
     def name(self) -> str:
-        """As campaign.yaml says."""
+        """Name of the campaign, as in campaign.yaml."""
         return self.data.campaign.name
 
     @property
     def runs(self) -> DataFrame:
-        """The runs: split, control, length, and what is the matter with those that are not used."""
+        """All runs: split, control, length, and why a run is not used."""
         rows = {
             run.id: (
                 run.split,
@@ -76,7 +76,7 @@ class Campaign:
         return DataFrame.from_dict(rows, orient="index", columns=columns)
 
     def compare(self, *models: Spec) -> ShownComparison:
-        """Replay every run with every model: errors, where they come from, figures.
+        """Replay all runs with these models (nominal unless given); returns errors and figures.
 
         Raises:
             BadInput: a model cannot be loaded, or no run can be used.
@@ -91,7 +91,7 @@ class Campaign:
         return self._compared[key]
 
     def diagnose(self, model: Spec = "nominal") -> ShownDiagnosis:
-        """Which effects a model lacks; a diagnosis that was made before is read.
+        """Find which effects a model lacks; a diagnosis that was made before is read.
 
         Raises:
             BadInput: the model cannot be loaded, or cannot be diagnosed.
@@ -149,7 +149,7 @@ class Campaign:
         return self.model(out)
 
     def export(self, model: Spec, to: str, path: Spec | None = None) -> ShownExport:
-        """Write a model for another simulator; what is left out is sized over these runs.
+        """Write a model for another simulator; the parts left out are sized over these runs.
 
         Raises:
             BadInput: no such simulator, or it cannot hold such a model.
@@ -165,7 +165,7 @@ class Campaign:
         return ShownExport(out, simulator.title, export.left)
 
     def model(self, path: Spec) -> ShownModel:
-        """A model file.
+        """Read a model file.
 
         Raises:
             BadInput: it is missing, or does not describe a model.
@@ -187,7 +187,7 @@ class Campaign:
 
 
 def _content(spec: str) -> str:
-    """A model's name, or its file with a digest: what was written anew is read anew."""
+    """Return a model's name, or its path with a digest, so that a changed file is read again."""
     path = Path(spec)
     return f"{spec} {hashlib.sha256(path.read_bytes()).hexdigest()}" if path.is_file() else spec
 
@@ -198,10 +198,10 @@ def open(
     """Open a campaign: read, check and clean its runs.
 
     Args:
-        folder: it holds campaign.yaml.
-        overrides: settings as on the command line, "filter=savgol".
+        folder: that holds campaign.yaml.
+        overrides: settings as on the command line, for example "filter=savgol".
         effects_file: files with effects of one's own.
-        out: where things are kept; results/NAME/ui unless given.
+        out: folder of results; results/NAME/ui unless given.
 
     Raises:
         BadInput: an override, the campaign or a file cannot be used.

@@ -1,4 +1,4 @@
-"""How results look in a notebook: headings, sentences, tables, pictures; nothing from outside."""
+"""Results as HTML in a notebook: headings, sentences, tables and pictures, without downloads."""
 
 import base64
 import io
@@ -16,30 +16,30 @@ SCREEN = 110  # dots an inch: a text column is 650 pixels wide
 
 
 def heading(text: str) -> str:
-    """A heading; a notebook's own stand above it."""
+    """Return a heading, smaller than those of the notebook itself."""
     return f"<h4>{escape(text)}</h4>"
 
 
 def sentences(lines: Iterable[str]) -> str:
-    """A list of sentences; none, where there are none."""
+    """Return a list of sentences; empty where there are none."""
     items = "".join(f"<li>{escape(line)}</li>" for line in lines)
     return f"<ul>{items}</ul>" if items else ""
 
 
 def table(frame: DataFrame) -> str:
-    """Numbers as the reports print them."""
+    """Return a table with numbers as reports print them."""
     return str(frame.to_html(float_format=significant, na_rep="–", border=0))
 
 
 def picture(figure: Figure, caption: str) -> str:
-    """A figure with its caption, which is what a screen reader says as well."""
+    """Return a figure with its caption, which screen readers read as well."""
     data = base64.b64encode(png(figure)).decode()
     image = f'<img alt="{escape(caption, quote=True)}" src="data:image/png;base64,{data}">'
     return f"<figure>{image}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
 def png(figure: Figure) -> bytes:
-    """A figure for the screen."""
+    """Draw a figure for the screen; returns the content of a PNG file."""
     with styled():
         figure.set_dpi(SCREEN)
         buffer = io.BytesIO()
@@ -48,10 +48,10 @@ def png(figure: Figure) -> bytes:
 
 
 def displayed(figure: Figure) -> Figure:
-    """The same figure, which a notebook shows by itself.
+    """Return the same figure, made such that a notebook shows it by itself.
 
-    IPython asks an object for `_repr_png_`; it knows Matplotlib's figures only once pyplot, which
-    these do without, was imported.
+    IPython asks an object for `_repr_png_`; it knows Matplotlib's figures only after pyplot was
+    imported, which these figures do not use.
     """
     vars(figure)["_repr_png_"] = lambda: png(figure)
     return figure

@@ -1,4 +1,4 @@
-"""How far long work is: one line of a notebook's cell; a terminal shows its own bar."""
+"""Show the progress of long work in one line of a notebook's cell."""
 
 import sys
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ STEPS = 20  # lines are written so often, at most: a notebook keeps what a cell 
 
 @contextmanager
 def in_a_cell() -> Iterator[None]:
-    """Tell progress in the cell that runs, where there is one."""
+    """Show progress in the running cell; does nothing outside a notebook."""
     if "ipykernel" not in sys.modules:
         yield
         return

@@ -1,4 +1,4 @@
-"""What notebooks are given: typed results of the pipeline, with tables, figures and HTML."""
+"""Results that notebooks get: those of the pipeline, with tables, figures and HTML."""
 
 import os
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ FITTED = ("value", "std", "unit")
 
 
 class Figures:
-    """Results that can be drawn."""
+    """Results that can be drawn; base of those below."""
 
     data: ReportData
 
@@ -69,7 +69,7 @@ class Figures:
 
 @dataclass(frozen=True, eq=False)
 class ShownComparison(Figures):
-    """Errors of models: `data` holds motions, replays and all results, by name."""
+    """Errors of models; `data` holds the motions, replays and all results."""
 
     data: ReportData
 
@@ -81,7 +81,7 @@ class ShownComparison(Figures):
 
     @cached_property
     def ladder(self) -> Ladder:
-        """A step for each model, on the test runs."""
+        """The ladder of all models: the error of each on the test runs."""
         return Ladder(steps=self.data.steps)
 
     @property
@@ -93,7 +93,7 @@ class ShownComparison(Figures):
     def table(
         self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
     ) -> DataFrame:
-        """Errors by model and axis, runs pooled.
+        """Return the errors by model and axis, pooled over runs.
 
         Args:
             quantity: velocity_rmse, velocity_mae or acceleration_rmse.
@@ -107,12 +107,12 @@ class ShownComparison(Figures):
     def printed(
         self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
     ) -> Table:
-        """The same for paper: `.latex()`, `.csv()`, `.write(folder, name)`."""
+        """Return the same table for paper: see its `latex()`, `csv()` and `write(folder, name)`."""
         return tabulate_errors(self.result, horizon, split, quantity)
 
     @property
     def sentences(self) -> dict[str, list[str]]:
-        """Under which conditions each model fails, in words."""
+        """Sentences on the conditions under which each model fails, by model."""
         where = self.data.where
         return {name: list(m.sentences) for name, m in where.models.items()} if where else {}
 
@@ -134,7 +134,7 @@ class ShownDiagnosis(Figures):
 
     @property
     def data(self) -> ReportData:  # type: ignore[override]
-        """What there is to draw."""
+        """The results that can be drawn."""
         return ReportData(diagnosis=self.result, ladder=self.result.ladder)
 
     @property
@@ -144,19 +144,19 @@ class ShownDiagnosis(Figures):
 
     @property
     def selected(self) -> DataFrame:
-        """The effects that are missing, one parameter a row; `std` is one standard deviation."""
+        """The missing effects, a row for each parameter; `std` is one standard deviation."""
         return _effects(self.result.selected)
 
     @property
     def ranking(self) -> DataFrame:
-        """The likeliest effects by themselves, the best first, and those selected beyond them."""
+        """The likeliest effects alone, the best first, and the selected ones beyond these."""
         rows = {r.effect: (or_nan(r.error_reduction), r.probability) for r in self.result.ranking}
         columns = ["error_reduction", "probability"]
         return DataFrame.from_dict(rows, orient="index", columns=columns)
 
     @property
     def ladder(self) -> DataFrame:
-        """The error falling on the test runs, effect by effect, down to the noise floor."""
+        """The error on the test runs, effect by effect, down to the noise floor."""
         return _named(tabulate_ladder(self.result.ladder))
 
     def _repr_html_(self) -> str:
@@ -172,7 +172,7 @@ class ShownDiagnosis(Figures):
 
 @dataclass(frozen=True, eq=False)
 class ShownModel(os.PathLike):
-    """A model that was written: goes wherever a model is asked for."""
+    """A model file, which can be given wherever a model is asked for."""
 
     model: Model
     path: Path
@@ -182,7 +182,7 @@ class ShownModel(os.PathLike):
 
     @property
     def effects(self) -> DataFrame:
-        """What was added to the vehicle, one parameter a row; `std` is one standard deviation."""
+        """The effects added to the vehicle, a row a parameter; `std` is one standard deviation."""
         rows = {
             (effect.id, p.name): (effect[p.name], effect.std.get(p.name), p.unit)
             for effect in self.model.added
@@ -201,7 +201,7 @@ class ShownModel(os.PathLike):
 
 @dataclass(frozen=True, eq=False)
 class ShownExport:
-    """A model for another simulator: its file, and what is left out with its size."""
+    """A model for another simulator: its file, and the parts that this cannot hold."""
 
     path: Path
     simulator: str
@@ -209,7 +209,7 @@ class ShownExport:
 
     @property
     def left_out(self) -> DataFrame:
-        """RMS force of what is left out, N and N m, and why."""
+        """RMS force (N, N m) of each part that is left out, by axis, and the reason."""
         rows = {part.name: [*part.rms, part.why] for part in self.left}
         return DataFrame.from_dict(rows, orient="index", columns=[*AXES, "why"])
 
@@ -223,7 +223,7 @@ class ShownExport:
 
 
 def _named(table: Table) -> DataFrame:
-    """With units in the columns' names."""
+    """Return the numbers of a table, with units in the names of the columns."""
     names = [f"{column.name} [{column.unit}]" for column in table.columns]
     return table.frame.set_axis(names, axis=1)
 
