@@ -8,8 +8,9 @@ import pytest
 
 from flown import observed
 from rovsim.benchmarks.blind.laws import carried
+from rovsim.core.odds import lr_statistic_of
 from rovsim.diagnosis.procedure import diagnose_train_runs
-from rovsim.diagnosis.selection.steady_current import prefer_steady
+from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.catalogue import Catalogue, built_in
@@ -19,7 +20,7 @@ from rovsim.dynamics.effects.current import Current
 from rovsim.estimation.candidates import list_candidates
 from rovsim.estimation.observer.drifting_current import MIN_LR_OF_DRIFT, MovingWater
 from rovsim.estimation.observer.filter_bank import FilterBank
-from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import FIRST_NOISE, CurrentPath, DriftingCurrent
 from rovsim.estimation.observer.random_walk import list_terms
 from rovsim.estimation.sensitivities import linearise_candidates
@@ -118,14 +119,18 @@ def test_what_wanders_leaves_the_disturbance_its_own(tmp_path):
     assert (noise.disturbance_std[:2] > 0.8 * calm.disturbance_std[:2]).all()
 
 
-def wander(bank, base, noise, rate):
-    """Where a search for a current begins, under a current that wanders."""
+def look_for_current(bank, base, noise):
+    """Where a search for a steady current begins, under that noise."""
     listed = [
         c for c in list_candidates(bank.runs, built_in(), base.vehicle) if c.effect is Current
     ]
     known = linearise_candidates(bank, Hypothesis(base), listed)
-    columns = WhiteColumns(bank, known, replace(noise, drift=DriftingCurrent(rate)))
-    return SearchWorkspace(columns, SearchSettings())
+    return SearchWorkspace(WhiteColumns(bank, known, noise), SearchSettings())
+
+
+def wander(bank, base, noise, rate):
+    """The same, under a current that wanders."""
+    return look_for_current(bank, base, replace(noise, drift=DriftingCurrent(rate)))
 
 
 @pytest.mark.parametrize(
@@ -142,6 +147,24 @@ def test_a_steady_current_takes_the_place_of_one_that_hardly_wanders(tmp_path, h
     assert [term.id for term in found.hypothesis.terms] == steady * ["current"]
     if steady:
         assert abs(found.hypothesis.model.effects[-1]["north"] - 0.1) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("hidden", "steady"),
+    [(hide("current", north=0.02), True), (hide("current_drift", rate=0.004), False)],
+    ids=["steady", "wandering"],
+)
+def test_a_current_that_wanders_slowly_takes_the_place_of_a_steady_one(tmp_path, hidden, steady):
+    base, runs = observed(tmp_path, duration=60.0, effects=(hidden,))
+    bank, noise = settled_noise(base, runs)
+    calm = look_for_current(bank, base, noise)
+    accepted = calm.fit(Hypothesis(base, (Term(Current(), Current.telling),)))
+    workspace, fit, rivals = challenge_steady(calm, accepted)
+    assert (workspace.noise.drift is None) is steady
+    assert [term.id for term in fit.hypothesis.terms] == steady * ["current"]
+    assert [rival.effect for rival in rivals] == steady * ["current_drift"]
+    if steady:  # odds of a hundred at least
+        assert rivals[0].deviance_difference > lr_statistic_of(odds=100.0)
 
 
 def test_the_noise_beside_it_is_that_of_what_it_leaves(tmp_path):

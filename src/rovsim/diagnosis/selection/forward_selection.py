@@ -12,7 +12,7 @@ from rovsim.diagnosis.selection.promising import (
 )
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
-from rovsim.diagnosis.selection.steady_current import prefer_steady
+from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
 from rovsim.diagnosis.selection.thresholds import place_thresholds
 from rovsim.diagnosis.selection.vehicle_file.loose_file import Contender, LooseFile
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
@@ -186,8 +186,10 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     current = change_mode(workspace, current)
     verdict = judge_beside_file(workspace, prefer_file(workspace, current))
     current = free_shape(workspace, fix_gain(workspace, verdict.fit))
+    workspace, current, wandering = challenge_steady(workspace, current)
     current, rivals = try_swaps(workspace, current, workspace.settings.trials)
-    return SearchResult(workspace, current, keep_likeliest([*rivals, *verdict.rivals]))
+    every = [*rivals, *verdict.rivals, *wandering]
+    return SearchResult(workspace, current, keep_likeliest(every))
 
 
 def _add_and_swap(
