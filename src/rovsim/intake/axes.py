@@ -61,17 +61,17 @@ def find_axes(
     worlds, bodies = own.world, own.body
     if own.fixed:
         return Axes(worlds[0], bodies[0], own.said)
-    body, said = _body(_upright(turned, tracks, worlds), bodies)
+    body, reason = _body(_upright(turned, tracks, worlds), bodies)
     if not body:
         body, by_force = _by_force(tracks, bodies)
-        said = by_force or said
+        reason = by_force or reason
     pairs = _level(tracks, worlds, bodies)
     if body:
-        possible = {world for world, other in pairs if other == body}
+        possible = {world for world, body_axes in pairs if body_axes == body}
         if len(possible) == 1:
             world = possible.pop()
-            return Axes(world, body, f"{said}; the vehicle then swims upright on average")
-        return Axes(_by_depth(tracks, worlds), body, said)
+            return Axes(world, body, f"{reason}; the vehicle then swims upright on average")
+        return Axes(_by_depth(tracks, worlds), body, reason)
     world = _by_depth(tracks, worlds)
     match = [pair for pair in pairs if pair[0] == world]
     if world and len(match) == 1:
@@ -80,7 +80,7 @@ def find_axes(
         )
     if own.usual in pairs:
         return Axes(*own.usual, own.said)
-    return Axes(world, "", said, tuple(pairs))
+    return Axes(world, "", reason, tuple(pairs))
 
 
 def _upright(
@@ -91,8 +91,10 @@ def _upright(
     if mean is None:
         return list(turned)
     vertical = [np.abs(DOWN[world]) @ mean for world in worlds]
-    kept = [(s, axes) for s, axes in turned if any(abs(v @ axes[:, 2]) > LEVEL for v in vertical)]
-    return kept or list(turned)
+    upright = [
+        (s, axes) for s, axes in turned if any(abs(v @ axes[:, 2]) > LEVEL for v in vertical)
+    ]
+    return upright or list(turned)
 
 
 def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
@@ -120,13 +122,14 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
             name,
             f"the commanded motion shows along them (likeness {score:.2f}, next {rival:.2f})",
         )
-    told = [
+    directions = [
         f"{word} shows along {_named(axes[:, k])}"
         for k, word in enumerate(("surge", "sway", "heave"))
     ]
     return "", (
-        f"commanded {', '.join(told)} of the file's body (likeness {score:.2f}): the rigid body is "
-        "turned: make it anew along the vehicle's axes, or write the columns of a csv along them"
+        f"commanded {', '.join(directions)} of the file's body (likeness {score:.2f}): the rigid "
+        "body is turned: make it anew along the vehicle's axes, or write the columns of a csv "
+        "along them"
     )
 
 
@@ -141,14 +144,14 @@ def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]
     Returns:
         The name of the axes, empty where this does not tell, and a sentence on why.
     """
-    found = [
+    forces = [
         t.export.channels["specific_force"].value
         for t in tracks
         if "specific_force" in t.export.channels
     ]
-    if not found:
+    if not forces:
         return "", ""
-    up = float(np.nanmean(np.vstack(found)[:, 2]))
+    up = float(np.nanmean(np.vstack(forces)[:, 2]))
     name = "flu" if up > RESTING else "frd" if up < -RESTING else ""
     return (name if name in bodies else ""), f"specific force along z is {up:+.1f} m/s² on average"
 
@@ -185,8 +188,8 @@ def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
         depth = track.export.channels.get("depth")
         if depth is None or not track.posed:
             continue
-        seen = track.export.found
-        z = np.interp(depth.time, track.export.time[seen], track.export.position[seen, 2])
+        tracked = track.export.found
+        z = np.interp(depth.time, track.export.time[tracked], track.export.position[tracked, 2])
         if min(np.std(z), np.std(depth.value)) > 0:
             signs.append(float(np.corrcoef(z, depth.value[:, 0])[0, 1]))
     if not signs or min(abs(s) for s in signs) < CLOSE or len({s > 0 for s in signs}) > 1:

@@ -46,10 +46,10 @@ def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Fou
             common[0], "" if len(names) == 1 else "the only one in all files", (common[0],)
         )
     scores = {name: score(name) for name in common}
-    first, second = sorted(common, key=lambda name: -scores[name])[:2]
-    if scores[first] >= MIN_CORRELATION and scores[first] > AHEAD * scores[second]:
-        said = f"of {', '.join(common)} the one that follows the commands ({scores[first]:.2f})"
-        return FoundBody(first, said, tuple(common))
+    best, second = sorted(common, key=lambda name: -scores[name])[:2]
+    if scores[best] >= MIN_CORRELATION and scores[best] > AHEAD * scores[second]:
+        reason = f"of {', '.join(common)} the one that follows the commands ({scores[best]:.2f})"
+        return FoundBody(best, reason, tuple(common))
     moving = [name for name in common if any(_moves(m, name) for m in motions)]
     if len(moving) == 1:
         return FoundBody(

@@ -48,14 +48,14 @@ def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterat
         axes: rotation (3, 3) from FRD into the file's body axes.
         told: positions of runs that a message exists for already; they are skipped.
     """
-    runs = {k: one for k, one in facts.choice.runs.items() if k not in told}
+    runs = {k: correlation for k, correlation in facts.choice.runs.items() if k not in told}
     starts = {k: find_start(facts.pairs[k].motion.path) for k in runs}
-    if said := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
-        yield f"all runs: {said}"
+    if remark := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
+        yield f"all runs: {remark}"
         return
-    for k, one in runs.items():
-        if said := tell_following(one, axes, starts[k]):
-            yield f"{facts.ids[k]}: {said}"
+    for k, correlation in runs.items():
+        if remark := tell_following(correlation, axes, starts[k]):
+            yield f"{facts.ids[k]}: {remark}"
 
 
 def check_attitudes(
@@ -82,8 +82,8 @@ def check_attitudes(
     caused = log.caused(fit)
     if caused is None or not motion.track.posed or motion.track.export.nu is not None:
         return ""
-    found = find_convention(even_poses(motion.track.export), caused, axes, lag, angles)
-    return "" if found is None else str(found)
+    convention = find_convention(even_poses(motion.track.export), caused, axes, lag, angles)
+    return "" if convention is None else str(convention)
 
 
 def _alike(a: Array, b: Array) -> Array:
@@ -91,14 +91,16 @@ def _alike(a: Array, b: Array) -> Array:
 
     Only rows count in which every measured column has a value.
     """
-    here = np.isfinite(a).any(axis=0) & np.isfinite(b).any(axis=0)
-    found = np.full(a.shape[1], np.nan)
-    a, b = a[:, here], b[:, here]
-    known = np.isfinite(a).all(axis=1) & np.isfinite(b).all(axis=1)
-    if known.any() and here.any():
-        a, b = (x[known] - x[known].mean(axis=0) for x in (a, b))
-        found[here] = (a * b).mean(axis=0) / np.maximum(a.std(axis=0) * b.std(axis=0), 1e-12)
-    return found
+    measured = np.isfinite(a).any(axis=0) & np.isfinite(b).any(axis=0)
+    correlation = np.full(a.shape[1], np.nan)
+    a, b = a[:, measured], b[:, measured]
+    complete = np.isfinite(a).all(axis=1) & np.isfinite(b).all(axis=1)
+    if complete.any() and measured.any():
+        a, b = (x[complete] - x[complete].mean(axis=0) for x in (a, b))
+        correlation[measured] = (a * b).mean(axis=0) / np.maximum(
+            a.std(axis=0) * b.std(axis=0), 1e-12
+        )
+    return correlation
 
 
 def check_order(
@@ -127,13 +129,13 @@ def check_order(
         label: _score(nu, measured.time - lag, Commands(commands.time, value, "thruster"), fit)
         for label, value in _orders(commands.value, fit.columns)
     }
-    own = scores.pop("")
+    score_unchanged = scores.pop("")
     label = max(scores, key=lambda key: scores[key])
-    if scores[label] < max(own + BETTER, MIN_CORRELATION):
+    if scores[label] < max(score_unchanged + BETTER, MIN_CORRELATION):
         return ""
     return (
         f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "
-        f"against {own:.2f}). Check the order and the signs of 'commands.columns'"
+        f"against {score_unchanged:.2f}). Check the order and the signs of 'commands.columns'"
     )
 
 

@@ -49,23 +49,23 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     if not fits:
         return Choice(None, "no vehicle file has as many commands", (), (), {})
     compared = {fit.name: _compared(fit, pairs) for fit in fits}
-    turns = {name: turned(found) for name, found in compared.items() if found}
+    turns = {name: turned(correlations) for name, correlations in compared.items() if correlations}
     scores = {name: _score(compared[name], turns[name]) for name in turns}
     ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
-    first = _first(ordered, scores)
-    told = Choice(
+    best = _first(ordered, scores)
+    undecided = Choice(
         None,
         _told(ordered, scores),
         tuple(ordered),
-        tuple(turns.get(first.name, [])),
-        compared[first.name],
-        first,
+        tuple(turns.get(best.name, [])),
+        compared[best.name],
+        best,
     )
-    rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, first)]
-    known = scores.get(first.name, 0.0) >= MIN_CORRELATION
-    alone = scores.get(first.name, 0.0) >= AHEAD * max(rivals, default=0.0)
-    named = first.by_name and len(ordered) == 1
-    return replace(told, fit=first) if named or (known and alone) else told
+    rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, best)]
+    likely = scores.get(best.name, 0.0) >= MIN_CORRELATION
+    ahead = scores.get(best.name, 0.0) >= AHEAD * max(rivals, default=0.0)
+    by_name = best.by_name and len(ordered) == 1
+    return replace(undecided, fit=best) if by_name or (likely and ahead) else undecided
 
 
 def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]) -> float:
@@ -74,7 +74,7 @@ def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Arra
     The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
     standard deviations.
     """
-    ratios = np.array([one.strength for one in found.values()])
+    ratios = np.array([correlation.strength for correlation in found.values()])
     return turns[0][0] * float(np.mean(2.0 * ratios / (1.0 + ratios**2)))
 
 
@@ -82,15 +82,17 @@ def _first(ordered: Sequence[VehicleMatch], scores: dict[str, float]) -> Vehicle
     """Return the best vehicle, or the default one if it has that hull and is nearly as good."""
     best = ordered[0]
     for fit in ordered:
-        near = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
-        if near and fit.name == default_vehicle() and _one_hull(fit, best):
+        close = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
+        if close and fit.name == default_vehicle() and _one_hull(fit, best):
             return fit
     return best
 
 
 def _compared(fit: VehicleMatch, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
-    found = {k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)}
-    return {k: one for k, one in found.items() if one is not None and one.excited.any()}
+    correlations = {
+        k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)
+    }
+    return {k: c for k, c in correlations.items() if c is not None and c.excited.any()}
 
 
 def _one_hull(a: VehicleMatch, b: VehicleMatch) -> bool:
@@ -101,5 +103,5 @@ def _one_hull(a: VehicleMatch, b: VehicleMatch) -> bool:
 def _told(fits: Sequence[VehicleMatch], scores: dict[str, float]) -> str:
     if not scores:
         return f"the columns fit {', '.join(fit.name for fit in fits)}"
-    told = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]
-    return f"the columns fit, and the motion is like that of (likeness) {', '.join(told)}"
+    vehicles = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]
+    return f"the columns fit, and the motion is like that of (likeness) {', '.join(vehicles)}"

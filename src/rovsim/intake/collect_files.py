@@ -48,24 +48,24 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
         RovsimError: a message for each file that was named and cannot be used.
         BadInput: no motion in any, or motions of several formats.
     """
-    named, inside = gather(paths)
-    every, refused = _look_into_all([*named, *inside], scratch)
-    asked = [path for path in inside if isinstance(refused.get(path), ASKED)]
-    bad = [str(refused[path]) for path in (*named, *asked) if path in refused]
+    recordings, inside = gather(paths)
+    by_path, refused = _look_into_all([*recordings, *inside], scratch)
+    ambiguous = [path for path in inside if isinstance(refused.get(path), ASKED)]
+    bad = [str(refused[path]) for path in (*recordings, *ambiguous) if path in refused]
     if bad:
         raise RovsimError("\n".join(bad))
-    found = list(every.values())
+    contents = list(by_path.values())
     left_out = tuple(
         f"{path.name}{_place(refused[path])} is left out: {refused[path].found}. "
         f"{refused[path].remedy}".rstrip()
         for path in inside
         if path in refused
     )
-    motions = tuple(one for one in found if one.tracks)
-    logs = tuple(one for one in found if not one.tracks)
+    motions = tuple(c for c in contents if c.tracks)
+    logs = tuple(c for c in contents if not c.tracks)
     _check(motions, logs, list(refused.values()), paths)
     runs, apart = put_together(motions)
-    unknown = [f"{one.named.name}: {one.unknown}" for one in found if one.unknown]
+    unknown = [f"{c.named.name}: {c.unknown}" for c in contents if c.unknown]
     unknown += [
         f"{path}: {refused[path].found}"
         for path in inside
@@ -88,24 +88,24 @@ def _look_into_all(
     Returns:
         What each file holds, in the order of `paths`, and the errors of the others.
     """
-    found: dict[Path, Contents] = {}
+    contents: dict[Path, Contents] = {}
     refused: dict[Path, BadInput] = {}
 
     def look_into(path: Path, units: Mapping[Key, Unit]) -> None:
         place = scratch / str(paths.index(path))
         place.mkdir(parents=True, exist_ok=True)
         try:
-            found[path] = look(path, place, units)
+            contents[path] = look(path, place, units)
             refused.pop(path, None)
         except BadInput as error:
             refused[path] = error
-            found.pop(path, None)
+            contents.pop(path, None)
 
     for path in counted(paths, "looking into the files"):
         look_into(path, {})
-    for path, units in list_others(found, refused).items():
+    for path, units in list_others(contents, refused).items():
         look_into(path, units)
-    return {path: found[path] for path in paths if path in found}, refused
+    return {path: contents[path] for path in paths if path in contents}, refused
 
 
 def _check(
@@ -118,11 +118,13 @@ def _check(
     if not motions:
         raise _no_motion(logs, refused, where)
     formats: dict[str, list[str]] = {}
-    for one in motions:
-        formats.setdefault(one.format, []).append(one.named.name)
+    for motion in motions:
+        formats.setdefault(motion.format, []).append(motion.named.name)
     if len(formats) > 1:
-        each = (f"{name}: {', '.join(files[:MOST_TOLD])}" for name, files in formats.items())
-        listed = "; ".join(each)
+        descriptions = (
+            f"{name}: {', '.join(files[:MOST_TOLD])}" for name, files in formats.items()
+        )
+        listed = "; ".join(descriptions)
         raise BadInput(
             f"motions of {len(formats)} formats ({listed})",
             where=where,
@@ -133,23 +135,23 @@ def _check(
 
 def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: object) -> BadInput:
     """Make the error of files without a motion: why each was refused, and what may help."""
-    held = "no recording"
+    content = "no recording"
     if logs:
-        held = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
+        content = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
     alike: dict[tuple[str, str], list[str]] = {}
     for error in refused:
         name = Path(error.where.partition(", ")[0]).name
         alike.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
-    told = [
-        f"{', '.join(names[:MOST_TOLD])}: {found}"
-        for (found, _), names in [*alike.items()][:MOST_TOLD]
+    reasons = [
+        f"{', '.join(names[:MOST_TOLD])}: {problem}"
+        for (problem, _), names in [*alike.items()][:MOST_TOLD]
     ]
     remedies = [remedy for _, remedy in alike if remedy]
     remedies += [note for log in logs for note in log.notes]
     if not remedies:
         remedies = ["Name the export of the motion capture, the bag or the log as well."]
     return BadInput(
-        held + (f" ({'; '.join(told)})" if told else ""),
+        content + (f" ({'; '.join(reasons)})" if reasons else ""),
         where=where,
         expected="at least one file that tells how the vehicle moved",
         remedy=" ".join([*dict.fromkeys(remedies)][:MOST_TOLD]),

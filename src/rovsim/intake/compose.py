@@ -33,8 +33,8 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
     Raises:
         RovsimError: files that cannot be used, a message for each.
     """
-    found = collect_files(paths, scratch)
-    facts, places, draft = find_facts(found), Places.beside(found, out), Draft()
+    collected = collect_files(paths, scratch)
+    facts, places, draft = find_facts(collected), Places.beside(collected, out), Draft()
     draft.content["name"] = places.name
     sections.vehicle(facts, draft)
     if places.folder:
@@ -44,46 +44,52 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
     sections.commands(facts, draft)
     runs(facts, places, draft)
     tell_unread(facts, draft)
-    notes = dict.fromkeys(note for one in (*found.motions, *found.logs) for note in one.notes)
+    notes = dict.fromkeys(
+        note for contents in (*collected.motions, *collected.logs) for note in contents.notes
+    )
     return CampaignProposal(
         draft.content,
         {place: tuple(lines) for place, lines in draft.comments.items()},
         tuple(draft.questions),
-        (*_lines(facts), *notes, *list_unread(facts, draft), *found.left_out),
-        (*found.apart, *_checked(facts)),
+        (*_lines(facts), *notes, *list_unread(facts, draft), *collected.left_out),
+        (*collected.apart, *_checked(facts)),
         places.copies,
     )
 
 
 def _lines(facts: Facts) -> Iterator[str]:
     """Describe each run in a line: its files, timing, and what its motion lacks."""
-    for name, one in zip(facts.ids, facts.pairs, strict=True):
-        log = f" with {one.log.path.name}" if one.log and one.log.path != one.motion.path else ""
-        timing = Timing.of(one.motion.track.export.time)
-        yield f"{name}: {one.motion.name}{log}, {timing}{missing(one)}"
+    for name, pair in zip(facts.ids, facts.pairs, strict=True):
+        log = (
+            f" with {pair.log.path.name}" if pair.log and pair.log.path != pair.motion.path else ""
+        )
+        timing = Timing.of(pair.motion.track.export.time)
+        yield f"{name}: {pair.motion.name}{log}, {timing}{missing(pair)}"
 
 
 def _unused(facts: Facts) -> Iterator[str]:
     """Tell of files that hold commands, or may hold some, and that no run uses."""
     if not facts.logs:
-        for one in facts.collected.unknown:
-            yield f"not used as commands: {one}. The runs say 'commands: none'"
-    used = [one.log for one in facts.pairs]
-    if not any(one.options for one in facts.pairs):
-        yield from (f"{log.path.name} belongs to no run" for log in facts.logs if log not in used)
+        for item in facts.collected.unknown:
+            yield f"not used as commands: {item}. The runs say 'commands: none'"
+    used_logs = [item.log for item in facts.pairs]
+    if not any(item.options for item in facts.pairs):
+        yield from (
+            f"{log.path.name} belongs to no run" for log in facts.logs if log not in used_logs
+        )
 
 
 def _checked(facts: Facts) -> Iterator[str]:
     """Tell of all that looks wrong in the files."""
-    for name, one in zip(facts.ids, facts.pairs, strict=True):
-        if reason := checks.unusable(one.motion):
+    for name, item in zip(facts.ids, facts.pairs, strict=True):
+        if reason := checks.unusable(item.motion):
             yield f"{name} will not be used: {reason}"
-    every = (*facts.motions, *facts.collected.logs)
+    sources = (*facts.motions, *facts.collected.logs)
     yield from (
-        f"{file.named.name}: {d}" for one in every for file in one.files for d in file.doubts
+        f"{file.named.name}: {d}" for item in sources for file in item.files for d in file.doubts
     )
-    for name, one in zip(facts.ids, facts.pairs, strict=True):
-        yield from (f"{name}: {said}" for said in doubt_velocities(one.motion.track.export))
+    for name, item in zip(facts.ids, facts.pairs, strict=True):
+        yield from (f"{name}: {doubt}" for doubt in doubt_velocities(item.motion.track.export))
     yield from _unused(facts)
     if facts.choice.likeliest is not None and facts.choice.runs:
         yield from _against_commands(facts, facts.choice.likeliest)
@@ -93,15 +99,17 @@ def _against_commands(facts: Facts, fit: VehicleMatch) -> Iterator[str]:
     """Tell of runs whose motion does not go with the motion that a vehicle's commands cause."""
     runs, body = facts.choice.runs, facts.axes.body
     axes = BODY[body] if body else facts.choice.turned[0][1]
-    most = max(runs, key=lambda n: int(runs[n].excited.sum()))
-    told = dict(_by_convention(facts, fit, axes, most))
+    most_excited = max(runs, key=lambda n: int(runs[n].excited.sum()))
+    remarks = dict(_by_convention(facts, fit, axes, most_excited))
     if body and facts.choice.fit:
-        yield from checks.check_clocks(facts, axes, told)
-    log = facts.pairs[most].shown
-    if log and facts.choice.fit and not told:
-        lag = runs[most].best(axes)[1]
-        told[most] = checks.check_order(facts.pairs[most].motion, log, fit, axes, lag)
-    yield from (f"{facts.ids[k]}: {said}" for k, said in told.items() if said)
+        yield from checks.check_clocks(facts, axes, remarks)
+    log = facts.pairs[most_excited].shown
+    if log and facts.choice.fit and not remarks:
+        lag = runs[most_excited].best(axes)[1]
+        remarks[most_excited] = checks.check_order(
+            facts.pairs[most_excited].motion, log, fit, axes, lag
+        )
+    yield from (f"{facts.ids[k]}: {remark}" for k, remark in remarks.items() if remark)
 
 
 def _by_convention(
@@ -117,11 +125,11 @@ def _by_convention(
     """
     possible = [axes] if facts.axes.body else rotations()
     angles = "y_up" not in mocap_readers()[facts.motions[0].format].axes.world
-    for k, found in facts.choice.runs.items():
-        score, lag = found.best(axes)
-        one, unlike = facts.pairs[k], score < MIN_CORRELATION
-        if one.shown and (k == most or unlike):
+    for k, correlation in facts.choice.runs.items():
+        score, lag = correlation.best(axes)
+        pair, unlike = facts.pairs[k], score < MIN_CORRELATION
+        if pair.shown and (k == most or unlike):
             late = 0.0 if unlike else lag
-            said = checks.check_attitudes(one.motion, one.shown, fit, possible, late, angles)
-            if said:
-                yield k, said
+            remark = checks.check_attitudes(pair.motion, pair.shown, fit, possible, late, angles)
+            if remark:
+                yield k, remark

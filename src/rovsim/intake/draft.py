@@ -42,6 +42,6 @@ class Draft:
         Returns:
             The value that stands there until somebody answers.
         """
-        meant = answers if isinstance(answers, Mapping) else dict.fromkeys(answers, "")
-        self.questions.append(OpenQuestion(place, asks, tuple(meant.items()), free))
+        meanings = answers if isinstance(answers, Mapping) else dict.fromkeys(answers, "")
+        self.questions.append(OpenQuestion(place, asks, tuple(meanings.items()), free))
         return ANSWER

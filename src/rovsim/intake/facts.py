@@ -57,7 +57,7 @@ class Facts:
     @property
     def log(self) -> CommandFile | None:
         """The first log that a run uses, else the first of all, as an example of their columns."""
-        paired = [one.log for one in self.pairs if one.log is not None]
+        paired = [p.log for p in self.pairs if p.log is not None]
         return next(iter([*paired, *self.logs]), None)
 
     @property
@@ -80,14 +80,18 @@ def find_facts(found: CollectedFiles) -> Facts:
 
     body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
     motions = [
-        MotionFile(one.named, track_of(one, body.name), tuple(file.named for file in one.beside))
-        for one in found.motions
+        MotionFile(
+            contents.named,
+            track_of(contents, body.name),
+            tuple(file.named for file in contents.beside),
+        )
+        for contents in found.motions
     ]
     pairs = pair(motions, logs, score)
     choice = _supposing(logs, choose(fits, pairs) if fits else _no_choice(logs))
-    known = body.name or body.choices == ("",)
-    own = mocap_readers()[found.motions[0].format].axes
-    axes = find_axes(own, [m.track for m in motions], choice.turned if known else ())
+    body_known = body.name or body.choices == ("",)
+    file_axes = mocap_readers()[found.motions[0].format].axes
+    axes = find_axes(file_axes, [m.track for m in motions], choice.turned if body_known else ())
     ids = run_ids(list_stems(found.motions))
     return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
 
@@ -100,21 +104,25 @@ def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], scor
     scores = []
     for contents in found.motions:
         motion = MotionFile(contents.named, track_of(contents, name))
-        own = [log for log in logs if log.path == contents.named] or logs
-        scores.append(max((score(motion, log) for log in own), default=0.0))
+        candidates = [log for log in logs if log.path == contents.named] or logs
+        scores.append(max((score(motion, log) for log in candidates), default=0.0))
     return float(np.mean(scores))
 
 
 def _logs(found: CollectedFiles) -> list[CommandFile]:
     """List the logs of commands: files of their own, else those in the files of the motions."""
-    alone = [CommandFile(one.named, one.drives[0]) for one in found.logs if one.drives]
+    alone = [
+        CommandFile(contents.named, contents.drives[0])
+        for contents in found.logs
+        if contents.drives
+    ]
     if alone:
         return alone
     inside = []
-    for one in (file for motion in found.motions for file in motion.files):
-        moving = [drive for drive in one.drives if drive.moves]
-        for drive in (moving or list(one.drives))[:1]:
-            inside.append(CommandFile(one.named, drive))
+    for contents in (file for motion in found.motions for file in motion.files):
+        moving = [drive for drive in contents.drives if drive.moves]
+        for drive in (moving or list(contents.drives))[:1]:
+            inside.append(CommandFile(contents.named, drive))
     return inside
 
 
@@ -148,5 +156,5 @@ def _supposing(logs: Sequence[CommandFile], choice: Choice) -> Choice:
 
 
 def _no_choice(logs: Sequence[CommandFile]) -> Choice:
-    said = "no vehicle file takes such commands" if logs else "there are no commands that tell"
-    return Choice(None, said, (), (), {})
+    reason = "no vehicle file takes such commands" if logs else "there are no commands that tell"
+    return Choice(None, reason, (), (), {})

@@ -12,7 +12,7 @@ GUESS = "guess: "
 
 def list_taken(proposal: CampaignProposal) -> list[str]:
     """List vehicle, axes and commands with what their words mean; without what is still asked."""
-    return [f"{name}: {told}" for name, told in _taken(proposal.content) if told]
+    return [f"{name}: {meaning}" for name, meaning in _taken(proposal.content) if meaning]
 
 
 def _taken(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -47,20 +47,20 @@ def list_guesses(
         proposal: whose comments mark the guesses.
         topics: what a place is called in a line, where not by its key.
     """
-    told: list[str] = []
+    guesses: list[str] = []
     runs: dict[str, list[str]] = {}  # ids of the runs that have a reason
     for place, lines in proposal.comments.items():
         for line in lines:
-            why = line.removeprefix(GUESS)
-            if line == why:
+            reason = line.removeprefix(GUESS)
+            if line == reason:
                 continue
             if place.startswith("runs."):
-                runs.setdefault(why, []).append(_run(proposal, place))
+                runs.setdefault(reason, []).append(_run(proposal, place))
             else:
-                told.append(f"{topics.get(place, place)}: {_value(proposal, place)}{why}")
-    for why, names in runs.items():
-        told.append(f"Run{'s' if len(names) > 1 else ''} {listed(names)}: {why}")
-    return told
+                guesses.append(f"{topics.get(place, place)}: {_value(proposal, place)}{reason}")
+    for reason, names in runs.items():
+        guesses.append(f"Run{'s' if len(names) > 1 else ''} {listed(names)}: {reason}")
+    return guesses
 
 
 def _run(proposal: CampaignProposal, place: str) -> str:
@@ -79,5 +79,5 @@ def _find(proposal: CampaignProposal, place: str) -> Any:
 def _value(proposal: CampaignProposal, place: str) -> str:
     value = _find(proposal, place)
     is_list = isinstance(value, list) and value and isinstance(value[0], str)
-    told = ", ".join(value) if is_list else value
-    return f"{told}; " if isinstance(told, str) else ""
+    text = ", ".join(value) if is_list else value
+    return f"{text}; " if isinstance(text, str) else ""

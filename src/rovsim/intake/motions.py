@@ -50,8 +50,8 @@ class MotionFile:
         """
         if len(self.track.export.time) < 2:
             return None
-        found = velocities(self.track.export)
-        return found if np.isfinite(found.nu).any() else None
+        estimate = velocities(self.track.export)
+        return estimate if np.isfinite(estimate.nu).any() else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,10 +71,10 @@ class CommandFile:
             Times (m,) in s and body velocities (m, 6) in FRD, m/s and rad/s; None where the vehicle
             cannot take such commands.
         """
-        known: dict = self._caused  # type: ignore[attr-defined]
-        if fit.name not in known:
-            known[fit.name] = self._velocity(fit)
-        return known[fit.name]
+        cache: dict = self._caused  # type: ignore[attr-defined]
+        if fit.name not in cache:
+            cache[fit.name] = self._velocity(fit)
+        return cache[fit.name]
 
     def _velocity(self, fit: VehicleMatch) -> tuple[Array, Array] | None:
         commands = as_logged(self.drive, fit, self.path)
@@ -115,7 +115,7 @@ def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
         first.
     """
     scored = [
-        (float(np.mean([one.best(axes)[0] for one in found.values()])), axes)
+        (float(np.mean([correlation.best(axes)[0] for correlation in found.values()])), axes)
         for axes in rotations()
     ]
     return sorted(scored, key=lambda pair: -pair[0])

@@ -58,10 +58,10 @@ def _without_role(stem: str) -> str:
 
 
 def _without(words: re.Pattern[str], stem: str) -> str:
-    left = stem
-    while (shorter := words.sub("", left)) != left:
-        left = shorter
-    return left.strip(" _-.")
+    name = stem
+    while (shorter := words.sub("", name)) != name:
+        name = shorter
+    return name.strip(" _-.")
 
 
 def _short(stem: str) -> str:
@@ -70,8 +70,8 @@ def _short(stem: str) -> str:
 
 def _safe(name: str) -> str:
     """Make a name that can be part of a file name, as campaign.yaml demands; may be empty."""
-    whole = "".join(c if is_name(c) else "-" for c in name)
-    return re.sub(r'[/\\:*?"<>|{}]', "-", whole).strip().lstrip(".-~ ")[:80].strip()
+    text = "".join(c if is_name(c) else "-" for c in name)
+    return re.sub(r'[/\\:*?"<>|{}]', "-", text).strip().lstrip(".-~ ")[:80].strip()
 
 
 def campaign_name(folder: str) -> str:
@@ -81,5 +81,5 @@ def campaign_name(folder: str) -> str:
 
 def said_control(name: str) -> str | None:
     """Return `3dof` or `6dof` where a name holds one of them; None where it holds none or both."""
-    said = {word.lower() for word in re.findall(r"[36]dof", name, re.IGNORECASE)}
-    return said.pop() if len(said) == 1 else None
+    controls = {word.lower() for word in re.findall(r"[36]dof", name, re.IGNORECASE)}
+    return controls.pop() if len(controls) == 1 else None

@@ -28,19 +28,21 @@ def list_others(
     Raises:
         BadInput: two files tell two units for columns of the same names.
     """
-    told: dict[Key, list[tuple[Path, Unit]]] = defaultdict(list)
-    for path, one in found.items():
-        for key, unit in one.units.items():
-            told[key].append((path, unit))
-    again: dict[Path, dict[Key, Unit]] = defaultdict(dict)
-    for key, units in told.items():
+    by_key: dict[Key, list[tuple[Path, Unit]]] = defaultdict(list)
+    for path, contents in found.items():
+        for key, unit in contents.units.items():
+            by_key[key].append((path, unit))
+    units_by_path: dict[Path, dict[Key, Unit]] = defaultdict(dict)
+    for key, units in by_key.items():
         if len({u.factor for _, u in units if u.sure}) > 1 and not any(u.shared for _, u in units):
             continue  # such as times: each file may have its own unit
-        first, unit = _first(key, units)
-        others = [path for path, own in units if unit.sure and own.factor != unit.factor]
-        for path in (*others, *_asking(key, refused, unit.sure)):
-            again[path][key] = _as_in(first, unit)
-    return dict(again)
+        source, unit = _first(key, units)
+        differing = [
+            path for path, file_unit in units if unit.sure and file_unit.factor != unit.factor
+        ]
+        for path in (*differing, *_asking(key, refused, unit.sure)):
+            units_by_path[path][key] = _as_in(source, unit)
+    return dict(units_by_path)
 
 
 def _asking(key: Key, refused: Mapping[Path, BadInput], sure: bool) -> list[Path]:
@@ -60,9 +62,9 @@ def _first(key: Key, units: list[tuple[Path, Unit]]) -> tuple[Path, Unit]:
     """
     sure = {unit.factor: (path, unit) for path, unit in reversed(units) if unit.sure}
     if len(sure) > 1:
-        said = " and ".join(f"{_short(unit)} in {path.name}" for path, unit in sure.values())
+        listing = " and ".join(f"{_short(unit)} in {path.name}" for path, unit in sure.values())
         raise BadInput(
-            f"the columns {', '.join(key)} are{said}, by their size",
+            f"the columns {', '.join(key)} are{listing}, by their size",
             where="the files",
             expected="one unit for columns of one name",
             remedy="Rename these columns after their units.",

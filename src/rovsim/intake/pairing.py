@@ -54,9 +54,9 @@ def pair(
         logs: of commands.
         score: the correlation of a motion with what a log would cause, 0 where unknown.
     """
-    own = {log.path: log for log in logs}
-    if all(motion.path in own for motion in motions):
-        return [Pair(m, own[m.path], "in the same file") for m in motions]
+    by_path = {log.path: log for log in logs}
+    if all(motion.path in by_path for motion in motions):
+        return [Pair(m, by_path[m.path], "in the same file") for m in motions]
     if not logs:
         return [Pair(m, None, "") for m in motions]
     table = np.array([[score(m, log) for log in logs] for m in motions])
@@ -78,13 +78,13 @@ def _by_content(table: Array) -> list[int | None]:
     Returns:
         For each motion the position of its log.
     """
-    found: list[int | None] = []
+    matches: list[int | None] = []
     for k, row in enumerate(table):
         best = int(np.argmax(row))
         rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
         sure = row[best] >= MIN_CORRELATION and row[best] >= AHEAD * max(rivals, default=0.0)
-        found.append(best if sure else None)
-    return found
+        matches.append(best if sure else None)
+    return matches
 
 
 def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
@@ -96,13 +96,13 @@ def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list
     Returns:
         For each motion the position of its log, None where names do not tell.
     """
-    found: list[int | None] = [None] * len(motions)
+    matches: list[int | None] = [None] * len(motions)
     for key in (_by_role, _by_sensor):
-        _add_by(key, motions, logs, found)
+        _add_by(key, motions, logs, matches)
     for k, log in _by_first_words(motions, logs):
-        found[k] = log if found[k] is None else found[k]
-    _add_by(_by_folder, motions, logs, found)
-    return found
+        matches[k] = log if matches[k] is None else matches[k]
+    _add_by(_by_folder, motions, logs, matches)
+    return matches
 
 
 def _add_by(
@@ -119,10 +119,10 @@ def _add_by(
         logs: of commands.
         found: position of each motion's log; changed in place.
     """
-    ours, theirs = ([key(x.path) for x in group] for group in (motions, logs))
-    for k, one in enumerate(ours):
-        if found[k] is None and one and ours.count(one) == theirs.count(one) == 1:
-            found[k] = theirs.index(one)
+    motion_keys, log_keys = ([key(x.path) for x in group] for group in (motions, logs))
+    for k, label in enumerate(motion_keys):
+        if found[k] is None and label and motion_keys.count(label) == log_keys.count(label) == 1:
+            found[k] = log_keys.index(label)
 
 
 def _by_first_words(
@@ -146,8 +146,8 @@ def _alike(one: str, other: str) -> int:
     ours, theirs = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
     pairs = zip(ours, theirs, strict=False)
     count = len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
-    left = "".join(ours[count:] + theirs[count:])
-    return 0 if re.search(r"\d", left) else count
+    remainder = "".join(ours[count:] + theirs[count:])
+    return 0 if re.search(r"\d", remainder) else count
 
 
 def _by_role(path: Path) -> str:
@@ -195,21 +195,23 @@ def _decided(
         clock: position of the log that the clocks speak for, if any.
     """
     if content is not None and name in (None, content):
-        how = f"its commands cause this motion (likeness {scores[content]:.2f})"
+        reason = f"its commands cause this motion (likeness {scores[content]:.2f})"
         return Pair(
-            motion, logs[content], how + (", and the names agree" if name is not None else "")
+            motion, logs[content], reason + (", and the names agree" if name is not None else "")
         )
     if content is not None and name is not None:
-        said = (
+        explanation = (
             f"by its name {logs[name].path.name}, but the motion is that of "
             f"{logs[content].path.name} (likeness {scores[content]:.2f} against {scores[name]:.2f})"
         )
-        return Pair(motion, None, said, (logs[content], logs[name]), logs[content])
-    for place, said in ((name, "by its name"), (clock, "the only log at that time")):
+        return Pair(motion, None, explanation, (logs[content], logs[name]), logs[content])
+    for place, explanation in ((name, "by its name"), (clock, "the only log at that time")):
         if place is not None:
             weak = f"; the motion does not show it (likeness {scores[place]:.2f})"
             return Pair(
-                motion, logs[place], said + (weak if 0 < scores[place] < MIN_CORRELATION else "")
+                motion,
+                logs[place],
+                explanation + (weak if 0 < scores[place] < MIN_CORRELATION else ""),
             )
     if len(logs) == 1:
         return Pair(motion, logs[0], "the only log of commands")

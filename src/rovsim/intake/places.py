@@ -36,16 +36,16 @@ class Places:
     def beside(found: CollectedFiles, out: Path) -> "Places":
         """Refer to collected files where they lie, and to copies where these will be written."""
         out = out.absolute()
-        every = [file for one in (*found.motions, *found.logs) for file in one.files]
-        files = [one.path.absolute() for one in every if one.original is None]
+        sources = [file for source in (*found.motions, *found.logs) for file in source.files]
+        files = [source.path.absolute() for source in sources if source.original is None]
         inside = all(file.is_relative_to(out) for file in files)
         base = out if inside else Path(os.path.commonpath([file.parent for file in files]))
         folder = "" if inside else _relative(base, out)
         if "$" in folder:  # would be read as an environment variable
             folder, base = "", out
         places = Places(campaign_name(out.name), folder, base, out)
-        for one in every:
-            places.names[one.named] = places._place(one)
+        for source in sources:
+            places.names[source.named] = places._place(source)
         return places
 
     def of(self, named: Path) -> str:

@@ -54,10 +54,10 @@ class CampaignProposal:
         Raises:
             BadInput: an answer is missing, or not among the choices.
         """
-        found = self.answered(answers)
-        for question in found.questions:
+        proposal = self.answered(answers)
+        for question in proposal.questions:
             raise _ask_for(question)
-        return found
+        return proposal
 
     def answered(self, answers: Mapping[str, str]) -> "CampaignProposal":
         """Return the proposal with some answers; questions without one stay open.
@@ -68,15 +68,15 @@ class CampaignProposal:
         Raises:
             BadInput: an answer is not among the choices.
         """
-        content, left = _copied(self.content), []
+        content, unanswered = _copied(self.content), []
         for question in self.questions:
             answer = answers.get(question.place, "").strip()
             if not answer:
-                left.append(question)
+                unanswered.append(question)
                 continue
             _check(question, answer)
             _put(content, question.place.split("."), answer)
-        return replace(self, content=content, questions=tuple(left))
+        return replace(self, content=content, questions=tuple(unanswered))
 
 
 def _ask_for(question: OpenQuestion) -> BadInput:
@@ -89,12 +89,12 @@ def _ask_for(question: OpenQuestion) -> BadInput:
 
 
 def _check(question: OpenQuestion, answer: str) -> None:
-    known = [value for value, _ in question.answers]
-    if not question.free and answer not in known:
+    choices = [value for value, _ in question.answers]
+    if not question.free and answer not in choices:
         raise BadInput(
             f"'{answer}'",
             where=question.place,
-            expected=f"one of {', '.join(known)}",
+            expected=f"one of {', '.join(choices)}",
             remedy="Choose one of them.",
         )
 

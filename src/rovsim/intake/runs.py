@@ -29,30 +29,32 @@ FIRST = "guess: several runs are in this file, one after the other; 'use' says w
 def runs(facts: Facts, places: Places, draft: Draft) -> None:
     """Write the section `runs` into the draft, with comments and questions."""
     entries = list_entries(facts)
-    controls = [_control(facts, one) for one in entries]
+    controls = [_control(facts, entry) for entry in entries]
     splits = split([control for control, _ in controls])
     draft.content["runs"] = []
-    for n, one in enumerate(entries):
-        draft.say(f"runs.{n}", *_remarks(facts, one))
+    for n, entry in enumerate(entries):
+        draft.say(f"runs.{n}", *_remarks(facts, entry))
         content = {
-            "id": one.id,
+            "id": entry.id,
             "control": controls[n][0],
             "split": splits[n],
-            "mocap": _measured(facts, one.file, places),
-            "commands": _log(facts, one, f"runs.{n}", places, draft),
+            "mocap": _measured(facts, entry.file, places),
+            "commands": _log(facts, entry, f"runs.{n}", places, draft),
         }
-        draft.content["runs"].append(content | ({"use": [[*one.use]]} if one.use else {}))
+        draft.content["runs"].append(content | ({"use": [[*entry.use]]} if entry.use else {}))
         draft.say(f"runs.{n}", controls[n][1])
-    held = "the last run of each control is a test run: nothing is ever fitted to it"
-    draft.say("runs", f"guess: {held if 'test' in splits else 'no test run, for there is one run'}")
+    reason = "the last run of each control is a test run: nothing is ever fitted to it"
+    draft.say(
+        "runs", f"guess: {reason if 'test' in splits else 'no test run, for there is one run'}"
+    )
 
 
 def _remarks(facts: Facts, one: Entry) -> list[str]:
     """List comments on a run: what its files hold, and why it is a run."""
     if one.pause:
         return [PART.format(one.pause)]
-    own = [*described(facts.pairs[one.file]), *facts.motions[one.file].notes]
-    return [*own, FIRST] if one.use else own
+    comments = [*described(facts.pairs[one.file]), *facts.motions[one.file].notes]
+    return [*comments, FIRST] if one.use else comments
 
 
 def described(one: Pair) -> list[str]:
@@ -62,16 +64,19 @@ def described(one: Pair) -> list[str]:
         return lines
     time = np.unique(one.log.drive.time)
     timing = f"{Timing.of(time)}; " if len(time) > 1 else ""
-    own = one.log.path == one.motion.path
-    return [*lines, f"commands {one.said}" if own else f"{one.log.path.name}: {timing}{one.said}"]
+    same_file = one.log.path == one.motion.path
+    return [
+        *lines,
+        f"commands {one.said}" if same_file else f"{one.log.path.name}: {timing}{one.said}",
+    ]
 
 
 def missing(one: Pair) -> str:
     """Say what a motion lacks (full poses, or some frames), to append to a sentence; or nothing."""
     export = one.motion.track.export
     if not one.motion.track.posed:
-        held = [f"{kind} at {c.rate:.3g} Hz" for kind, c in export.channels.items() if c.rate]
-        return f"; no full poses, but {', '.join(held)}"
+        channels = [f"{kind} at {c.rate:.3g} Hz" for kind, c in export.channels.items() if c.rate]
+        return f"; no full poses, but {', '.join(channels)}"
     lost = int(np.sum(~export.found))
     return f", {lost} of them without the body" if lost else ""
 
@@ -84,23 +89,23 @@ def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
 
 def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> str:
     """Return the path of a run's commands, `none`, or the placeholder of a question."""
-    one = facts.pairs[run.file]
-    if one.log is not None:
-        return places.of(one.log.path)
-    if not one.options:
+    pair = facts.pairs[run.file]
+    if pair.log is not None:
+        return places.of(pair.log.path)
+    if not pair.options:
         draft.say(place, NOTHING)
         return "none"
-    answers = {places.of(log.path): "" for log in one.options} | {"none": "nothing was commanded"}
-    asks = f"Which file holds the commands of {run.id} ({one.said})?"
+    answers = {places.of(log.path): "" for log in pair.options} | {"none": "nothing was commanded"}
+    asks = f"Which file holds the commands of {run.id} ({pair.said})?"
     return draft.ask(f"{place}.commands", asks, answers)
 
 
 def _control(facts: Facts, run: Entry) -> tuple[str, str]:
     """Tell the control of a run, `3dof` or `6dof`, and why if it is a guess (else nothing)."""
-    one, fit = facts.pairs[run.file], facts.choice.fit
-    if said := said_control(one.motion.path.stem):
-        return said, ""
-    caused = one.shown.caused(fit) if one.shown and fit else None
+    pair, fit = facts.pairs[run.file], facts.choice.fit
+    if control := said_control(pair.motion.path.stem):
+        return control, ""
+    caused = pair.shown.caused(fit) if pair.shown and fit else None
     if caused is None:
         return "6dof", "guess: 6dof, for nothing says that it was never turned"
     spread = float(_during(run, *caused).std(axis=0)[5])
@@ -120,7 +125,7 @@ def split(controls: Sequence[str]) -> list[str]:
 
     If no control has several, the last of all runs is a test run, unless it is the only one.
     """
-    last = {control: k for k, control in enumerate(controls) if controls.count(control) > 1}
-    if not last and len(controls) > 1:
-        last = {"": len(controls) - 1}
-    return ["test" if k in last.values() else "train" for k in range(len(controls))]
+    test_runs = {control: k for k, control in enumerate(controls) if controls.count(control) > 1}
+    if not test_runs and len(controls) > 1:
+        test_runs = {"": len(controls) - 1}
+    return ["test" if k in test_runs.values() else "train" for k in range(len(controls))]

@@ -45,8 +45,8 @@ def vehicle(facts: Facts, draft: Draft) -> None:
 
 def mocap(facts: Facts, draft: Draft) -> None:
     """Write the section `mocap`: what measured the motion, of which body, along which axes."""
-    first, track = facts.motions[0], facts.pairs[0].motion.track
-    section: dict[str, Any] = {"format": first.format}
+    motion, track = facts.motions[0], facts.pairs[0].motion.track
+    section: dict[str, Any] = {"format": motion.format}
     draft.content["mocap"] = section
     if facts.body.choices != ("",):
         asks = "Which one is the vehicle?"
@@ -73,21 +73,21 @@ def _extent(position: Array) -> str:
 
 def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
     axes = facts.axes
-    own = mocap_readers()[section["format"]].axes
+    file_axes = mocap_readers()[section["format"]].axes
     if axes.body and axes.world:
         section |= {"world_axes": axes.world, "body_axes": axes.body}
         draft.say("mocap.world_axes", axes.said)
         return
     pairs = " or ".join(f"{world} with {body}" for world, body in axes.likely)
     level = f" The vehicle is upright on average in {pairs}." if pairs else ""
-    why = f" ({axes.said})" if axes.said else ""
-    for key, known, choices, what in (
-        ("world_axes", axes.world, own.world, "world"),
-        ("body_axes", axes.body, own.body, "rigid body"),
+    reason = f" ({axes.said})" if axes.said else ""
+    for key, answer, choices, owner in (
+        ("world_axes", axes.world, file_axes.world, "world"),
+        ("body_axes", axes.body, file_axes.body, "rigid body"),
     ):
-        asks = f"Which way do the axes of the {what} point{why}?{level}"
-        meant: dict[str, str] = {name: MEANING[name] for name in choices}
-        section[key] = known or draft.ask(f"mocap.{key}", asks, meant)
+        asks = f"Which way do the axes of the {owner} point{reason}?{level}"
+        meanings: dict[str, str] = {name: MEANING[name] for name in choices}
+        section[key] = answer or draft.ask(f"mocap.{key}", asks, meanings)
 
 
 def commands(facts: Facts, draft: Draft) -> None:
@@ -106,33 +106,33 @@ def commands(facts: Facts, draft: Draft) -> None:
     section |= {"auxiliary": list(drive.auxiliary)} if drive.auxiliary else {}
     if fit and kind in ("pwm", "normalized") and not fit.by_name:
         draft.say("commands.columns", "guess: in the order of the vehicle's thrusters")
-    others = {d.topic for one in facts.motions for d in one.drives if d.topic} - {drive.topic}
-    if others:
-        draft.say("commands.topic", f"other commands there: {', '.join(sorted(map(str, others)))}")
+    topics = {d.topic for motion in facts.motions for d in motion.drives if d.topic} - {drive.topic}
+    if topics:
+        draft.say("commands.topic", f"other commands there: {', '.join(sorted(map(str, topics)))}")
     draft.content["commands"] = section
 
 
 def _first_asked(facts: Facts) -> CommandCandidate:
     """Return the commands whose kind has to be asked, if any, else those of `facts.log`."""
     assert facts.log is not None
-    asked = (log.drive for log in facts.logs if log.drive.asked)
-    return next(asked, facts.log.drive)
+    drives = (log.drive for log in facts.logs if log.drive.asked)
+    return next(drives, facts.log.drive)
 
 
 def _kinds(facts: Facts) -> dict[str, str]:
     """List kinds to choose from: only demand and wrench for columns that are named after axes."""
     of_axes = ("demand", "wrench")
-    asked = facts.kind_asked and _first_asked(facts).kind in of_axes
-    return {name: KINDS[name] for name in (of_axes if asked else KINDS)}
+    named_by_axis = facts.kind_asked and _first_asked(facts).kind in of_axes
+    return {name: KINDS[name] for name in (of_axes if named_by_axis else KINDS)}
 
 
 def _columns(facts: Facts, draft: Draft) -> list[str] | str:
     """Return all columns of the log if every vehicle that fits takes all of them; else ask."""
     assert facts.log is not None
     drive = facts.log.drive
-    taken = dict.fromkeys(fit.columns for fit in facts.choice.fits)
-    if all(len(columns) == len(drive.columns) for columns in taken):
+    choices = dict.fromkeys(fit.columns for fit in facts.choice.fits)
+    if all(len(columns) == len(drive.columns) for columns in choices):
         return list(drive.columns)
-    answers = [f"[{', '.join(columns)}]" for columns in taken]
+    answers = [f"[{', '.join(columns)}]" for columns in choices]
     asks = f"Which of {', '.join(drive.columns)} go to the vehicle's thrusters, in its order?"
     return draft.ask("commands.columns", asks, answers, free=True)

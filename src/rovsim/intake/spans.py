@@ -33,16 +33,18 @@ class Entry:
 def list_entries(facts: Facts) -> list[Entry]:
     """List all runs, in the order of their files."""
     files = enumerate(zip(facts.ids, facts.pairs, strict=True))
-    return [entry for k, (name, one) in files for entry in _split(k, name, one.motion.track.export)]
+    return [
+        entry for k, (name, pair) in files for entry in _split(k, name, pair.motion.track.export)
+    ]
 
 
 def find_spans(export: Export) -> list[tuple[float, float]]:
     """Find the first and last time in s of each run in a file; none where it is one run."""
     time = export.time[export.found] if export.found.any() else export.time
-    last = np.flatnonzero(np.diff(time) > PAUSE)
-    begins, ends = time[np.append(0, last + 1)], time[np.append(last, len(time) - 1)]
+    pauses = np.flatnonzero(np.diff(time) > PAUSE)
+    begins, ends = time[np.append(0, pauses + 1)], time[np.append(pauses, len(time) - 1)]
     long = ends - begins >= SHORT
-    if len(last) == 0 or long.sum() < 2:
+    if len(pauses) == 0 or long.sum() < 2:
         return []
     return list(zip(begins[long].tolist(), ends[long].tolist(), strict=True))
 

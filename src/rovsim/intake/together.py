@@ -22,14 +22,14 @@ def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tup
         One entry for each run, in the order of their first files, and sentences about files that
         may be of one run but could not be put together.
     """
-    if len(motions) < 2 or any(one.format != FORMAT for one in motions):
+    if len(motions) < 2 or any(contents.format != FORMAT for contents in motions):
         return tuple(motions), ()
     runs, apart = _by_name(motions)
     if len(runs) == len(motions) and not apart:
         runs, apart = _by_clock(runs)
-    order = {one.named: k for k, one in enumerate(motions)}
-    first = {run.named: min(order[file.named] for file in run.files) for run in runs}
-    return tuple(sorted(runs, key=lambda run: first[run.named])), tuple(apart)
+    order = {contents.named: k for k, contents in enumerate(motions)}
+    position = {run.named: min(order[file.named] for file in run.files) for run in runs}
+    return tuple(sorted(runs, key=lambda run: position[run.named])), tuple(apart)
 
 
 def list_stems(motions: Sequence[Contents]) -> list[str]:
@@ -37,10 +37,10 @@ def list_stems(motions: Sequence[Contents]) -> list[str]:
 
     The folder's name goes in front where several runs would be called the same.
     """
-    stems = [_stem(one) for one in motions]
+    stems = [_stem(contents) for contents in motions]
     return [
-        f"{one.named.absolute().parent.name} {stem}".strip() if stems.count(stem) > 1 else stem
-        for one, stem in zip(motions, stems, strict=True)
+        f"{contents.named.absolute().parent.name} {stem}".strip() if stems.count(stem) > 1 else stem
+        for contents, stem in zip(motions, stems, strict=True)
     ]
 
 
@@ -54,8 +54,8 @@ def _stem(one: Contents) -> str:
 def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
     """Put together files of one folder whose names differ only in words for sensors and roles."""
     groups: dict[tuple[Path, str], list[Contents]] = defaultdict(list)
-    for one in motions:
-        groups[one.named.absolute().parent, sensor_key(one.named.stem)].append(one)
+    for contents in motions:
+        groups[contents.named.absolute().parent, sensor_key(contents.named.stem)].append(contents)
     runs, apart = [], []
     for group in groups.values():
         if len(group) == 1:
@@ -73,21 +73,23 @@ def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
 def _by_clock(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
     """Put together files of different sensors that ran at the same time, where that is clear."""
     kinds: dict[frozenset[str], list[Contents]] = defaultdict(list)
-    for one in motions:
-        kinds[_held(one)].append(one)
+    for contents in motions:
+        kinds[_held(contents)].append(contents)
     groups = list(kinds.values())
     if len(groups) < 2 or not _all_different([group[0] for group in groups]):
         return list(motions), []
-    runs = [list(_at_that_time(one, groups)) for one in max(groups, key=len)]
-    used = [file for run in runs for file in run]
-    if len({id(file) for file in used}) < len(used) or not all(_one_each(r, groups) for r in runs):
+    runs = [list(_at_that_time(contents, groups)) for contents in max(groups, key=len)]
+    joined = [file for run in runs for file in run]
+    if len({id(file) for file in joined}) < len(joined) or not all(
+        _one_each(r, groups) for r in runs
+    ):
         return list(motions), [
             f"{' and '.join(map(_listed, groups))}: neither names nor clocks tell which files are "
             "of one run. List those of one run in its mocap: [a.csv, b.csv]"
         ]
-    rest = [one for one in motions if not any(one is file for file in used)]
-    said = "they hold different sensors and ran at the same time"
-    return [*(_joined(r, said) if len(r) > 1 else r[0] for r in runs), *rest], []
+    rest = [contents for contents in motions if not any(contents is file for file in joined)]
+    reason = "they hold different sensors and ran at the same time"
+    return [*(_joined(r, reason) if len(r) > 1 else r[0] for r in runs), *rest], []
 
 
 def _at_that_time(one: Contents, groups: Sequence[Sequence[Contents]]) -> Iterator[Contents]:
@@ -111,14 +113,14 @@ def _one_each(run: Sequence[Contents], groups: Sequence[Sequence[Contents]]) -> 
 
 def _held(one: Contents) -> frozenset[str]:
     """Return the kinds of measurements in a file, with those that its poses imply."""
-    held = list_held(one.tracks[0].export)
-    return frozenset([*held, *(TOLD if POSES in held else ())])
+    kinds = list_held(one.tracks[0].export)
+    return frozenset([*kinds, *(TOLD if POSES in kinds else ())])
 
 
 def _all_different(files: Sequence[Contents]) -> bool:
     """Whether no two files hold the same kind of measurement."""
-    held = [kind for one in files for kind in _held(one)]
-    return len(held) == len(set(held))
+    kinds = [kind for contents in files for kind in _held(contents)]
+    return len(kinds) == len(set(kinds))
 
 
 def _joined(files: Sequence[Contents], said: str) -> Contents:
@@ -131,12 +133,12 @@ def _joined(files: Sequence[Contents], said: str) -> Contents:
     Raises:
         BadInput: two of them hold the same, or have no time in common.
     """
-    first, *others = sorted(files, key=lambda one: not one.drives)
-    export = join({one.named: one.tracks[0].export for one in (first, *others)})
-    track = Track("", tidy_export(export, first.named)[0])
+    main, *rest = sorted(files, key=lambda contents: not contents.drives)
+    export = join({contents.named: contents.tracks[0].export for contents in (main, *rest)})
+    track = Track("", tidy_export(export, main.named)[0])
     notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {said}",)
-    notes += tuple(note for one in files for note in one.notes)
-    return replace(first, tracks=(track,), notes=notes, beside=tuple(others))
+    notes += tuple(note for contents in files for note in contents.notes)
+    return replace(main, tracks=(track,), notes=notes, beside=tuple(rest))
 
 
 def _listed(files: Sequence[Contents]) -> str:
@@ -144,4 +146,4 @@ def _listed(files: Sequence[Contents]) -> str:
 
 
 def _names(files: Sequence[Contents]) -> str:
-    return ", ".join(one.named.name for one in files)
+    return ", ".join(contents.named.name for contents in files)

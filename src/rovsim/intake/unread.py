@@ -16,27 +16,27 @@ MOST = 20  # names of columns or files in a sentence
 def list_unread(facts: Facts, draft: Draft) -> list[str]:
     """List unused columns: a sentence for all files whose unused columns are the same."""
     files: dict[tuple[str, ...], list[str]] = defaultdict(list)
-    for one in _every(facts):
-        if left := _left(one, facts, draft):
-            files[left].append(one.named.name)
-    return [f"not used: {_named(left)} (in {_named(names)})" for left, names in files.items()]
+    for contents in _every(facts):
+        if columns := _left(contents, facts, draft):
+            files[columns].append(contents.named.name)
+    return [f"not used: {_named(columns)} (in {_named(names)})" for columns, names in files.items()]
 
 
 def tell_unread(facts: Facts, draft: Draft) -> None:
     """Write unused columns as comments above the first run of each file."""
-    known = {one.named: one for one in _every(facts)}
-    first = {one.file: n for n, one in reversed([*enumerate(list_entries(facts))])}
+    by_path = {item.named: item for item in _every(facts)}
+    first_run = {item.file: n for n, item in reversed([*enumerate(list_entries(facts))])}
     for k, (motion, pair) in enumerate(zip(facts.motions, facts.pairs, strict=True)):
         paths = dict.fromkeys([*(file.named for file in motion.files), *_log(pair)])
-        for one in (known[path] for path in paths):
-            if left := _left(one, facts, draft):
-                draft.say(f"runs.{first[k]}", f"{one.named.name}: not used: {_named(left)}")
+        for item in (by_path[path] for path in paths):
+            if columns := _left(item, facts, draft):
+                draft.say(f"runs.{first_run[k]}", f"{item.named.name}: not used: {_named(columns)}")
 
 
 def _every(facts: Facts) -> list[Contents]:
     """List all files; those that were put together for one run are listed one by one."""
-    found = (*facts.motions, *facts.collected.logs)
-    return [file for one in found for file in one.files]
+    collected = (*facts.motions, *facts.collected.logs)
+    return [file for contents in collected for file in contents.files]
 
 
 def _log(pair: Pair) -> list[Path]:
@@ -46,15 +46,15 @@ def _log(pair: Pair) -> list[Path]:
 def _left(one: Contents, facts: Facts, draft: Draft) -> tuple[str, ...]:
     """List columns of a file that are neither measurements nor commands of a run."""
     section = draft.content.get("commands", {})
-    taken: set[str] = set()
+    used: set[str] = set()
     if any(log.path == one.named for log in facts.logs):
         columns = section.get("columns", [])
         # an open question names all columns that may be meant
         listed = columns if isinstance(columns, list) else one.unread
-        taken = {name.removeprefix("-") for name in (*listed, *section.get("auxiliary", []))}
-    return tuple(name for name in one.unread if name not in taken)
+        used = {name.removeprefix("-") for name in (*listed, *section.get("auxiliary", []))}
+    return tuple(name for name in one.unread if name not in used)
 
 
 def _named(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return ", ".join(names[:MOST]) + more
+    suffix = f" and {len(names) - MOST} more" if len(names) > MOST else ""
+    return ", ".join(names[:MOST]) + suffix

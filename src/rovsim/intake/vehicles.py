@@ -57,11 +57,13 @@ def _fit(name: str, drive: CommandCandidate) -> VehicleMatch | None:
             else None
         )
     # names such as port or a fin's are the vehicle's own; t1, t2 … are names that anybody gives
-    own = not all(column[-1].isdigit() for column in expected)
-    held = {*drive.columns, *(drive.rest if own else ())}
-    if expected and (set(expected) == set(drive.columns) or (own and set(expected) <= held)):
+    own_names = not all(column[-1].isdigit() for column in expected)
+    available = {*drive.columns, *(drive.rest if own_names else ())}
+    if expected and (
+        set(expected) == set(drive.columns) or (own_names and set(expected) <= available)
+    ):
         kind = drive.kind or _kind(drive, vehicle)
-        return VehicleMatch(name, vehicle, expected, kind, own) if kind else None
+        return VehicleMatch(name, vehicle, expected, kind, own_names) if kind else None
     count = len(expected)
     outputs = all(column.startswith(OUTPUTS) for column in drive.columns)
     if drive.kind is None or not count or len(drive.columns) < count or any(vehicle.angles):
@@ -73,8 +75,10 @@ def _fit(name: str, drive: CommandCandidate) -> VehicleMatch | None:
 
 def _kind(drive: CommandCandidate, vehicle: Vehicle) -> LoggedKind | None:
     """Tell the kind from the columns of thrusters; those of angles are in rad in any log."""
-    own = [n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle]
-    value = drive.of(own).ravel()
+    thrusters = [
+        n for n, angle in zip(vehicle.command_columns, vehicle.angles, strict=True) if not angle
+    ]
+    value = drive.of(thrusters).ravel()
     kinds: tuple[LoggedKind, ...] = ("pwm", "normalized")
     return next((kind for kind in kinds if within(value, kind)), None)
 
@@ -108,10 +112,10 @@ def as_logged(drive: CommandCandidate, fit: VehicleMatch, path: Path) -> Command
     ]
     if not log.per_axis:
         log = log.model_copy(update={"angles": [n for n in log.names if n in angles]})
-    chosen = drive.of(log.names)
+    value = drive.of(log.names)
     try:
         export = as_commands(
-            drive.time, chosen, log, lambda line, column: str(path), pulses=_pulses(chosen, log)
+            drive.time, value, log, lambda line, column: str(path), pulses=_pulses(value, log)
         )
         return tidy_commands(export, path)[0]
     except BadInput:

@@ -37,14 +37,14 @@ def as_yaml(proposal: CampaignProposal) -> str:
 
 def _open(proposal: CampaignProposal) -> list[str]:
     count = len(proposal.questions)
-    asked = f"{count} line{'s' * (count > 1)} to be answered: look for ANSWER." if count else ""
-    return [*([asked] if asked else []), *(f"CHECK: {check}" for check in proposal.checks)]
+    summary = f"{count} line{'s' * (count > 1)} to be answered: look for ANSWER." if count else ""
+    return [*([summary] if summary else []), *(f"CHECK: {check}" for check in proposal.checks)]
 
 
 def _asked(question: OpenQuestion) -> list[str]:
     choices = "; ".join(f"{v} ({meaning})" if meaning else v for v, meaning in question.answers)
-    more = " or another" if question.free else ""
-    return [f"ANSWER: {question.asks} {choices}{more}".rstrip()]
+    suffix = " or another" if question.free else ""
+    return [f"ANSWER: {question.asks} {choices}{suffix}".rstrip()]
 
 
 def _node(value: Any, flow: bool) -> Any:
@@ -55,18 +55,18 @@ def _node(value: Any, flow: bool) -> Any:
         flow: whether it is written on one line. A list of scalars, and a mapping in a list, are
             always written on one line.
     """
-    found: CommentedMap | CommentedSeq
+    node: CommentedMap | CommentedSeq
     if isinstance(value, Mapping):
-        found = CommentedMap((key, _node(inner, flow)) for key, inner in value.items())
+        node = CommentedMap((key, _node(inner, flow)) for key, inner in value.items())
     elif isinstance(value, list):
         inner_flow = any(isinstance(inner, Mapping) for inner in value)
-        found = CommentedSeq(_node(inner, inner_flow or flow) for inner in value)
+        node = CommentedSeq(_node(inner, inner_flow or flow) for inner in value)
         flow = flow or not inner_flow
     else:
         return value
     if flow:
-        found.fa.set_flow_style()
-    return found
+        node.fa.set_flow_style()
+    return node
 
 
 def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
@@ -78,8 +78,8 @@ def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
         if isinstance(node, CommentedSeq):
             return _above(node, int(part), lines, depth)
         node, depth = inner, depth + 2
-    last: Any = place[-1]
-    return _above(node, int(last) if isinstance(node, CommentedSeq) else last, lines, depth)
+    key: Any = place[-1]
+    return _above(node, int(key) if isinstance(node, CommentedSeq) else key, lines, depth)
 
 
 def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
@@ -91,10 +91,10 @@ def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
 def _texts(old: Any) -> list[str]:
     """Take the comments above a key away and return them, to be set again with new ones."""
     tokens = (old[1] or []) if old and len(old) > 1 else []
-    found = [token.value.strip().removeprefix("# ").removeprefix("#") for token in tokens]
+    texts = [token.value.strip().removeprefix("# ").removeprefix("#") for token in tokens]
     if old and len(old) > 1:
         old[1] = None
-    return found
+    return texts
 
 
 def _wrapped(lines: list[str], width: int) -> str:

@@ -95,21 +95,21 @@ def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[s
         kind: regex of the whole short message type.
         said: the sentence, with {} for the topics.
     """
-    found = [
+    matches = [
         topic
         for topic, name in topics.items()
         if re.search(named, topic, re.I) and re.fullmatch(kind, _short(name))
     ]
-    return (said.format(", ".join(found)),) if found else ()
+    return (said.format(", ".join(matches)),) if matches else ()
 
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:
     """List topics that hold poses of the vehicle, Odometry last."""
-    found = [t for t, kind in topics.items() if _short(kind) in POSES and not WISHES.search(t)]
-    alone = [t for t in found if _short(topics[t]) != "Odometry"]
+    poses = [t for t, kind in topics.items() if _short(kind) in POSES and not WISHES.search(t)]
+    alone = [t for t in poses if _short(topics[t]) != "Odometry"]
     stems = {t.rsplit("/", 1)[0] for t in alone}
     # Odometry in the namespace of a pose repeats that pose
-    return alone + [t for t in found if t not in alone and t.rsplit("/", 1)[0] not in stems]
+    return alone + [t for t in poses if t not in alone and t.rsplit("/", 1)[0] not in stems]
 
 
 def _short(kind: str) -> str:
@@ -118,16 +118,20 @@ def _short(kind: str) -> str:
 
 def _channel(topics: dict[str, str], key: str) -> str | None:
     """Return the topic to read for a key of `mocap.topics`; None where the bag has none."""
-    types, first, never = CHANNELS[key]
-    found = [
+    types, preferred, excluded = CHANNELS[key]
+    candidates = [
         topic
         for topic, kind in topics.items()
-        if _short(kind) in types and not re.search(never, topic, re.I) and not WISHES.search(topic)
+        if _short(kind) in types
+        and not re.search(excluded, topic, re.I)
+        and not WISHES.search(topic)
     ]
     if key == "velocity":
-        found = [t for t in found if re.search(first, t, re.I) or _short(topics[t]) == "DVL"]
-    found.sort(key=lambda topic: not re.search(first, topic, re.I))
-    return found[0] if found else None
+        candidates = [
+            t for t in candidates if re.search(preferred, t, re.I) or _short(topics[t]) == "DVL"
+        ]
+    candidates.sort(key=lambda topic: not re.search(preferred, topic, re.I))
+    return candidates[0] if candidates else None
 
 
 def _tracks(path: Path, topics: list[str], notes: list[str]) -> Iterator[Track]:
@@ -151,8 +155,10 @@ def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterat
 
 def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
     """Read what may be commands, in the order of `OUTPUTS`; notes tell of what cannot be read."""
-    found = [t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)]
-    for topic in sorted(found, key=lambda topic: _place(bag.topics[topic])):
+    outputs = [
+        t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)
+    ]
+    for topic in sorted(outputs, key=lambda topic: _place(bag.topics[topic])):
         try:
             drive = _drive(bag, topic)
             if drive.columns:
@@ -168,13 +174,13 @@ def _place(kind: str) -> int:
 
 
 def _drive(bag: Bag, topic: str) -> CommandCandidate:
-    kind, first = bag.first(topic, "commands.topic")
+    kind, message = bag.first(topic, "commands.topic")
     name = _short(kind)
     if name in PULSES:
-        found = bag.read(
-            topic, "commands.topic", _padded("channels", len(first.channels)), "pulses"
+        pulses = bag.read(
+            topic, "commands.topic", _padded("channels", len(message.channels)), "pulses"
         )
-        return _outputs(found) if name == "RCOut" else _pilot(found)
+        return _outputs(pulses) if name == "RCOut" else _pilot(pulses)
     if "Wrench" in name:
         return CommandCandidate(
             "rosbag2",
@@ -195,10 +201,12 @@ def _drive(bag: Bag, topic: str) -> CommandCandidate:
             "the pilot's sticks (ManualControl)",
             topic,
         )
-    time, value = _numbers(bag, topic, _padded("data", len(first.data)))
+    time, value = _numbers(bag, topic, _padded("data", len(message.data)))
     columns = tuple(f"t{k + 1}" for k in range(value.shape[1]))
-    how, said = _kind(value)
-    return CommandCandidate("rosbag2", columns, time, value, how, f"{name}: {said}", topic)
+    logged_kind, meaning = _kind(value)
+    return CommandCandidate(
+        "rosbag2", columns, time, value, logged_kind, f"{name}: {meaning}", topic
+    )
 
 
 def _padded(field: str, count: int) -> Callable[[Any], list[float]]:
@@ -215,15 +223,15 @@ def _forces(message: Any) -> list[float]:
 
 
 def _numbers(bag: Bag, topic: str, numbers: Callable) -> tuple[Array, Array]:
-    found = bag.read(topic, "commands.topic", numbers, "numbers")
-    return found.time, found.value
+    samples = bag.read(topic, "commands.topic", numbers, "numbers")
+    return samples.time, samples.value
 
 
 def _kind(value: Array) -> tuple[LoggedKind | None, str]:
     """Tell the kind of an array of numbers by their size, None where unknown; and why."""
-    for kind, said in (("pwm", "pulses in us"), ("normalized", "within -1 and 1")):
+    for kind, meaning in (("pwm", "pulses in us"), ("normalized", "within -1 and 1")):
         if within(value.ravel(), kind):  # type: ignore[arg-type]
-            return kind, said  # type: ignore[return-value]
+            return kind, meaning  # type: ignore[return-value]
     return None, f"numbers from {np.nanmin(value):.4g} to {np.nanmax(value):.4g}"
 
 
@@ -247,8 +255,8 @@ def _outputs(found: Samples) -> CommandCandidate:
 
 
 def _pilot(found: Samples) -> CommandCandidate:
-    given = _given(found)
-    columns = [c for c in PILOT if (k := _channel_number(c)) <= len(given) and given[k - 1]]
+    active = _given(found)
+    columns = [c for c in PILOT if (k := _channel_number(c)) <= len(active) and active[k - 1]]
     value = found.value[:, [_channel_number(c) - 1 for c in columns]]
     return CommandCandidate(
         "rosbag2",

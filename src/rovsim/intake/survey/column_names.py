@@ -48,16 +48,16 @@ def find_columns(lines: Lines) -> dict[str, int]:
         Positions of columns, by our names; without channels that the file lacks.
     """
     names = list(map(split_unit, lines.names))
-    found = ((ours, next(_places(ours, lines, names), None)) for ours in FORMS)
-    return _of_a_topic(names) | {ours: place for ours, place in found if place is not None}
+    columns = ((ours, next(_places(ours, lines, names), None)) for ours in FORMS)
+    return _of_a_topic(names) | {ours: place for ours, place in columns if place is not None}
 
 
 def _places(ours: str, lines: Lines, names: Sequence[tuple[str, str]]) -> Iterator[int]:
     """List positions of the columns that may be one of our channels, the likeliest first."""
     yield from (k for k, name in enumerate(lines.names) if name == ours)
     fitting = [k for k, (_, unit) in enumerate(names) if not unit or _fits(ours, unit)]
-    own = split_unit(ours)[0]
-    yield from (k for k in fitting if names[k][0] == own)
+    bare_name = split_unit(ours)[0]
+    yield from (k for k in fitting if names[k][0] == bare_name)
     yield from (k for k in fitting if re.fullmatch(FORMS[ours], names[k][0]))
 
 
@@ -67,12 +67,12 @@ def _fits(ours: str, unit: str) -> bool:
 
 def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:
     """Find positions and quaternions of a ROS topic, if exactly one topic has all components."""
-    found: dict[str, int] = {}
+    columns: dict[str, int] = {}
     for group, form in IN_POSES:
         topics: dict[str, dict[str, int]] = defaultdict(dict)
         for k, (stem, _) in enumerate(names):
             if part := re.fullmatch(form, stem):
                 topics[part[1]][next(n for n in group if part[2] in n.split("_")[0])] = k
-        whole = [places for places in topics.values() if len(places) == len(group)]
-        found |= whole[0] if len(whole) == 1 else {}
-    return found
+        complete = [places for places in topics.values() if len(places) == len(group)]
+        columns |= complete[0] if len(complete) == 1 else {}
+    return columns

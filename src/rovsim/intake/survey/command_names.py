@@ -39,19 +39,19 @@ def find_wrench(names: Collection[str]) -> dict[str, str]:
     Returns:
         Names of columns, by the axis along or about which they push; empty where there are none.
     """
-    own = {stem(name): name for stem in (in_words, _without_force) for name in names}
+    by_stem = {stem(name): name for stem in (in_words, _without_force) for name in names}
     for form in ("{}", "tau_{}", "tau{}"):
-        if all(form.format(letter) in own for letter in SNAME.values()):
-            return {axis: own[form.format(letter)] for axis, letter in SNAME.items()}
-    found: dict[str, str] = {}
-    for stem, name in own.items():
+        if all(form.format(letter) in by_stem for letter in SNAME.values()):
+            return {axis: by_stem[form.format(letter)] for axis, letter in SNAME.items()}
+    by_axis: dict[str, str] = {}
+    for stem, name in by_stem.items():
         axis = stem if stem in AXES and stem != in_words(name) else None
         axis = axis or next((a for a, form in WRENCH.items() if re.fullmatch(form, stem)), None)
         if axis:
-            found.setdefault(axis, name)
-    if len(found) < 2 or not set(AXES[:3]) & found.keys():
+            by_axis.setdefault(axis, name)
+    if len(by_axis) < 2 or not set(AXES[:3]) & by_axis.keys():
         return {}
-    return {axis: found[axis] for axis in AXES if axis in found}
+    return {axis: by_axis[axis] for axis in AXES if axis in by_axis}
 
 
 def _without_force(name: str) -> str:
@@ -67,10 +67,10 @@ def has_other_unit(name: str) -> bool:
 
 def are_sticks(columns: Mapping[str, Array]) -> bool:
     """Whether x, y, z and r are whole numbers within 1000, as MAVLink's MANUAL_CONTROL has them."""
-    own = {name.lower(): value for name, value in columns.items()}
-    if not set(STICKS) <= own.keys():
+    by_name = {name.lower(): value for name, value in columns.items()}
+    if not set(STICKS) <= by_name.keys():
         return False
-    value = np.concatenate([own[name][np.isfinite(own[name])] for name in STICKS])
+    value = np.concatenate([by_name[name][np.isfinite(by_name[name])] for name in STICKS])
     small = np.abs(value) <= FULL_STICK
     return bool(len(value) and small.all() and np.array_equal(value, np.round(value)))
 

@@ -76,8 +76,8 @@ class CommandCandidate:
 
     def of(self, names: Sequence[str]) -> Array:
         """Return columns (m, len(names)) by their names, those of `rest` included."""
-        known = dict(zip(self.bare, self.value.T, strict=True)) | dict(self.rest)
-        return np.stack([known[name] for name in names], axis=1)
+        by_name = dict(zip(self.bare, self.value.T, strict=True)) | dict(self.rest)
+        return np.stack([by_name[name] for name in names], axis=1)
 
     @property
     def bare(self) -> tuple[str, ...]:

@@ -70,21 +70,21 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     """Find out what the file at `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
     check_unmixed(replace(lines, path=path))
-    known = [name for name in lines.names if name in KNOWN]
-    others = read_others(lines)
-    drive = _drive(lines, others)
+    channels = [name for name in lines.names if name in KNOWN]
+    other_columns = read_others(lines)
+    drive = _drive(lines, other_columns)
     if drive is not None:
         check_one_run(drive.time[np.isfinite(drive.value).any(axis=1)], path)
-    unknown = "" if drive else _unknown(others)
-    if not known and drive is None:
+    unknown = "" if drive else _unknown(other_columns)
+    if not channels and drive is None:
         raise _nothing(path, lines, unknown)
-    tracks = (_track(place),) if known else ()
+    tracks = (_track(place),) if channels else ()
     drives = () if drive is None else (drive,)
-    own = None if place == path else path
+    original = None if place == path else path
     unread = tuple(name for name in lines.names if name and name not in (*KNOWN, TIME))
-    doubts = tell_repeats(lines, [*known, *(drive.bare if drive else ())])
+    doubts = tell_repeats(lines, [*channels, *(drive.bare if drive else ())])
     return Contents(
-        place, "csv", tracks, drives, own, notes, unknown=unknown, unread=unread, doubts=doubts
+        place, "csv", tracks, drives, original, notes, unknown=unknown, unread=unread, doubts=doubts
     )
 
 
@@ -129,19 +129,19 @@ def _unknown(others: Columns) -> str:
     moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
     if not moving:
         return ""
-    told = [f"{n} ({np.nanmin(v):.4g} to {np.nanmax(v):.4g})" for n, v in moving.items()]
-    said = hint(moving)
-    return _some(told) + (f". {said}" if said else "")
+    ranges = [f"{n} ({np.nanmin(v):.4g} to {np.nanmax(v):.4g})" for n, v in moving.items()]
+    suggestion = hint(moving)
+    return _some(ranges) + (f". {suggestion}" if suggestion else "")
 
 
 def _drive(lines: Lines, others: Columns) -> CommandCandidate | None:
     """Return the columns that look like commands, if there are any."""
     voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
-    found = _commands(*find_numbers(others), voltage)
-    if found is None:
-        found = _commands(*find_sparse(others), ())
-        return found if found and found.kind else None
-    return found
+    candidate = _commands(*find_numbers(others), voltage)
+    if candidate is None:
+        candidate = _commands(*find_sparse(others), ())
+        return candidate if candidate and candidate.kind else None
+    return candidate
 
 
 def _commands(
@@ -157,57 +157,57 @@ def _commands(
     if radio := _radio(columns):
         value = np.stack([columns[name] for name in radio.values()], axis=1)
         signed = tuple("-" * (c[0] == "-") + name for c, name in radio.items())
-        said = "the pilot's radio by ArduSub's order of channels"
+        reason = "the pilot's radio by ArduSub's order of channels"
         return CommandCandidate(
             "csv",
             signed,
             time,
             value,
             "demand",
-            said,
+            reason,
             axes=tuple(PILOT[c] for c in radio),
             auxiliary=voltage,
         )
-    kind, chosen, said = _likely_commands(columns)
+    kind, names, reason = _likely_commands(columns)
     forces = find_wrench(columns) if kind not in ("pwm", "demand") else {}
     if forces:
         value = np.stack([columns[name] for name in forces.values()], axis=1)
-        said = "guess: forces and moments by their names, N and N m: x forward, y right, z down"
+        reason = "guess: forces and moments by their names, N and N m: x forward, y right, z down"
         return CommandCandidate(
             "csv",
             tuple(forces.values()),
             time,
             value,
             "wrench",
-            said,
+            reason,
             axes=tuple(forces),
             auxiliary=voltage,
             asked=within(value.ravel(), "demand"),
         )
-    if not chosen:
+    if not names:
         return None
-    value = np.stack([columns[name] for name in chosen], axis=1)
+    value = np.stack([columns[name] for name in names], axis=1)
     value = pwm.of_outputs(value)[0] if kind == "pwm" else value
-    rest = {name: column for name, column in columns.items() if name not in chosen}
+    rest = {name: column for name, column in columns.items() if name not in names}
     return CommandCandidate(
         "csv",
-        tuple(chosen),
+        tuple(names),
         time,
         value,
         kind,
-        said,
+        reason,
         auxiliary=voltage,
         rest=rest,
-        asked=kind == "wrench" or said == HALF,
+        asked=kind == "wrench" or reason == HALF,
     )
 
 
 def _radio(columns: dict[str, Array]) -> dict[str, str]:
     """Find columns of a pilot's radio, such as RC1 or chan1_raw, by ArduSub's channels."""
     numbered = {
-        f"RC{int(found[1])}": name
+        f"RC{int(match[1])}": name
         for name, value in columns.items()
-        if (found := RADIO.fullmatch(name)) and within(value, "pwm")
+        if (match := RADIO.fullmatch(name)) and within(value, "pwm")
     }
     return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
 
@@ -233,24 +233,24 @@ def _likely_commands(columns: dict[str, Array]) -> _LikelyCommands:
         if all(within(columns[name], "demand") for name in axes):
             return _LikelyCommands("demand", axes, "named after axes, within -1 and 1")
         if all(within(columns[name], "pwm") for name in axes):
-            said = "named after axes, pulses in us (-heave where long is up)"
-            return _LikelyCommands("demand", axes, said)
+            reason = "named after axes, pulses in us (-heave where long is up)"
+            return _LikelyCommands("demand", axes, reason)
         return _LikelyCommands("wrench", axes, _wrench([columns[name] for name in axes]))
     plain = {name: value for name, value in columns.items() if not has_other_unit(name)}
     pulses = [name for name in plain if within(columns[name], "pwm")]
     if pulses:
-        given = [value[~pwm.absent(value)] for value in map(columns.__getitem__, pulses)]
-        low, high = find_range(given)
-        said = f"all from {low:.0f} to {high:.0f}: pulses in us"
-        return _LikelyCommands("pwm", ordered(pulses), said)
+        values = [value[~pwm.absent(value)] for value in map(columns.__getitem__, pulses)]
+        low, high = find_range(values)
+        reason = f"all from {low:.0f} to {high:.0f}: pulses in us"
+        return _LikelyCommands("pwm", ordered(pulses), reason)
     shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
         if _rests_at_half([columns[name] for name in shares]):
             return _LikelyCommands("normalized", ordered(shares), HALF)
         return _LikelyCommands("normalized", ordered(shares), "all within -1 and 1")
     numbered = [name for name in columns if re.search(r"\d$", name)]
-    said = _sizes([columns[name] for name in numbered])
-    return _LikelyCommands(None, ordered(numbered), said)
+    reason = _sizes([columns[name] for name in numbered])
+    return _LikelyCommands(None, ordered(numbered), reason)
 
 
 def _rests_at_half(values: list[Array]) -> bool:
@@ -265,8 +265,8 @@ def within(value: Array, kind: LoggedKind) -> bool:
     if kind == "pwm":
         return are_pulses(value)
     low, high = ALLOWED[kind][:2]
-    known = value[np.isfinite(value)]
-    return bool(len(known) and known.min() >= low and known.max() <= high)
+    finite = value[np.isfinite(value)]
+    return bool(len(finite) and finite.min() >= low and finite.max() <= high)
 
 
 def ordered(names: list[str]) -> list[str]:
@@ -280,12 +280,12 @@ def ordered(names: list[str]) -> list[str]:
 def _wrench(values: list[Array]) -> str:
     """Say what columns named after axes may be: their size does not tell forces from percent."""
     low, high = find_range(values)
-    said = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
+    remark = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
     if max(-low, high) <= PERCENT:
-        return f"{said}. If these are percent, divide them by 100 and write demand"
+        return f"{remark}. If these are percent, divide them by 100 and write demand"
     if max(-low, high) <= THOUSANDTHS:
-        return f"{said}. If these are thousandths, divide them by 1000 and write demand"
-    return said
+        return f"{remark}. If these are thousandths, divide them by 1000 and write demand"
+    return remark
 
 
 def _sizes(values: list[Array]) -> str:

@@ -25,15 +25,17 @@ def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     Raises:
         BadInput: a path does not exist, is too large, or is no folder of recordings.
     """
-    named: list[Path] = []
+    recordings: list[Path] = []
     inside: list[Path] = []
     for path in paths:
         if path.is_dir() and not is_bag(path):
             inside += _within(path)
         else:
-            named.append(_checked(path))
-    named = _once(named)
-    return named, [path for path in _once(inside) if path.resolve() not in _resolved(named)]
+            recordings.append(_checked(path))
+    recordings = _once(recordings)
+    return recordings, [
+        path for path in _once(inside) if path.resolve() not in _resolved(recordings)
+    ]
 
 
 def is_bag(path: Path) -> bool:
@@ -43,19 +45,19 @@ def is_bag(path: Path) -> bool:
 
 
 def _within(folder: Path) -> list[Path]:
-    own = _directly_within(folder)
-    if any(map(_is_recording, own)):
-        return own
+    direct = _directly_within(folder)
+    if any(map(_is_recording, direct)):
+        return direct
     inner = [p for p in sorted(folder.iterdir()) if p.is_dir() and not p.name.startswith(".")]
-    deeper = [path for one in inner for path in _directly_within(one)]
-    if not own and not deeper:
+    deeper = [path for subfolder in inner for path in _directly_within(subfolder)]
+    if not direct and not deeper:
         raise BadInput(
             "the folder holds no recordings",
             where=folder,
             expected="exported motions and command logs",
             remedy="Name the folder or the files of your recordings.",
         )
-    return own + deeper
+    return direct + deeper
 
 
 def _is_recording(path: Path) -> bool:
@@ -66,16 +68,16 @@ def _is_recording(path: Path) -> bool:
 
 
 def _directly_within(folder: Path) -> list[Path]:
-    found = sorted(p for p in folder.iterdir() if not p.name.startswith("."))
-    if len(found) > MANY:
+    entries = sorted(p for p in folder.iterdir() if not p.name.startswith("."))
+    if len(entries) > MANY:
         raise BadInput(
-            f"{len(found)} files",
+            f"{len(entries)} files",
             where=folder,
             expected=f"a folder of recordings, at most {MANY} files",
             remedy="Name the recordings themselves, or put them into a folder of their own.",
         )
-    bags = [p for p in found if p.is_dir() and is_bag(p)]
-    files = [p for p in found if p.is_file() and p.name not in OTHERS and p.stat().st_size]
+    bags = [p for p in entries if p.is_dir() and is_bag(p)]
+    files = [p for p in entries if p.is_file() and p.name not in OTHERS and p.stat().st_size]
     return bags + [p for p in files if p.suffix in STORAGE or p.stat().st_size <= LARGEST]
 
 
@@ -85,15 +87,15 @@ def _checked(path: Path) -> Path:
     if path.is_file() and path.suffix in STORAGE and path.stat().st_size:
         return path
     if not path.exists():
-        found, remedy = "no such file or folder", "Check the path."
+        problem, remedy = "no such file or folder", "Check the path."
     elif not path.is_file():
-        found, remedy = "neither a file nor a folder", "Name a recording."
+        problem, remedy = "neither a file nor a folder", "Name a recording."
     elif not path.stat().st_size:
-        found, remedy = "the file is empty", "Export the run again."
+        problem, remedy = "the file is empty", "Export the run again."
     else:
-        found = f"{path.stat().st_size / 2**30:.1f} GiB"
+        problem = f"{path.stat().st_size / 2**30:.1f} GiB"
         remedy = "Cut it into runs of minutes, and export only what is needed."
-    raise BadInput(found, where=path, expected="a recording of at most 1 GiB", remedy=remedy)
+    raise BadInput(problem, where=path, expected="a recording of at most 1 GiB", remedy=remedy)
 
 
 def _once(paths: Sequence[Path]) -> list[Path]:

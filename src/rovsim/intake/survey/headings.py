@@ -64,14 +64,14 @@ def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str,
     """
     lines = csv_lines(path)
     check_quaternion(lines)
-    found = _columns(lines, units)
-    changed = [c for c in found if c.factor != 1.0 or lines.names[c.place] != c.ours]
-    if not changed or not any(c.ours == "time_s" for c in found):
+    columns = _columns(lines, units)
+    changed = [c for c in columns if c.factor != 1.0 or lines.names[c.place] != c.ours]
+    if not changed or not any(c.ours == "time_s" for c in columns):
         return path, ()
     copy = scratch / f"{path.stem}.csv"
-    write_text(copy, _text(lines, {c.place: c for c in found}))
-    told = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.said}" for c in changed]
-    return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(told)}",)
+    write_text(copy, _text(lines, {c.place: c for c in columns}))
+    changes = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.said}" for c in changed]
+    return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(changes)}",)
 
 
 def _without_unit(ours: str) -> str:
@@ -84,8 +84,8 @@ def _text(lines: Lines, columns: dict[int, Column]) -> str:
     rows = [",".join(names)]
     fillers = {k: find_filler(_raw(lines, k)) for k in columns}
     for cells in lines.all_cells():
-        told = (_cell(c, columns.get(k), fillers.get(k)) for k, c in enumerate(cells))
-        rows.append(",".join(told))
+        row = (_cell(c, columns.get(k), fillers.get(k)) for k, c in enumerate(cells))
+        rows.append(",".join(row))
     return "\n".join(rows) + "\n"
 
 
@@ -117,15 +117,15 @@ def _columns(lines: Lines, units: Units) -> list[Column]:
     dated = dates(lines, place)
     if dated is not None:
         times(without_cut_line(lines, [place])[0], place)  # refuses what is no date among them
-    seconds, factor, said = dated, 1.0, " from dates"
+    seconds, factor, reason = dated, 1.0, " from dates"
     if seconds is None:
         value = _values(lines, place)
-        factor, said = find_time_unit(lines, place, value, unit_at[place], units)
+        factor, reason = find_time_unit(lines, place, value, unit_at[place], units)
         seconds = value * factor
-    columns = [Column("time_s", place, factor, said)]
+    columns = [Column("time_s", place, factor, reason)]
     for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
-        here = {ours: places[ours] for ours in group if ours in places}
-        columns += _group(lines, here, {k: unit_at[k] for k in here.values()}, seconds, units)
+        present = {ours: places[ours] for ours in group if ours in places}
+        columns += _group(lines, present, {k: unit_at[k] for k in present.values()}, seconds, units)
     return columns
 
 
@@ -139,11 +139,11 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
         lines: of the file.
     """
     renamed = {ours for ours, place in places.items() if lines.names[place] != ours}
-    whole = all(name in places for name in QUATERNION)
+    has_quaternion = all(name in places for name in QUATERNION)
     demanded = bool({"surge", "sway", "heave"} & set(lines.names)) or "x_m" not in places
-    dropped = set() if whole else set(QUATERNION)
+    dropped = set() if has_quaternion else set(QUATERNION)
     bare = {n for n in EULER if n in renamed and lines.names[places[n]].lower() in AXES}
-    dropped |= renamed & set(EULER) if whole else bare if demanded else set()
+    dropped |= renamed & set(EULER) if has_quaternion else bare if demanded else set()
     for group in (LINEAR, ANGULAR):
         dropped |= set() if all(name in places for name in group) else renamed & set(group)
     pushing = {lines.names[places[n]] for n in renamed & set(POSITION)}
@@ -158,10 +158,10 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
 def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
     """Whether x, y, z are a pilot's stick: beside a column r, and no attitude in the file."""
     turned = any(name in places for name in (*EULER, *QUATERNION))
-    named = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
-    if turned or len(named) < len(STICKS):
+    sticks = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
+    if turned or len(sticks) < len(STICKS):
         return False
-    return are_sticks({name: _values(lines, place) for name, place in named.items()})
+    return are_sticks({name: _values(lines, place) for name, place in sticks.items()})
 
 
 def _values(lines: Lines, place: int) -> Array:
@@ -173,9 +173,9 @@ def _values(lines: Lines, place: int) -> Array:
 
 def _raw(lines: Lines, place: int) -> Array:
     """Return a column (n,) of numbers, all NaN where it holds words."""
-    whole, cut = without_cut_line(lines, [place])
+    table, cut_lines = without_cut_line(lines, [place])
     try:
-        return np.concatenate([numbers(whole, [place])[:, 0], np.full(cut, np.nan)])
+        return np.concatenate([numbers(table, [place])[:, 0], np.full(cut_lines, np.nan)])
     except BadInput:
         return np.full(len(lines), np.nan)
 
@@ -202,9 +202,11 @@ def _group(
         return [Column(n, p, 1.0, "") for n, p in here.items()]
     if names[0] == "depth_m":
         return [_depth(lines, here, units, value[:, 0], told)]
-    factor, said = find_by_size(lines, here, value, time, told)
+    factor, reason = find_by_size(lines, here, value, time, told)
     return [
-        Column(n, p, FACTORS[units[p]] if units[p] and not said else factor, said or _of(units[p]))
+        Column(
+            n, p, FACTORS[units[p]] if units[p] and not reason else factor, reason or _of(units[p])
+        )
         for n, p in here.items()
     ]
 

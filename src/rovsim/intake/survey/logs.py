@@ -36,24 +36,24 @@ def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
             continue
         series = log.series[name]
         value = series.of([field.format(k) for k in range(1, MOST + 1)])
-        given = np.flatnonzero((~absent(value) & np.isfinite(value)).any(axis=0)) + 1
-        if kind == "SERVO" and len(given):
-            columns = tuple(f"SERVO{k}" for k in given)
-            said = f"outputs ({name}), in their order"
+        channels = np.flatnonzero((~absent(value) & np.isfinite(value)).any(axis=0)) + 1
+        if kind == "SERVO" and len(channels):
+            columns = tuple(f"SERVO{k}" for k in channels)
+            meaning = f"outputs ({name}), in their order"
             yield CommandCandidate(
-                "ardupilot", columns, series.time, value[:, given - 1], "pwm", said
+                "ardupilot", columns, series.time, value[:, channels - 1], "pwm", meaning
             )
-        elif len(given):
-            pilot = {c: k for c in PILOT if (k := int(c.lstrip("-RC"))) in given}
+        elif len(channels):
+            pilot = {c: k for c in PILOT if (k := int(c.lstrip("-RC"))) in channels}
             if pilot:
-                chosen = value[:, [k - 1 for k in pilot.values()]]
-                said = f"the pilot's radio ({name}) by ArduSub's order of channels"
+                sticks = value[:, [k - 1 for k in pilot.values()]]
+                meaning = f"the pilot's radio ({name}) by ArduSub's order of channels"
                 yield CommandCandidate(
                     "ardupilot",
                     tuple(pilot),
                     series.time,
-                    chosen,
+                    sticks,
                     "demand",
-                    said,
+                    meaning,
                     axes=tuple(PILOT[c] for c in pilot),
                 )

@@ -68,10 +68,10 @@ def _tracks(path: Path, reader: MocapReader, bodies: Sequence[str]) -> Iterator[
     Raises:
         BadInput: the only body of the file cannot be read.
     """
-    world, own = reader.axes.world[0], reader.axes.body[0]
+    world_axes, body_axes = reader.axes.world[0], reader.axes.body[0]
     for body in bodies:
         # signs, and the axes y_up and fur of Motive, are applied later: these are the file's own
-        mocap = Mocap(format=reader.name, body=body, world_axes=world, body_axes=own)
+        mocap = Mocap(format=reader.name, body=body, world_axes=world_axes, body_axes=body_axes)
         try:
             yield Track(body, tidy_export(reader.read(path, mocap), path)[0])
         except BadInput:

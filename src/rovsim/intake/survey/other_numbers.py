@@ -32,17 +32,19 @@ def read_others(lines: Lines) -> Columns:
     """Read columns of numbers that are neither channels nor `WATCHED`; none without times."""
     if TIME not in lines.names:
         return np.empty(0), {}
-    kept = [
+    names = [
         name
         for name in lines.names
         if name not in (*KNOWN, TIME)
         and lines.names.count(name) == 1
         and not WATCHED.fullmatch(name)
     ]
-    places = column_places(lines.path, lines.names, [TIME, *kept])
+    places = column_places(lines.path, lines.names, [TIME, *names])
     table, _ = without_cut_line(lines, places)
     columns = {
-        n: v for n, p in zip(kept, places[1:], strict=True) if (v := _numbers(table, p)) is not None
+        n: v
+        for n, p in zip(names, places[1:], strict=True)
+        if (v := _numbers(table, p)) is not None
     }
     return times(table, places[0]), columns
 
@@ -62,14 +64,14 @@ def find_sparse(others: Columns) -> Columns:
     time, columns = others
     series: dict[tuple[str, bytes], list[str]] = defaultdict(list)
     for name, value in columns.items():
-        given = np.isfinite(value)
-        if FEWEST <= given.sum() < SOME * len(value):
-            series[_stem(name), given.tobytes()].append(name)
+        present = np.isfinite(value)
+        if FEWEST <= present.sum() < SOME * len(value):
+            series[_stem(name), present.tobytes()].append(name)
     longest = max(series.values(), key=len, default=[])
     if len(longest) < 2:
         return time[:0], {}
-    given = np.isfinite(columns[longest[0]])
-    return time[given], {name: columns[name][given] for name in longest}
+    present = np.isfinite(columns[longest[0]])
+    return time[present], {name: columns[name][present] for name in longest}
 
 
 def _stem(name: str) -> str:

@@ -26,8 +26,8 @@ def check_quaternion(lines: Lines) -> None:
         return
     groups: dict[str, list[int]] = defaultdict(list)
     for place, name in enumerate(lines.names):
-        if found := NUMBERED.fullmatch(name):
-            groups[found[1].lower()].append(place)
+        if match := NUMBERED.fullmatch(name):
+            groups[match[1].lower()].append(place)
     for places in groups.values():
         if len(places) == 4 and _of_unit_length(lines, places):
             names = ", ".join(lines.names[k] for k in places)
@@ -45,5 +45,5 @@ def _of_unit_length(lines: Lines, places: list[int]) -> bool:
         length = np.linalg.norm(numbers(lines, places), axis=1)
     except BadInput:
         return False
-    known = length[np.isfinite(length) & (length > 0.0)]
-    return bool(len(known)) and bool(np.mean(np.abs(known - 1.0) < UNIT) > 0.5)
+    valid = length[np.isfinite(length) & (length > 0.0)]
+    return bool(len(valid)) and bool(np.mean(np.abs(valid - 1.0) < UNIT) > 0.5)

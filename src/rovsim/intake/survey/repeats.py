@@ -35,8 +35,8 @@ def check_unmixed(lines: Lines) -> None:
         if len(begins) > 1 and set(begins[1:]) <= set(changes) and len(changes) < 2 * len(begins):
             raise _several(lines, "runs", "its times begin anew where", name, labels[begins])
         if len(changes) > MIXED * len(labels) and _jumps(lines, labels):
-            own = [label for label in dict.fromkeys(labels) if label]
-            raise _several(lines, "bodies", "it jumps from one to another where", name, own)
+            bodies = [label for label in dict.fromkeys(labels) if label]
+            raise _several(lines, "bodies", "it jumps from one to another where", name, bodies)
 
 
 def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
@@ -73,20 +73,20 @@ def _jumps(lines: Lines, labels: Array) -> bool:
     except BadInput:
         return False
     labels = labels[: len(value)]
-    far = np.linalg.norm(np.diff(value, axis=0), axis=1)[labels[1:] != labels[:-1]]
-    own = [np.linalg.norm(np.diff(value[labels == k], axis=0), axis=1) for k in set(labels)]
-    near = np.concatenate(own)
-    if not (np.isfinite(far).any() and np.isfinite(near).any()):
+    between = np.linalg.norm(np.diff(value, axis=0), axis=1)[labels[1:] != labels[:-1]]
+    steps = [np.linalg.norm(np.diff(value[labels == k], axis=0), axis=1) for k in set(labels)]
+    within = np.concatenate(steps)
+    if not (np.isfinite(between).any() and np.isfinite(within).any()):
         return False
-    return float(np.nanmedian(far)) > APART * float(np.nanmedian(near))
+    return float(np.nanmedian(between)) > APART * float(np.nanmedian(within))
 
 
 def _several(
     lines: Lines, what: str, how: str, name: str, labels: Sequence[str] | Array
 ) -> SeveralRuns:
-    told = ", ".join(labels[:6]) + (" …" if len(labels) > 6 else "")
+    examples = ", ".join(labels[:6]) + (" …" if len(labels) > 6 else "")
     return SeveralRuns(
-        f"{len(labels)} {what} in one file: {how} '{name}' changes ({told})",
+        f"{len(labels)} {what} in one file: {how} '{name}' changes ({examples})",
         where=lines.path,
         expected="one run and one body a file",
         remedy=f"Split it by '{name}', a file for each, and a log of commands by its runs.",
@@ -104,8 +104,8 @@ def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
     if double < MANY * len(time):
         return ()
     coarse = ". They are whole seconds: export them with decimals"
-    more = coarse if np.array_equal(time, np.round(time)) else ""
-    return (f"{double} of {len(time)} lines have the time of another and are not used{more}",)
+    advice = coarse if np.array_equal(time, np.round(time)) else ""
+    return (f"{double} of {len(time)} lines have the time of another and are not used{advice}",)
 
 
 def _double(time: Array) -> int:

@@ -99,23 +99,23 @@ def find_by_size(
     Raises:
         UnknownUnit: the columns name no unit, or a wrong one, and their numbers allow two.
     """
-    names, own = list(here), [lines.names[place] for place in here.values()]
-    named = all(a == b or split_unit(b)[1] for a, b in zip(names, own, strict=True))
-    said: tuple[str, ...]
+    names, file_names = list(here), [lines.names[place] for place in here.values()]
+    stated = all(a == b or split_unit(b)[1] for a, b in zip(names, file_names, strict=True))
+    other_units: tuple[str, ...]
     if names[0] in POSITION:
-        said, judge = ("mm", "cm"), _metres
+        other_units, judge = ("mm", "cm"), _metres
     elif names[0] in EULER:
-        said, judge = ("deg",), _radians
+        other_units, judge = ("deg",), _radians
     else:
         return 1.0, ""
-    if named and any(split_unit(name)[1] in said for name in own):
+    if stated and any(split_unit(name)[1] in other_units for name in file_names):
         return 1.0, ""
     if not np.isfinite(value).any():
         return 1.0, ""
-    key = tuple(own)
+    key = tuple(file_names)
 
     def decide() -> Unit:
-        return judge(_Columns(lines, key, names, value, time, named))
+        return judge(_Columns(lines, key, names, value, time, stated))
 
     unit = units.settle(key, decide)
     return unit.factor, unit.said
@@ -149,16 +149,16 @@ class _Columns:
 def _metres(of: _Columns) -> Unit:
     """Tell the unit of positions by how far and how fast a vehicle would move in m."""
     low, high = usual_range(of.value)
-    far, fast = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
-    if fast > CREEPING:
-        return Unit(1e-3, f" in mm, by its size ({fast:.0f} m/s if it were m)", True)
-    if of.named and fast <= FASTEST:
+    extent, speed = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
+    if speed > CREEPING:
+        return Unit(1e-3, f" in mm, by its size ({speed:.0f} m/s if it were m)", True)
+    if of.named and speed <= FASTEST:
         return Unit(1.0, "", False)
-    if fast < SLOW_ENOUGH and far < 0.1 * FARTHEST:
+    if speed < SLOW_ENOUGH and extent < 0.1 * FARTHEST:
         return Unit(1.0, " in m, by its size", False)
     raise of.asked(
-        f"positions ({', '.join(of.key)}) over {far:.3g}, {fast:.3g} per second, without a unit "
-        f"({'mm or cm' if fast > FASTEST else 'm, cm or mm'}?)",
+        f"positions ({', '.join(of.key)}) over {extent:.3g}, {speed:.3g} per second, without a "
+        f"unit ({'mm or cm' if speed > FASTEST else 'm, cm or mm'}?)",
         "x_m, y_m, z_m, or x_cm, y_cm, z_cm, or x_mm, y_mm, z_mm",
         large=True,
     )

@@ -79,32 +79,32 @@ def _check_ending(path: Path, signature: Signature) -> None:
 
 
 def _refuse_known(path: Path, head: bytes) -> None:
-    known = [told for magic, told in KNOWN.items() if head.startswith(magic)]
+    matches = [match for magic, match in KNOWN.items() if head.startswith(magic)]
     if head.startswith(ZIP):
         size = int.from_bytes(head[26:28], "little")
-        known = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
-    if not known and not is_table(head):
-        known = [text] if (text := _known_text(head_lines(head))) else []
-    for told in known:
-        raise BadInput(told[0], where=path, expected=FORMATS, remedy=told[1])
+        matches = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
+    if not matches and not is_table(head):
+        matches = [text] if (text := _known_text(head_lines(head))) else []
+    for match in matches:
+        raise BadInput(match[0], where=path, expected=FORMATS, remedy=match[1])
 
 
 def _known_text(lines: list[str]) -> tuple[str, str] | None:
     """Tell by its first line what a text is, and what to do about it; None where unknown."""
-    first = lines[0].strip() if lines else ""
-    if first.startswith(MARKERS):
+    line = lines[0].strip() if lines else ""
+    if line.startswith(MARKERS):
         return (
             "an export of markers (Vicon or TRC), not of rigid bodies",
             "Export the rigid body (segment): position and attitude, as csv.",
         )
-    if first.rstrip(",;") in VICON:
+    if line.rstrip(",;") in VICON:
         return (
-            f"a csv export of Vicon that starts with {first.rstrip(',;')}",
+            f"a csv export of Vicon that starts with {line.rstrip(',;')}",
             "Export the object (segment) and save it as csv with our columns: time_s is (Frame − "
             "1) over the rate in its second line, x_m, y_m, z_m are TX, TY, TZ / 1000, and qx, qy, "
             "qz, qw are scipy's Rotation.from_rotvec of RX, RY, RZ, a rotation vector.",
         )
-    if _is_tum(first):
+    if _is_tum(line):
         return (
             "text of eight numbers a line (a trajectory as TUM writes it)",
             "Put the line time_s,x_m,y_m,z_m,qx,qy,qz,qw above, and commas for the spaces.",
@@ -128,13 +128,16 @@ def _begins_as_text(head: bytes) -> bool:
 def _unknown(path: Path, head: bytes) -> BadInput:
     lines, remedy = head_lines(head), f"Export the run as {FORMATS}."
     if decoded(head) is None:
-        found = "binary data of no known kind"
+        problem = "binary data of no known kind"
         if _begins_as_text(head):
-            found, remedy = "text with NUL bytes in it, as after a power cut", "Remove these bytes."
+            problem, remedy = (
+                "text with NUL bytes in it, as after a power cut",
+                "Remove these bytes.",
+            )
     elif len(lines) == 1 and re.search(r"[,;\t]", lines[0]):
-        found, remedy = "a line of column names, and no data below", "Export the run again."
+        problem, remedy = "a line of column names, and no data below", "Export the run again."
     elif lines:
-        found = f"text that starts with {lines[0].strip()[:40]!r}"
+        problem = f"text that starts with {lines[0].strip()[:40]!r}"
     else:
-        found, remedy = "the file is empty", "Export it again."
-    return BadInput(found, where=path, expected=FORMATS, remedy=remedy)
+        problem, remedy = "the file is empty", "Export it again."
+    return BadInput(problem, where=path, expected=FORMATS, remedy=remedy)

@@ -20,11 +20,11 @@ def find_start(path: Path) -> float | None:
     if not path.is_file():
         return None
     with path.open("rb") as file:
-        found = STAMPS.search(decoded(file.read(HEAD)) or "")
-    if found is None:
+        match = STAMPS.search(decoded(file.read(HEAD)) or "")
+    if match is None:
         return None
-    text = found["qtm"] or found["motive"]
-    form = "%Y-%m-%d, %H:%M:%S" if found["qtm"] else "%Y-%m-%d %I.%M.%S %p"
+    text = match["qtm"] or match["motive"]
+    form = "%Y-%m-%d, %H:%M:%S" if match["qtm"] else "%Y-%m-%d %I.%M.%S %p"
     part = re.search(r"(?<=[:.]\d\d[:.]\d\d)\.\d+", text)
     share = part[0] if part else ""
     try:

@@ -39,10 +39,10 @@ def find_time_unit(
         times(lines, place)  # says what they are
     late = float(np.nanmax(np.abs(value), initial=0.0))
     step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
-    named = lines.names[place] == TIME
-    if named and step < LONGEST_STEP and not late > LATEST:
+    in_seconds = lines.names[place] == TIME
+    if in_seconds and step < LONGEST_STEP and not late > LATEST:
         return 1.0, ""
-    if unit and not named:
+    if unit and not in_seconds:
         return FACTORS[unit], f" in {unit}"
     for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
         if late > size:
@@ -50,8 +50,8 @@ def find_time_unit(
     if not step > 0.0:
         return 1.0, " in s, by its steps"
     key, lasts = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
-    told = units.settle(key, lambda: _by_steps(lines, key, step, lasts))
-    return told.factor, told.said
+    settled = units.settle(key, lambda: _by_steps(lines, key, step, lasts))
+    return settled.factor, settled.said
 
 
 def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:

@@ -46,11 +46,11 @@ class Timing:
         )
 
     def __str__(self) -> str:
-        said = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"
+        text = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"
         if self.jitter > JITTERY:
-            said += f", steps vary by {100 * self.jitter:.0f} %"
+            text += f", steps vary by {100 * self.jitter:.0f} %"
         if self.gaps == 1:
-            said += f", a gap of {self.longest:.2f} s"
+            text += f", a gap of {self.longest:.2f} s"
         elif self.gaps:
-            said += f", {self.gaps} gaps, the longest {self.longest:.2f} s"
-        return said
+            text += f", {self.gaps} gaps, the longest {self.longest:.2f} s"
+        return text
