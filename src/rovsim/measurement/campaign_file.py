@@ -144,8 +144,8 @@ class CommandLog(Section):
     @property
     def axis_numbers(self) -> list[int]:
         """For `demand` and `wrench`: the axis, 0 to 5, of every column."""
-        named = self.axes or (self.names if set(self.names) <= set(AXES) else AXES)
-        return [AXES.index(axis) for axis in named]
+        axes = self.axes or (self.names if set(self.names) <= set(AXES) else AXES)
+        return [AXES.index(axis) for axis in axes]
 
 
 class Run(Section):

@@ -12,10 +12,10 @@ def doubt_test_run(campaign: Campaign, run: Run) -> Iterator[str]:
     """Yield a sentence for each train run whose files and used spans a test run repeats."""
     if run.split != "test":
         return
-    own = campaign.mocap_paths(run)
+    paths = campaign.mocap_paths(run)
     for other in campaign.runs:
-        theirs = campaign.mocap_paths(other)
-        if other.split == "train" and _overlap(run, other) and _equal(own, theirs):
+        other_paths = campaign.mocap_paths(other)
+        if other.split == "train" and _overlap(run, other) and _equal(paths, other_paths):
             yield (
                 f"This test run holds the recording of train run {other.id}: its errors say "
                 "nothing of a run that nobody has seen. Hold another run out."

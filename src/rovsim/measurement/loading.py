@@ -59,25 +59,25 @@ def check_ids(runs: Sequence[Run], where: Path | str) -> None:
     Raises:
         BadInput: there are two such ids; it names both.
     """
-    seen: dict[str, str] = {}
+    ids: dict[str, str] = {}
     for place, run in enumerate(runs):
         # some file systems see neither case nor Unicode form
         key = unicodedata.normalize("NFC", run.id).casefold()
-        if key in seen:
+        if key in ids:
             raise BadInput(
-                f"'runs.{place}.id' is {run.id!r}, and an earlier run is {seen[key]!r}",
+                f"'runs.{place}.id' is {run.id!r}, and an earlier run is {ids[key]!r}",
                 where=where,
                 expected="a different id for each run (case does not count)",
                 remedy="Rename one of them.",
             )
-        seen[key] = run.id
+        ids[key] = run.id
 
 
 def _check_mocap(mocap: Mocap, file: Path) -> None:
     """Refuse axes or topics that do not belong to the stated format of the file."""
     readers, plain = mocap_readers(), FileAxes()
-    own = readers[mocap.format].axes if mocap.format in readers else plain
-    known = {*plain.every, *own.every}
+    file_axes = readers[mocap.format].axes if mocap.format in readers else plain
+    allowed = {*plain.every, *file_axes.every}
     if mocap.topics is not None and mocap.format in readers and mocap.format != BAG:
         raise BadInput(
             f"'mocap.topics' with 'mocap.format: {mocap.format}'",
@@ -85,18 +85,18 @@ def _check_mocap(mocap: Mocap, file: Path) -> None:
             expected="topics of a ROS 2 bag; no other format has any",
             remedy="Leave it out, or correct 'format'.",
         )
-    turned = [axes for axes in (mocap.world_axes, mocap.body_axes) if axes not in known]
-    if not turned:
+    foreign = [axes for axes in (mocap.world_axes, mocap.body_axes) if axes not in allowed]
+    if not foreign:
         return
-    others = "; ".join(
-        f"{' and '.join(further)} are those of {name}"
+    other_formats = "; ".join(
+        f"{' and '.join(extra)} are those of {name}"
         for name, reader in readers.items()
-        if (further := [axes for axes in reader.axes.every if axes not in plain.every])
+        if (extra := [axes for axes in reader.axes.every if axes not in plain.every])
     )
     raise BadInput(
-        f"the axes '{turned[0]}' with 'mocap.format: {mocap.format}'",
+        f"the axes '{foreign[0]}' with 'mocap.format: {mocap.format}'",
         where=file,
-        expected=f"{' or '.join(plain.world)}, and {' or '.join(plain.body)}; {others}",
+        expected=f"{' or '.join(plain.world)}, and {' or '.join(plain.body)}; {other_formats}",
         remedy="Turn the file's axes, or name those it has.",
     )
 
@@ -125,7 +125,7 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             expected="further columns of a csv; no other format has any",
             remedy="Leave it out; the battery's voltage is read from a log by itself.",
         )
-    if log is not None and (strange := [one for one in log.angles if one not in log.names]):
+    if log is not None and (strange := [name for name in log.angles if name not in log.names]):
         raise unlisted(
             strange[0],
             log.names,
@@ -150,19 +150,19 @@ def _folder(text: str, file: Path) -> Path:
 
     def value(match: re.Match[str]) -> str:
         name = match["name"] or match["bare"]
-        found = os.environ.get(name) or match["default"]
-        if found is None:
+        setting = os.environ.get(name) or match["default"]
+        if setting is None:
             raise BadInput(
                 f"'folder' is {text!r}, and the environment has no {name}",
                 where=file,
                 expected=f"{name} set to the folder of the recordings",
                 remedy=f"Set it, or give a default: ${{{name}:-../recordings}}.",
             )
-        return found
+        return setting
 
     pattern = r"\$(?:\{(?P<name>\w+)(?::-(?P<default>[^}]*))?\}|(?P<bare>\w+))"
-    named = os.path.expanduser(re.sub(pattern, value, text))
-    return Path(os.path.normpath(file.parent / named))
+    folder = os.path.expanduser(re.sub(pattern, value, text))
+    return Path(os.path.normpath(file.parent / folder))
 
 
 def _files_of(campaign: Campaign, run: Run) -> list[tuple[str, Path]]:
@@ -179,15 +179,15 @@ def _check_files(campaign: Campaign) -> None:
     ]
     if not missing:
         return
-    key, run_id, first = missing[0]
-    others = dict.fromkeys(path.name for _, _, path in missing if path != first)
+    key, run_id, first_path = missing[0]
+    others = dict.fromkeys(path.name for _, _, path in missing if path != first_path)
     so_are = f"; so are {', '.join(others)}" if others else ""
     remedy = (
         f"Put {'them' if others else 'it'} there, correct '{key}' of that run, or set 'folder' (or "
         "the environment variable that it names) to where the recordings are."
     )
     raise BadInput(
-        f"the {key} file of run '{run_id}' is missing: {first}{so_are}",
+        f"the {key} file of run '{run_id}' is missing: {first_path}{so_are}",
         where=campaign.file,
         expected=f"{'these files' if others else 'that file'} in {campaign.folder}",
         remedy=f"{remedy} {campaign.source}".strip(),

@@ -58,8 +58,8 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
     good &= step < LONG_BIN * np.median(step)
     if good.sum() < FEWEST:
         return None
-    to_next, at_times, both = (np.median(np.abs(moved - x)[good], axis=0) for x in readings)
-    return to_next, at_times, both, bool(np.std(step[good]) < UNEVEN * np.mean(step[good]))
+    to_next, at_times, both_means = (np.median(np.abs(moved - x)[good], axis=0) for x in readings)
+    return to_next, at_times, both_means, bool(np.std(step[good]) < UNEVEN * np.mean(step[good]))
 
 
 def _moved(recording: Recording) -> Array:
@@ -71,5 +71,5 @@ def _moved(recording: Recording) -> Array:
 
 def _ratio(one: Array, other: Array) -> float:
     """Geometric mean over the axes that moved of the ratio of two differences (6,)."""
-    known = (one > 0.0) & (other > 0.0)
-    return float(np.exp(np.mean(np.log(one[known] / other[known])))) if known.any() else 1.0
+    moved = (one > 0.0) & (other > 0.0)
+    return float(np.exp(np.mean(np.log(one[moved] / other[moved])))) if moved.any() else 1.0

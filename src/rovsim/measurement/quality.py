@@ -63,7 +63,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         anomalies: what was repaired or noticed while reading.
         outliers: number of frames that the outlier rejection refused; None when not looked for.
     """
-    time, found = recording.time, recording.found
+    time, tracked = recording.time, recording.found
     gaps = find_gaps(recording, anomalies.used)
     report = Quality(
         run=recording.run.id,
@@ -73,7 +73,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         duration_s=float(time[-1] - time[0]),
         frames=len(time),
         # frames outside of `use` are marked as not found, but the cameras did not miss them
-        not_found=int(np.sum(~found)) - anomalies.left_out if recording.posed else 0,
+        not_found=int(np.sum(~tracked)) - anomalies.left_out if recording.posed else 0,
         longest_gap_s=max((gap.duration_s for gap in gaps), default=0.0),
         gaps=tuple(gaps),
         used=anomalies.used,
@@ -86,14 +86,14 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         unusable=usable_reason(recording),
         channels=_describe_channels(recording),
     )
-    others = (*remark(report), *anomalies.notes)
+    remarks = (*remark(report), *anomalies.notes)
     doubts = (
         *doubt(report),
         *doubt_means(recording),
         *doubt_velocities(recording),
         *doubt_delays(recording),
     )
-    return report.model_copy(update={"remarks": others}).doubted(*doubts)
+    return report.model_copy(update={"remarks": remarks}).doubted(*doubts)
 
 
 def usable_reason(recording: Recording) -> str | None:
@@ -101,21 +101,22 @@ def usable_reason(recording: Recording) -> str | None:
 
     Without full poses only its length and the size of its velocities are checked.
     """
-    found = recording.found
+    tracked = recording.found
     if too_fast := find_impossible(recording):
         return too_fast
     if not recording.posed:
         length = float(np.ptp(recording.time))
         short = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"
         return short if length < SHORTEST_RUN else None
-    seen = float(np.sum(found)) / recording.rate
-    duration = float(np.ptp(recording.time[found])) if found.any() else 0.0
-    if min(seen, duration) < SHORTEST_RUN:
+    tracked_s = float(np.sum(tracked)) / recording.rate
+    duration = float(np.ptp(recording.time[tracked])) if tracked.any() else 0.0
+    if min(tracked_s, duration) < SHORTEST_RUN:
         return (
-            f"too short: the body was seen for {min(seen, duration):.2f} s, {SHORTEST_RUN:g} needed"
+            f"too short: the body was seen for {min(tracked_s, duration):.2f} s, "
+            f"{SHORTEST_RUN:g} needed"
         )
-    position = _spread(recording.position[found])
-    attitude = _spread(_turns(recording.attitude[found]))
+    position = _spread(recording.position[tracked])
+    attitude = _spread(_turns(recording.attitude[tracked]))
     if position < STILL_POSITION and attitude < STILL_ATTITUDE:
         return f"motionless: it stays within {1e3 * position:.1f} mm and {attitude:.3f} rad"
     return None
@@ -171,8 +172,8 @@ def _velocity(recording: Recording) -> tuple[Array, Array]:
     assert poses.measured is not None
     length = max(BLOCK, READINGS * poses.measured.period)
     columns = poses.time[:, None], poses.eta[:, :3], poses.eta[:, 3:]
-    each = tuple(column[poses.usable] for column in columns)
-    return _differences(*each, rate=1.0 / time_step(poses.time), length=length), poses.measured.axes
+    used = tuple(column[poses.usable] for column in columns)
+    return _differences(*used, rate=1.0 / time_step(poses.time), length=length), poses.measured.axes
 
 
 def rough_velocity(recording: Recording) -> Array:
@@ -197,10 +198,10 @@ def _differences(
     size = max(1, round(length * rate))
     time, position, attitude = (_blocks(a, size) for a in (time, position, attitude))
     step = np.diff(time[:, 0])
-    near = step < LONG_STEP * size / rate  # no difference across a gap
+    contiguous = step < LONG_STEP * size / rate  # no difference across a gap
     dt = step[:, None]
     linear = unrotate(attitude[:-1], np.diff(position, axis=0) / dt)
-    return np.hstack([linear, turns(attitude) / dt])[near]
+    return np.hstack([linear, turns(attitude) / dt])[contiguous]
 
 
 def measure_noise(recording: Recording) -> PoseNoise:
@@ -250,9 +251,9 @@ def _describe_commands(recording: Recording) -> CommandLog | None:
 
 def _seen(recording: Recording) -> tuple[Array, Array, Array]:
     """Time (k, 1), position (k, 3) and sign-continuous attitude (k, 4) of the found frames."""
-    found = recording.found
-    attitude = continuous(recording.attitude[found])
-    return recording.time[found][:, None], recording.position[found], attitude
+    tracked = recording.found
+    attitude = continuous(recording.attitude[tracked])
+    return recording.time[tracked][:, None], recording.position[tracked], attitude
 
 
 def _blocks(values: Array, size: int) -> Array:

@@ -57,11 +57,11 @@ def _frames(report: Quality) -> Iterator[str]:
 
 
 def _held_channels(report: Quality) -> str:
-    held = [
+    channels = [
         f"{kind} ({' '.join(c.measured)}; {f'{c.rate_hz:.3g} Hz' if c.rate_hz else 'once'})"
         for kind, c in report.channels.items()
     ]
-    return f"There are no full poses; what was measured is {', '.join(held)}."
+    return f"There are no full poses; what was measured is {', '.join(channels)}."
 
 
 def _commands(report: Quality) -> Iterator[str]:
@@ -84,14 +84,14 @@ def _commands(report: Quality) -> Iterator[str]:
 
 def _repairs(report: Quality) -> Iterator[str]:
     repairs = report.repairs
-    for prefix, what in (("", "frames"), ("command_", "command lines")):
+    for prefix, lines in (("", "frames"), ("command_", "command lines")):
         unsorted, duplicates = repairs[f"{prefix}unsorted"], repairs[f"{prefix}duplicates"]
         if unsorted:
-            yield f"{unsorted} {what} were out of order and were sorted by time."
+            yield f"{unsorted} {lines} were out of order and were sorted by time."
         if duplicates:
-            yield f"{duplicates} {what} repeated a time and were left out."
+            yield f"{duplicates} {lines} repeated a time and were left out."
         if repairs[f"{prefix}cut_lines"]:
-            yield f"The last of the {what} is cut short and was left out: was the export complete?"
+            yield f"The last of the {lines} is cut short and was left out: was the export complete?"
     if repairs["wrong_header_rate"]:
         rate = report.rate_hz.median
         yield f"The header's FREQUENCY is not the {rate:.4g} Hz of the times; the times are used."

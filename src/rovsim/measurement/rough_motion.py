@@ -49,19 +49,19 @@ class Velocities:
 
 def even_poses(export: Export | Recording) -> ResampledPoses:
     """Take medians of the found poses over the steps of an even clock, and bridge short gaps."""
-    seen = export.found
+    tracked = export.found
     time, position, attitude = (
-        export.time[seen],
-        export.position[seen],
-        continuous(export.attitude[seen]),
+        export.time[tracked],
+        export.position[tracked],
+        continuous(export.attitude[tracked]),
     )
     clock = even_clock(time)
     step = clock[1] - clock[0]
     bins = np.floor((time - clock[0]) / step + 0.5).astype(int)
-    near = bins < len(clock) + 1
-    middle = _medians(bins[near], np.column_stack([time, position, attitude])[near])
-    known = np.flatnonzero(np.isfinite(middle).all(axis=1))
-    filled = np.stack([np.interp(clock, middle[known, 0], c) for c in middle[known, 1:].T], axis=1)
+    inside = bins < len(clock) + 1
+    middle = _medians(bins[inside], np.column_stack([time, position, attitude])[inside])
+    valid = np.flatnonzero(np.isfinite(middle).all(axis=1))
+    filled = np.stack([np.interp(clock, middle[valid, 0], c) for c in middle[valid, 1:].T], axis=1)
     filled[_far(clock, time)] = np.nan
     return ResampledPoses(clock, filled[:, :3], normalized(filled[:, 3:]))
 
@@ -86,13 +86,13 @@ def _medians(bins: Array, values: Array) -> Array:
     Returns:
         The medians (b, c) of bins 0 to b - 1.
     """
-    own, starts, counts = np.unique(bins, return_index=True, return_counts=True)
-    found = np.full((bins[-1] + 1, values.shape[1]), np.nan)
+    unique_bins, starts, counts = np.unique(bins, return_index=True, return_counts=True)
+    medians = np.full((bins[-1] + 1, values.shape[1]), np.nan)
     for count in np.unique(counts):  # all bins with the same number of rows at once
         alike = counts == count
         rows = starts[alike][:, None] + np.arange(count)
-        found[own[alike]] = np.median(values[rows], axis=1)
-    return found
+        medians[unique_bins[alike]] = np.median(values[rows], axis=1)
+    return medians
 
 
 def _far(clock: Array, time: Array) -> Array:
@@ -118,9 +118,9 @@ def of_poses(poses: ResampledPoses) -> Velocities:
 
 
 def _exported(export: Export | Recording) -> Velocities:
-    seen, clock = export.found, even_clock(export.time[export.found])
+    tracked, clock = export.found, even_clock(export.time[export.found])
     assert export.nu is not None
-    nu = _interpolated(clock, export.time[seen], export.nu[seen])
+    nu = _interpolated(clock, export.time[tracked], export.nu[tracked])
     return Velocities(clock, nu)
 
 
@@ -141,16 +141,16 @@ def _of_channels(channels: Channels) -> Velocities:
 
 
 def _whole(channel: Channel) -> tuple[Array, Array]:
-    known = np.isfinite(channel.value).all(axis=1)
-    return channel.time[known], channel.value[known]
+    complete = np.isfinite(channel.value).all(axis=1)
+    return channel.time[complete], channel.value[complete]
 
 
 def _interpolated(clock: Array, time: Array, values: Array) -> Array:
     if len(time) < 2:
         return np.full((len(clock), values.shape[1]), np.nan)
-    found = np.stack([np.interp(clock, time, c) for c in values.T], axis=1)
-    found[_far(clock, time)] = np.nan
-    return found
+    resampled = np.stack([np.interp(clock, time, c) for c in values.T], axis=1)
+    resampled[_far(clock, time)] = np.nan
+    return resampled
 
 
 def _rates(time: Array, attitude: Array) -> Array:
@@ -172,9 +172,9 @@ def smooth(values: Array) -> Array:
 
 
 def _windowed(values: Array, weights: Array) -> Array:
-    found = np.full(values.shape, np.nan)
+    filtered = np.full(values.shape, np.nan)
     inside = slice(HALF_WINDOW, len(values) - HALF_WINDOW)
     if len(values) >= len(weights):
         for k, column in enumerate(values.T):
-            found[inside, k] = np.convolve(column, weights, mode="valid")
-    return found
+            filtered[inside, k] = np.convolve(column, weights, mode="valid")
+    return filtered

@@ -44,9 +44,9 @@ def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
     if not recording.found.any():
         return
     for kind, measured in _measured(recording).items():
-        both = _compare(recording, kind, measured)
-        if both is not None and (said := _judge(kind, both)):
-            yield said
+        comparison = _compare(recording, kind, measured)
+        if comparison is not None and (doubt := _judge(kind, comparison)):
+            yield doubt
 
 
 def find_impossible(of: Recording | Export) -> str | None:
@@ -54,8 +54,8 @@ def find_impossible(of: Recording | Export) -> str | None:
     for name, limit in LIMITS.items():
         for value in (_beside_poses(of).get(name), getattr(of.channels.get(name), "value", None)):
             if value is not None and (usual := limit.beyond(value)):
-                most = f"{limit.fastest:g} at most: are they {limit.others[0]}?"
-                return f"too fast: {name} of {usual:.3g} {limit.unit}, {most}"
+                hint = f"{limit.fastest:g} at most: are they {limit.others[0]}?"
+                return f"too fast: {name} of {usual:.3g} {limit.unit}, {hint}"
     return None
 
 
@@ -78,8 +78,8 @@ def _at(own: Channel, time: Array) -> Array:
 
 def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None:
     """Average both over sliding windows; None with too few windows or hardly any motion."""
-    seen = of.found & np.isfinite(measured).all(axis=1)
-    time, position, attitude = of.time[seen], of.position[seen], of.attitude[seen]
+    tracked = of.found & np.isfinite(measured).all(axis=1)
+    time, position, attitude = of.time[tracked], of.position[tracked], of.attitude[tracked]
     if len(time) < FEWEST:
         return None
     k = max(1, round(WINDOW / float(np.median(np.diff(time)))))
@@ -94,7 +94,7 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
         body = log(multiply(conjugate(attitude[:-k]), attitude[k:])) / lasts
         world = log(multiply(attitude[k:], conjugate(attitude[:-k]))) / lasts
     step = np.diff(time)[:, None]
-    value = measured[seen]
+    value = measured[tracked]
     way = np.vstack([np.zeros((1, 3)), np.cumsum(0.5 * step * (value[1:] + value[:-1]), axis=0)])
     mean = (way[k:] - way[:-k]) / lasts
     if float(np.sqrt(np.mean(body[good] ** 2))) < EXCITED:
@@ -103,13 +103,13 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
 
 
 def _judge(kind: str, both: _Both) -> str:
-    what, alike = SAID[kind], _cosine(both.measured, both.body)
+    quantity, alike = SAID[kind], _cosine(both.measured, both.body)
     if alike > ALIKE:
         return _judge_size(kind, both)
     in_world = _cosine(both.measured, both.world)
     if in_world > ALIKE:
         return (
-            f"The {what} lie along the axes of the world, by the poses beside them (likeness "
+            f"The {quantity} lie along the axes of the world, by the poses beside them (likeness "
             f"{in_world:.2f}, along the body {alike:.2f}): turn them into the body's axes, or "
             "leave them out."
         )
@@ -118,13 +118,13 @@ def _judge(kind: str, both: _Both) -> str:
     if turned > ALIKE:
         axes = " and ".join(n for n, s in zip("xyz", signs, strict=True) if s < 0.0)
         return (
-            f"The {what} fit the poses beside them with the sign of {axes} turned (likeness "
-            f"{turned:.2f}, as they are {alike:.2f}): poses and {what} have other axes. Bring them "
-            "to the same."
+            f"The {quantity} fit the poses beside them with the sign of {axes} turned (likeness "
+            f"{turned:.2f}, as they are {alike:.2f}): poses and {quantity} have other axes. Bring "
+            "them to the same."
         )
     if alike < UNLIKE:
         return (
-            f"The {what} do not fit the poses beside them (likeness {alike:.2f}): check their "
+            f"The {quantity} do not fit the poses beside them (likeness {alike:.2f}): check their "
             "axes, their order and their clock, or leave them out."
         )
     return ""
@@ -136,9 +136,9 @@ def _judge_size(kind: str, both: _Both) -> str:
         return ""
     unit = next((u for f, u in UNITS[kind] if abs(size / f - 1.0) < NEAR_UNIT), "")
     ours = LIMITS[kind].unit
-    said = f"they are {unit}, not {ours}." if unit else f"are they {ours}?"
+    hint = f"they are {unit}, not {ours}." if unit else f"are they {ours}?"
     return (
-        f"The {SAID[kind]} are {size:.3g} times what the poses beside them say: {said} Name "
+        f"The {SAID[kind]} are {size:.3g} times what the poses beside them say: {hint} Name "
         "their columns after their unit, or correct them."
     )
 

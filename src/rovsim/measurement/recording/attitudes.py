@@ -24,8 +24,8 @@ def unit_quaternions(values: Array) -> tuple[Array, Array]:
     Those far from unit length are not: trackers write zeros where the body was not found. They
     become the unit quaternion without rotation.
     """
-    found = finite_rows(values) & (np.abs(_length(values) - 1.0) < UNIT_WITHIN)
-    return normalized(np.where(found[:, None], values, [1.0, 0.0, 0.0, 0.0])), found
+    valid = finite_rows(values) & (np.abs(_length(values) - 1.0) < UNIT_WITHIN)
+    return normalized(np.where(valid[:, None], values, [1.0, 0.0, 0.0, 0.0])), valid
 
 
 def check_unit_length(values: Array, place: Callable[[int], str]) -> tuple[str, ...]:
@@ -41,12 +41,12 @@ def check_unit_length(values: Array, place: Callable[[int], str]) -> tuple[str, 
     Raises:
         BadInput: most of those that are not zero have not length 1.
     """
-    given = finite_rows(values) & values.any(axis=1)
+    nonzero = finite_rows(values) & values.any(axis=1)
     length = _length(values)
-    off = np.flatnonzero(given & ~(np.abs(length - 1.0) < UNIT_WITHIN))
-    if 2 * len(off) > given.sum():
+    off = np.flatnonzero(nonzero & ~(np.abs(length - 1.0) < UNIT_WITHIN))
+    if 2 * len(off) > nonzero.sum():
         raise BadInput(
-            f"a quaternion of length {length[off[0]]:.3g} ({len(off)} of {given.sum()} have not "
+            f"a quaternion of length {length[off[0]]:.3g} ({len(off)} of {nonzero.sum()} have not "
             "length 1)",
             where=place(int(off[0])),
             expected="quaternions of length 1, or zeros where the body was not found",

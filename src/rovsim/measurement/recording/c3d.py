@@ -74,14 +74,14 @@ def read_c3d(path: Path, mocap: Mocap) -> Export:
         rate = content.number("ROTATION:RATE")
         if not (np.isfinite(rate) and rate > 0):
             raise _refused(path, f"ROTATION:RATE is {rate:g}", "the capture rate in Hz")
-        table, cut = _rotations(content, len(names))
+        table, cut_lines = _rotations(content, len(names))
         R = table[:, body, :16].reshape(-1, 4, 4).transpose(0, 2, 1)
-        place = R[:, :3, 3] * _metres(content)
-        seen = finite_rows(table[:, body]) & (table[:, body, 16] >= 0.0)
-        found = seen & orthonormal(R[:, :3, :3])
-        attitude = from_matrix(np.where(found[:, None, None], R[:, :3, :3], np.eye(3)))
-        counts = {"cut_lines": cut, "bad_rotations": int(np.sum(seen & ~found))}
-        return Export(np.arange(len(table)) / rate, place, attitude, found, rate, counts=counts)
+        position = R[:, :3, 3] * _metres(content)
+        visible = finite_rows(table[:, body]) & (table[:, body, 16] >= 0.0)
+        valid = visible & orthonormal(R[:, :3, :3])
+        attitude = from_matrix(np.where(valid[:, None, None], R[:, :3, :3], np.eye(3)))
+        counts = {"cut_lines": cut_lines, "bad_rotations": int(np.sum(visible & ~valid))}
+        return Export(np.arange(len(table)) / rate, position, attitude, valid, rate, counts=counts)
 
 
 def _refused(path: Path, found: str, expected: str) -> BadInput:
@@ -91,8 +91,8 @@ def _refused(path: Path, found: str, expected: str) -> BadInput:
 def _open(path: Path) -> Content:
     raw = path.read_bytes()
     if len(raw) < 2 * BLOCK or raw[1] != KEY or raw[0] < 1:
-        said = "the file is empty" if not raw else "it does not start as a C3D file does"
-        raise _refused(path, said, "a C3D file")
+        problem = "the file is empty" if not raw else "it does not start as a C3D file does"
+        raise _refused(path, problem, "a C3D file")
     start = (raw[0] - 1) * BLOCK
     processor = raw[start + 3]
     if processor not in (INTEL, SUN):
@@ -110,7 +110,7 @@ def _parameters(raw: bytes, at: int, order: str) -> dict[str, Values]:
         order: byte order, as `struct` writes it.
     """
     groups: dict[int, str] = {}
-    found: list[tuple[int, str, Values]] = []
+    entries: list[tuple[int, str, Values]] = []
     while raw[at] and (length := abs(struct.unpack_from("b", raw, at)[0])):
         number = struct.unpack_from("b", raw, at + 1)[0]
         name = raw[at + 2 : at + 2 + length].decode("ascii", "replace").upper()
@@ -119,11 +119,11 @@ def _parameters(raw: bytes, at: int, order: str) -> dict[str, Values]:
         if number < 0:
             groups[-number] = name
         else:
-            found.append((number, name, _values(raw, link + 2, order)))
+            entries.append((number, name, _values(raw, link + 2, order)))
         if step <= 2:  # the last one; a damaged small step would repeat the same place for ever
             break
         at = link + step
-    return {f"{groups.get(number, '?')}:{name}": values for number, name, values in found}
+    return {f"{groups.get(number, '?')}:{name}": values for number, name, values in entries}
 
 
 def _values(raw: bytes, at: int, order: str) -> Values:
@@ -142,11 +142,11 @@ def _values(raw: bytes, at: int, order: str) -> Values:
 def _bodies(content: Content) -> list[str]:
     if "ROTATION:USED" not in content.parameters:
         raise _refused(content.path, "markers alone, no rigid bodies", "a group ROTATION")
-    used = int(content.number("ROTATION:USED"))
+    count = int(content.number("ROTATION:USED"))
     labels = [str(label) for label in content.parameters.get("ROTATION:LABELS", [])]
-    if used < 1:
+    if count < 1:
         raise _refused(content.path, "no rigid bodies", "at least one in ROTATION:USED")
-    return [labels[k] if k < len(labels) else f"body {k + 1}" for k in range(used)]
+    return [labels[k] if k < len(labels) else f"body {k + 1}" for k in range(count)]
 
 
 def _rotations(content: Content, used: int) -> tuple[Array, int]:
@@ -156,8 +156,8 @@ def _rotations(content: Content, used: int) -> tuple[Array, int]:
     """
     ratio = content.parameters.get("ROTATION:RATIO") or [1.0]
     # unsigned, as the header's count of frames is
-    first, last = struct.unpack_from(content.order + "HH", content.raw, 6)
-    expected = (last - first + 1) * max(int(float(ratio[0])), 1)
+    first_frame, last_frame = struct.unpack_from(content.order + "HH", content.raw, 6)
+    expected = (last_frame - first_frame + 1) * max(int(float(ratio[0])), 1)
     start = (int(content.number("ROTATION:DATA_START")) - 1) * BLOCK
     if start < BLOCK:
         raise _refused(content.path, "ROTATION:DATA_START is not behind the header", "a block")

@@ -12,9 +12,9 @@ NEAR = 0.5  # of a filler: a column that reaches so far may mean it
 def find_filler(values: Array) -> float | None:
     """Find the number that stands for "not measured" in a column (n,); None if there is none."""
     for filler in FILLERS:
-        here = values == filler
-        others = np.abs(values[~here & np.isfinite(values)])
-        if here.sum() > 1 and len(others) and others.max() < NEAR * abs(filler):
+        is_filler = values == filler
+        readings = np.abs(values[~is_filler & np.isfinite(values)])
+        if is_filler.sum() > 1 and len(readings) and readings.max() < NEAR * abs(filler):
             return filler
     return None
 

@@ -60,8 +60,8 @@ Channels = Mapping[str, Channel]
 def measured(time: Array, value: Array) -> Channel:
     """Make a channel of the samples with at least one measured component; infinite becomes NaN."""
     value = np.where(np.isfinite(value), value, np.nan)
-    some = ~np.isnan(value).all(axis=1)
-    return Channel(time[some], value[some])
+    nonempty = ~np.isnan(value).all(axis=1)
+    return Channel(time[nonempty], value[nonempty])
 
 
 class TidyChannels(NamedTuple):

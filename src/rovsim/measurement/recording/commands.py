@@ -56,14 +56,14 @@ def as_commands(
     unit = "pwm" if pulses else log.kind
     value, beside = value[:, : len(log.names)], value[:, len(log.names) :]
     _check_range(value, log, unit, locate)
-    whole = finite_rows(value)
-    value, clipped = _normalized(value[whole], log, unit)
-    counts = {**(counts or {}), "dropped": int(np.sum(~whole)), "clipped": clipped}
+    complete = finite_rows(value)
+    value, clipped = _normalized(value[complete], log, unit)
+    counts = {**(counts or {}), "dropped": int(np.sum(~complete)), "clipped": clipped}
     auxiliary = {
-        name: Logged(time[np.isfinite(own)], own[np.isfinite(own)])
-        for name, own in zip(log.auxiliary, beside.T, strict=False)
+        name: Logged(time[np.isfinite(column)], column[np.isfinite(column)])
+        for name, column in zip(log.auxiliary, beside.T, strict=False)
     }
-    return CommandExport(time[whole], value, KIND[log.kind], counts, notes, auxiliary)
+    return CommandExport(time[complete], value, KIND[log.kind], counts, notes, auxiliary)
 
 
 def are_pulses(value: Array) -> bool:
@@ -72,8 +72,8 @@ def are_pulses(value: Array) -> bool:
     NaN and the numbers that stand for no pulse do not count.
     """
     low, high, _ = ALLOWED["pwm"]
-    given = value[np.isfinite(value) & ~pwm.absent(value)]
-    return bool(len(given) and given.min() >= low and given.max() <= high)
+    pulses = value[np.isfinite(value) & ~pwm.absent(value)]
+    return bool(len(pulses) and pulses.min() >= low and pulses.max() <= high)
 
 
 def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:
@@ -92,11 +92,11 @@ def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> No
 
 def _hint(value: Array, log: CommandLog) -> str:
     """Sentence on the unit that the values (m, c) may have by their size; empty if unknown."""
-    known = value[:, ~np.array(log.turned)]
-    known = known[~np.isnan(known)]
-    if not np.isfinite(known).all() or not known.size:
+    entries = value[:, ~np.array(log.turned)]
+    entries = entries[~np.isnan(entries)]
+    if not np.isfinite(entries).all() or not entries.size:
         return ""
-    low, high = float(known.min()), float(known.max())
+    low, high = float(entries.min()), float(entries.max())
     unit = guess_unit(low, high)
     return f"By their size ({low:g} to {high:g}) they may be {unit}. " if unit else ""
 

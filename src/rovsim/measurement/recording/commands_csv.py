@@ -32,18 +32,20 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """
     lines = csv_lines(path)
     places = column_places(path, lines.names, ["time_s", *log.names, *log.auxiliary])
-    table, cut = without_cut_line(lines, places)
+    table, cut_lines = without_cut_line(lines, places)
 
     def place(line: int, column: int) -> str:
         return f"{path}, line {table.numbers[line]}, column '{log.names[column]}'"
 
     time, value = times(table, places[0]), numbers(table, places[1:])
-    own = slice(len(log.names))
-    value[:, own], silent = _without_pulse(value[:, own], log)
-    value[:, own], held = _held(time, value[:, own])
+    command_columns = slice(len(log.names))
+    value[:, command_columns], silent = _without_pulse(value[:, command_columns], log)
+    value[:, command_columns], filled = _held(time, value[:, command_columns])
     value, radio = _of_a_radio(value, log)
-    notes = (*silent, *radio, *held)
-    return as_commands(time, value, log, place, {"cut_lines": cut}, pulses=bool(radio), notes=notes)
+    notes = (*silent, *radio, *filled)
+    return as_commands(
+        time, value, log, place, {"cut_lines": cut_lines}, pulses=bool(radio), notes=notes
+    )
 
 
 def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
@@ -76,36 +78,38 @@ def _held(time: Array, value: Array) -> tuple[Array, tuple[str, ...]]:
         The filled values, and a sentence if any was filled. Lines without any value stay empty.
     """
     order = np.argsort(time, kind="stable")
-    given = ~np.isnan(value[order])
-    some = given.any(axis=1)[:, None]
-    last = np.maximum.accumulate(np.where(given, np.arange(len(time))[:, None], -1), axis=0)
-    taken = some & ~given & (last >= 0)
-    if not taken.any():
+    present = ~np.isnan(value[order])
+    nonempty = present.any(axis=1)[:, None]
+    previous = np.maximum.accumulate(np.where(present, np.arange(len(time))[:, None], -1), axis=0)
+    to_fill = nonempty & ~present & (previous >= 0)
+    if not to_fill.any():
         return value, ()
-    held = value.copy()
-    held[order] = np.where(taken, np.take_along_axis(value[order], last, axis=0), value[order])
-    return held, (
-        f"{taken.sum()} cells of the commands are empty beside others that are not: the value "
+    filled = value.copy()
+    filled[order] = np.where(
+        to_fill, np.take_along_axis(value[order], previous, axis=0), value[order]
+    )
+    return filled, (
+        f"{to_fill.sum()} cells of the commands are empty beside others that are not: the value "
         "before holds on.",
     )
 
 
 def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
     """Turn demands that are pulses of a radio into [-1, 1]; with a sentence if they are."""
-    own = value[:, : len(log.names)]
-    if log.kind != "demand" or not are_pulses(own):
+    demands = value[:, : len(log.names)]
+    if log.kind != "demand" or not are_pulses(demands):
         return value, ()
-    said = "The demands are pulses in us, read as (pulse - 1500) / 400."
+    note = "The demands are pulses in us, read as (pulse - 1500) / 400."
     heave = log.axis_numbers.index(HEAVE) if HEAVE in log.axis_numbers else None
     if heave is not None and log.signs[heave] > 0:
         name = log.names[heave]
-        said += (
+        note += (
             f" A long pulse of '{name}' is taken for down; where the stick is up (ArduSub), write "
             f"'-{name}' in commands.columns."
         )
     value = value.copy()
-    value[:, : len(log.names)] = pwm.of_inputs(own)
-    return value, (said,)
+    value[:, : len(log.names)] = pwm.of_inputs(demands)
+    return value, (note,)
 
 
 def format_commands(commands: Commands, log: CommandLog) -> str:

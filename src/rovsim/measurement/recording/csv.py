@@ -68,7 +68,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     lines = csv_lines(path)
     names = _known_columns(lines)
     places = column_places(path, lines.names, ["time_s", *names])
-    table, cut = without_cut_line(lines, places)
+    table, cut_lines = without_cut_line(lines, places)
     values = numbers(table, places[1:])
     values, filled = without_fillers(names, values)
     zeros = _zeros(names, values)
@@ -79,7 +79,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
     if "qw" in names:
         notes += check_unit_length(columns.of(QUATERNION), partial(_quaternion_at, table))
-    return _export(columns, mocap, {"cut_lines": cut}, notes)
+    return _export(columns, mocap, {"cut_lines": cut_lines}, notes)
 
 
 def _quaternion_at(table: Lines, row: int) -> str:
@@ -97,9 +97,9 @@ def _zeros(names: list[str], values: Array) -> Array:
         return np.zeros(len(values), bool)
     pose = values[:, place | turn]
     zeros = (pose == 0.0).all(axis=1)
-    first = int(np.argmin(zeros)) if not zeros.all() else len(zeros)
-    if first == len(zeros) or np.nanmax(np.abs(pose[first]), initial=0.0) < NEAR_ZERO:
-        zeros[:first] = False
+    start = int(np.argmin(zeros)) if not zeros.all() else len(zeros)
+    if start == len(zeros) or np.nanmax(np.abs(pose[start]), initial=0.0) < NEAR_ZERO:
+        zeros[:start] = False
     return zeros
 
 
@@ -115,26 +115,26 @@ def _export(
     angles = columns.of(QUATERNION if quaternions else EULER)
     notes += doubt_order(angles) if quaternions else ()
     posed = finite_rows(position, angles)
-    other = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
+    channels = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
     partly = np.isfinite(np.hstack([position, angles])).any(axis=1)
     if not posed.any() or posed.sum() < TOGETHER * partly.sum():
-        other |= _apart(columns, position, angles) | _velocities(columns, nu)
-        return Export.of_channels(other, counts, notes)
+        channels |= _apart(columns, position, angles) | _velocities(columns, nu)
+        return Export.of_channels(channels, counts, notes)
     binned = _means(posed, nu, mocap)
     if not binned:
-        other |= _velocities(columns, nu)
-        notes += _instant(other, mocap)
-    attitude, found = _attitude(angles)
-    found &= finite_rows(position, *([nu] if binned else []))
-    frame = _frames(columns.time, partly, other)
+        channels |= _velocities(columns, nu)
+        notes += _instant(channels, mocap)
+    attitude, valid = _attitude(angles)
+    valid &= finite_rows(position, *([nu] if binned else []))
+    frame = _frames(columns.time, partly, channels)
     return Export(
         columns.time[frame],
         position[frame],
         attitude[frame],
-        found[frame],
+        valid[frame],
         nu=nu[frame] if binned else None,
         counts=counts,
-        channels=other,
+        channels=channels,
         notes=notes,
     )
 
@@ -147,14 +147,14 @@ def _means(posed: Array, nu: Array, mocap: Mocap) -> bool:
     """
     if mocap.velocity == "instant":
         return False
-    given = np.isfinite(nu).any(axis=1)
-    both = finite_rows(nu) & posed
-    return bool(both.any() and both.sum() >= TOGETHER * max(given.sum(), posed.sum()))
+    nonempty = np.isfinite(nu).any(axis=1)
+    complete = finite_rows(nu) & posed
+    return bool(complete.any() and complete.sum() >= TOGETHER * max(nonempty.sum(), posed.sum()))
 
 
 def _instant(channels: Mapping[str, Channel], mocap: Mocap) -> tuple[str, ...]:
-    some = any(len(channels[kind].time) for kind in ("velocity", "rates"))
-    if mocap.velocity == "instant" or not some:
+    has_velocity = any(len(channels[kind].time) for kind in ("velocity", "rates"))
+    if mocap.velocity == "instant" or not has_velocity:
         return ()
     return (
         "The body velocities do not come with every pose, all six of them: they are read as "
@@ -169,14 +169,14 @@ def _frames(time: Array, partly: Array, channels: Mapping[str, Channel]) -> Arra
 
 def _apart(columns: Columns, position: Array, angles: Array) -> dict[str, Channel]:
     """Make channels of position and attitude; attitudes with missing angles become `euler`."""
-    attitude, found = _attitude(angles)
+    attitude, valid = _attitude(angles)
     channels = {
         "position": measured(columns.time, position),
-        "attitude": Channel(columns.time[found], attitude[found]),
+        "attitude": Channel(columns.time[valid], attitude[valid]),
     }
     if angles.shape[1] == 3:
-        some = np.where(found[:, None], np.nan, angles)
-        channels["euler"] = measured(columns.time, some)
+        incomplete = np.where(valid[:, None], np.nan, angles)
+        channels["euler"] = measured(columns.time, incomplete)
     return channels
 
 
@@ -191,8 +191,8 @@ def _attitude(values: Array) -> tuple[Array, Array]:
     """Turn Euler angles (n, 3) or quaternions (n, 4) into unit quaternions; and which are valid."""
     if values.shape[1] == 4:
         return unit_quaternions(values)
-    found = finite_rows(values)
-    return from_euler(*np.where(found[:, None], values, 0.0).T), found
+    valid = finite_rows(values)
+    return from_euler(*np.where(valid[:, None], values, 0.0).T), valid
 
 
 def _known_columns(lines: Lines) -> list[str]:
@@ -217,7 +217,7 @@ def _known_columns(lines: Lines) -> list[str]:
 def _near_misses(names: list[str]) -> tuple[str, ...]:
     """Sentences about unread columns whose names resemble those of a channel."""
     missing = [name for name in KNOWN if name not in names]
-    near = {
+    matches = {
         name: close[0]
         for name in names
         if name not in KNOWN
@@ -225,7 +225,8 @@ def _near_misses(names: list[str]) -> tuple[str, ...]:
         and (close := get_close_matches(name, missing, n=1, cutoff=NEAR))
     }
     return tuple(
-        f"The column '{name}' is not read: was '{meant}' meant?" for name, meant in near.items()
+        f"The column '{name}' is not read: was '{channel}' meant?"
+        for name, channel in matches.items()
     )
 
 

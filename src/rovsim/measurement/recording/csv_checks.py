@@ -58,14 +58,14 @@ def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[s
         names: names (c,) of the columns.
         values: the numbers (n, c).
     """
-    found = [find_filler(column) for column in values.T]
-    said = tuple(
+    column_fillers = [find_filler(column) for column in values.T]
+    notes = tuple(
         f"{int(np.sum(column == filler))} cells of '{name}' hold {filler:g}: not measured."
-        for name, filler, column in zip(names, found, values.T, strict=True)
+        for name, filler, column in zip(names, column_fillers, values.T, strict=True)
         if filler is not None
     )
-    fillers = np.array([np.nan if filler is None else filler for filler in found])
-    return np.where(values == fillers, np.nan, values), said
+    fillers = np.array([np.nan if filler is None else filler for filler in column_fillers])
+    return np.where(values == fillers, np.nan, values), notes
 
 
 def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> None:
@@ -110,15 +110,15 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
             RENAME.format("pitch_deg", "rad"),
         )
     for limit in LIMITS.values():
-        own = [values[name] for name in limit.columns if name in values]
-        if own and (usual := limit.beyond(np.stack(own))):
-            name, others = limit.columns[0], [other.replace("/", "_") for other in limit.others]
+        columns = [values[name] for name in limit.columns if name in values]
+        if columns and (usual := limit.beyond(np.stack(columns))):
+            name, other_units = limit.columns[0], [unit.replace("/", "_") for unit in limit.others]
             raise _refused(
                 path,
                 name,
-                f"values of {usual:.3g} {limit.unit}: {' or '.join(others)}?",
+                f"values of {usual:.3g} {limit.unit}: {' or '.join(other_units)}?",
                 limit.unit,
-                RENAME.format(f"{name[0]}_{others[0]}", limit.unit),
+                RENAME.format(f"{name[0]}_{other_units[0]}", limit.unit),
             )
     depth = values.get("depth_m", np.zeros(0))
     if is_height(depth):
@@ -142,10 +142,10 @@ def usual_speed(value: Array, time: Array) -> float:
     Returns:
         The 90th percentile, m/s; 0 with fewer than ten known positions.
     """
-    known = np.isfinite(value).all(axis=1) & np.isfinite(time) & value.any(axis=1)
-    if known.sum() < 10:
+    valid = np.isfinite(value).all(axis=1) & np.isfinite(time) & value.any(axis=1)
+    if valid.sum() < 10:
         return 0.0
-    t, x = time[known], value[known]
+    t, x = time[valid], value[valid]
     stride = max(1, round(0.2 / max(float(np.median(np.diff(t))), 1e-6)))
     dt, dx = t[stride:] - t[:-stride], np.linalg.norm(x[stride:] - x[:-stride], axis=1)
     good = dt > 0
@@ -157,13 +157,13 @@ def doubt_order(quaternion: Array) -> tuple[str, ...]:
 
     Upside down counts as upright, because that depends on the axes.
     """
-    known = quaternion[np.isfinite(quaternion).all(axis=1) & quaternion.any(axis=1)]
-    if not len(known):
+    nonzero = quaternion[np.isfinite(quaternion).all(axis=1) & quaternion.any(axis=1)]
+    if not len(nonzero):
         return ()
-    square = (known / np.linalg.norm(known, axis=1, keepdims=True)) ** 2
+    square = (nonzero / np.linalg.norm(nonzero, axis=1, keepdims=True)) ** 2
     tilts = [np.abs(1.0 - 2.0 * (square[:, k] + square[:, k + 1])) for k in (1, 0)]
-    as_named, other = (float(np.percentile(tilt, 5)) for tilt in tilts)
-    if as_named > TUMBLING or other < UPRIGHT:
+    as_named, reordered = (float(np.percentile(tilt, 5)) for tilt in tilts)
+    if as_named > TUMBLING or reordered < UPRIGHT:
         return ()
     return (
         "As qw, qx, qy, qz say, the vehicle tumbles; it would stay upright if these columns, in "
@@ -173,8 +173,8 @@ def doubt_order(quaternion: Array) -> tuple[str, ...]:
 
 def is_height(depth: Array) -> bool:
     """Whether a depth (n,) m is positive up, since otherwise nearly all is above the surface."""
-    known = depth[np.isfinite(depth)]
-    return bool(len(known) and np.mean(known < ABOVE) > SHARE and known.min() < -DEEP)
+    finite = depth[np.isfinite(depth)]
+    return bool(len(finite) and np.mean(finite < ABOVE) > SHARE and finite.min() < -DEEP)
 
 
 def _refused(path: Path, column: str, found: str, expected: str, remedy: str) -> BadInput:

@@ -31,9 +31,9 @@ def to_seconds(cells: Iterable[str]) -> Array:
 
     Dates without a time zone are taken for UTC. Other texts become NaN.
     """
-    found = np.array([_seconds(cell) for cell in cells], float)
-    midnights = np.diff(found, prepend=found[:1]) < -0.5 * DAY
-    return found + DAY * np.cumsum(midnights)
+    seconds = np.array([_seconds(cell) for cell in cells], float)
+    midnights = np.diff(seconds, prepend=seconds[:1]) < -0.5 * DAY
+    return seconds + DAY * np.cumsum(midnights)
 
 
 def _seconds(cell: str) -> float:

@@ -122,12 +122,12 @@ def find_header(lines: Sequence[str]) -> int | None:
         The index from 0; None for a file without text.
     """
     filled = [n for n, line in enumerate(lines) if line.strip()]
-    first = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
-    before = [n for n in filled if first is None or n < first]
-    begins = "" if first is None else re.split(r"[,;\t]", lines[first])[0]
-    if first is None or (before and (is_number(begins.split(" ")[0]) or is_date(begins))):
-        return before[-1] if before else first
-    return first
+    header = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
+    before = [n for n in filled if header is None or n < header]
+    begins = "" if header is None else re.split(r"[,;\t]", lines[header])[0]
+    if header is None or (before and (is_number(begins.split(" ")[0]) or is_date(begins))):
+        return before[-1] if before else header
+    return header
 
 
 def split_lines(
@@ -146,9 +146,9 @@ def without_cut_line(table: Lines, columns: list[int]) -> tuple[Lines, int]:
     """
     if not len(table):
         return table, 0
-    last = table.cells(-1)
-    short = len(last) <= max(columns)
-    ragged = not table.ended and len(last) - 1 in columns and not is_number(last[-1])
+    cells = table.cells(-1)
+    short = len(cells) <= max(columns)
+    ragged = not table.ended and len(cells) - 1 in columns and not is_number(cells[-1])
     if not (short or ragged):
         return table, 0
     return table.between(0, len(table) - 1), 1

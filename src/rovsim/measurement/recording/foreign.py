@@ -19,9 +19,9 @@ def read_by(library: str, path: Path, expected: str, remedy: str) -> Iterator[No
     except BadInput:
         raise
     except Exception as error:  # of any type: damaged bytes may fail anywhere in the library
-        said = " ".join(str(error).split())[:200]
+        detail = " ".join(str(error).split())[:200]
         raise BadInput(
-            f"cannot be read ({library}: {type(error).__name__}{f': {said}' if said else ''})",
+            f"cannot be read ({library}: {type(error).__name__}{f': {detail}' if detail else ''})",
             where=path,
             expected=expected,
             remedy=remedy,

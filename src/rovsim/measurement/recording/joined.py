@@ -33,48 +33,48 @@ def join(exports: Mapping[Path, Export]) -> Export:
     _check_clocks(exports)
     exports, left_out = _beside_poses(exports)
     _check_different(exports)
-    posed = [one for one in exports.values() if POSES in list_held(one)]
-    first = (posed or list(exports.values()))[0]
+    posed = [export for export in exports.values() if POSES in list_held(export)]
+    basis = (posed or list(exports.values()))[0]
     counts: Counter[str] = Counter()
-    for one in exports.values():
-        counts.update(one.counts)
+    for export in exports.values():
+        counts.update(export.counts)
     channels = {
-        kind: c for one in exports.values() for kind, c in one.channels.items() if len(c.time)
+        kind: c for export in exports.values() for kind, c in export.channels.items() if len(c.time)
     }
-    notes = dict.fromkeys(note for one in exports.values() for note in one.notes)
-    return replace(first, counts=dict(counts), channels=channels, notes=(*notes, *left_out))
+    notes = dict.fromkeys(note for export in exports.values() for note in export.notes)
+    return replace(basis, counts=dict(counts), channels=channels, notes=(*notes, *left_out))
 
 
 def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export], list[str]]:
     """Drop channels that the full poses of another file contain; with sentences about them."""
-    posed = [path for path, one in exports.items() if POSES in list_held(one)]
+    posed = [path for path, export in exports.items() if POSES in list_held(export)]
     if len(posed) != 1:
         return exports, []
-    kept, said = dict(exports), []
-    for path, one in exports.items():
-        double = [kind for kind in list_held(one) if kind in TOLD and path != posed[0]]
+    remaining, notes = dict(exports), []
+    for path, export in exports.items():
+        double = [kind for kind in list_held(export) if kind in TOLD and path != posed[0]]
         if double:
-            channels = {kind: c for kind, c in one.channels.items() if kind not in TOLD}
-            kept[path] = replace(one, channels=channels)
-            said.append(
+            channels = {kind: c for kind, c in export.channels.items() if kind not in TOLD}
+            remaining[path] = replace(export, channels=channels)
+            notes.append(
                 f"The {' and '.join(double)} in {path.name} is not used: {posed[0].name} holds "
                 "full poses."
             )
-    return kept, said
+    return remaining, notes
 
 
 def _check_different(exports: Mapping[Path, Export]) -> None:
-    seen: dict[str, Path] = {}
+    path_by_kind: dict[str, Path] = {}
     for path, export in exports.items():
-        for held in list_held(export):
-            if held in seen:
+        for kind in list_held(export):
+            if kind in path_by_kind:
                 raise BadInput(
-                    f"'{held}' is in {seen[held].name} and in {path.name}",
+                    f"'{kind}' is in {path_by_kind[kind].name} and in {path.name}",
                     where=path,
                     expected="files of one run that hold different sensors",
                     remedy="Take one of them out of 'mocap' of that run, or make two runs of them.",
                 )
-            seen[held] = path
+            path_by_kind[kind] = path
 
 
 def _check_clocks(exports: Mapping[Path, Export]) -> None:
@@ -84,10 +84,10 @@ def _check_clocks(exports: Mapping[Path, Export]) -> None:
     if spans[latest][0] < spans[earliest][1]:
         return
     begin, end = spans[latest]
-    other = spans[earliest]
+    other_span = spans[earliest]
     raise BadInput(
-        f"runs from {begin:.10g} to {end:.10g} s, {earliest.name} from {other[0]:.10g} to "
-        f"{other[1]:.10g} s",
+        f"runs from {begin:.10g} to {end:.10g} s, {earliest.name} from {other_span[0]:.10g} to "
+        f"{other_span[1]:.10g} s",
         where=latest,
         expected="files of one run on one clock",
         remedy="Shift the times of one of them, or make two runs of them.",
@@ -97,5 +97,5 @@ def _check_clocks(exports: Mapping[Path, Export]) -> None:
 def span_of(export: Export) -> tuple[float, float]:
     """First and last time of any measurement, s."""
     times = [export.time, *(channel.time for channel in export.channels.values())]
-    every = np.concatenate([time for time in times if len(time)] or [np.zeros(1)])
-    return float(every.min()), float(every.max())
+    instants = np.concatenate([time for time in times if len(time)] or [np.zeros(1)])
+    return float(instants.min()), float(instants.max())

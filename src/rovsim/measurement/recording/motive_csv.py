@@ -64,19 +64,19 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     layout = _layout(path, lines)
     turns, places = _body(path, layout, mocap.body)
     rows = split_lines(path, lines, layout.line, layout.names, ",", ended=text.endswith("\n"))
-    table, cut = without_cut_line(rows, [*turns, *places])
+    table, cut_lines = without_cut_line(rows, [*turns, *places])
     time = times(table, _time_column(path, layout))
     position = numbers(table, places) * _metres(path, layout)
     angles = numbers(table, turns)
-    attitude, found = _attitude(path, layout, angles)
+    attitude, valid = _attitude(path, layout, angles)
     doubts: tuple[str, ...] = ()
     if angles.shape[1] == 4:
         doubts = check_unit_length(angles, lambda row: f"{path}, line {table.numbers[row]}")
-    found &= finite_rows(position)
+    valid &= finite_rows(position)
     position, attitude = _upright(position, attitude, mocap)
     notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP)
     return Export(
-        time, position, attitude, found, _rate(layout), counts={"cut_lines": cut}, notes=notes
+        time, position, attitude, valid, _rate(layout), counts={"cut_lines": cut_lines}, notes=notes
     )
 
 
@@ -102,12 +102,12 @@ def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
     if values.shape[1] == 4 and kind.lower() == "quaternion":
         return unit_quaternions(values[:, [3, 0, 1, 2]])
     if values.shape[1] == 3 and kind.upper() in ORDERS:
-        found = finite_rows(values)
+        valid = finite_rows(values)
         # intrinsic angles: each about the axis that the earlier ones have turned (OptiTrack)
         places = ["XYZ".index(axis) for axis in kind.upper()]
-        angles = np.where(found[:, None], values, 0.0)[:, places]
+        angles = np.where(valid[:, None], values, 0.0)[:, places]
         turned = scipy.spatial.transform.Rotation.from_euler(kind.upper(), angles, degrees=True)
-        return turned.as_quat(scalar_first=True), found
+        return turned.as_quat(scalar_first=True), valid
     raise BadInput(
         f"Rotation Type is '{kind}' with {values.shape[1]} columns",
         where=path,
@@ -120,32 +120,32 @@ def _layout(path: Path, lines: list[str]) -> Layout:
     """Find the columns by the line that starts with Frame and the lines of names above it."""
     top = [next(csv.reader(io.StringIO(line)), []) for line in lines[:TALLEST]]
     cells = [[cell.strip() for cell in row] for row in top]
-    named = next((n for n, row in enumerate(cells) if row and row[0] == "Frame"), None)
+    name_line = next((n for n, row in enumerate(cells) if row and row[0] == "Frame"), None)
     header = _header(path, cells, lines)
-    kinds = next((n for n, row in enumerate(cells[:named]) if "Rigid Body" in row[2:]), None)
-    if named is None or kinds is None or kinds + 2 > named - 1:
+    kinds = next((n for n, row in enumerate(cells[:name_line]) if "Rigid Body" in row[2:]), None)
+    if name_line is None or kinds is None or kinds + 2 > name_line - 1:
         raise BadInput(
             f"no columns of a rigid body (format version {header.get('format version', '?')})",
             where=path,
             expected="lines of types, names, Rotation and Position above the line 'Frame, Time'",
             remedy=RE_EXPORT,
         )
-    bodies = _bodies(cells[kinds], cells[kinds + 1], cells[named - 1])
-    return Layout(header, named, cells[named], bodies)
+    bodies = _bodies(cells[kinds], cells[kinds + 1], cells[name_line - 1])
+    return Layout(header, name_line, cells[name_line], bodies)
 
 
 def _header(path: Path, cells: list[list[str]], lines: list[str]) -> dict[str, str]:
     if not any(line.strip() for line in lines):
         raise BadInput("the file is empty", where=path, expected="a Motive csv", remedy=RE_EXPORT)
-    first = cells[0]
-    if not first or first[0] != "Format Version":
+    fields = cells[0]
+    if not fields or fields[0] != "Format Version":
         raise BadInput(
-            f"the first line starts with {(first or [''])[0]!r}",
+            f"the first line starts with {(fields or [''])[0]!r}",
             where=f"{path}, line 1",
             expected="'Format Version', as Motive writes with its header information",
             remedy=RE_EXPORT,
         )
-    header = {key.lower(): value for key, value in zip(first[::2], first[1::2], strict=False)}
+    header = {key.lower(): value for key, value in zip(fields[::2], fields[1::2], strict=False)}
     space = header.get("coordinate space", "Global")
     if space.lower() != "global":
         raise BadInput(
@@ -160,19 +160,19 @@ def _header(path: Path, cells: list[list[str]], lines: list[str]) -> dict[str, s
 def _bodies(
     kinds: list[str], names: list[str], what: list[str]
 ) -> dict[str, tuple[list[int], list[int]]]:
-    found: dict[str, tuple[list[int], list[int]]] = {}
+    bodies: dict[str, tuple[list[int], list[int]]] = {}
     for column, (kind, name, meaning) in enumerate(zip(kinds, names, what, strict=False)):
         if kind == "Rigid Body" and meaning in ("Rotation", "Position"):
-            found.setdefault(name, ([], []))[meaning == "Position"].append(column)
-    return found
+            bodies.setdefault(name, ([], []))[meaning == "Position"].append(column)
+    return bodies
 
 
 def _body(path: Path, layout: Layout, name: str) -> tuple[list[int], list[int]]:
-    chosen = choose_body(tuple(layout.bodies), name, path)
-    turns, places = layout.bodies[chosen]
+    body = choose_body(tuple(layout.bodies), name, path)
+    turns, places = layout.bodies[body]
     if len(places) != 3 or len(turns) not in (3, 4):
         raise BadInput(
-            f"{len(turns)} columns of rotation and {len(places)} of position for '{chosen}'",
+            f"{len(turns)} columns of rotation and {len(places)} of position for '{body}'",
             where=path,
             expected="four of a quaternion or three angles, and three of position",
             remedy=RE_EXPORT,

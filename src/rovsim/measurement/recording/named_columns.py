@@ -34,12 +34,12 @@ def column_places(path: Path, names: list[str], wanted: list[str]) -> list[int]:
         if name not in names and name == TIME:
             raise no_time(path, names)
         if name not in names:
-            others = [other for other in names if other not in wanted]
+            unused = [n for n in names if n not in wanted]
             raise BadInput(
                 f"no column '{name}', but {', '.join(names)}",
                 where=path,
                 expected=f"the columns {', '.join(wanted)}",
-                remedy=nearest(name, others) if others else "Export again with that column.",
+                remedy=nearest(name, unused) if unused else "Export again with that column.",
             )
     return [names.index(name) for name in wanted]
 
@@ -54,13 +54,13 @@ def no_time(path: Path, names: list[str]) -> BadInput:
             remedy="Put one above them: time_s,x_m,y_m,z_m,qw,qx,qy,qz or time_s,t1,t2,… for what "
             "the columns hold (docs/formats.md).",
         )
-    told = [
+    quoted = [
         f"'{name}'" if name else f"one without a name (the {k + 1}.)"
         for k, name in enumerate(names)
     ]
-    likely = [one for one, name in zip(told, names, strict=True) if LIKE_TIME.fullmatch(name)]
+    likely = [q for q, name in zip(quoted, names, strict=True) if LIKE_TIME.fullmatch(name)]
     return BadInput(
-        f"no column '{TIME}', but {', '.join(told)}",
+        f"no column '{TIME}', but {', '.join(quoted)}",
         where=f"{path}, column names",
         expected=f"a column {TIME}: seconds, dates or times of day (ISO 8601)",
         remedy=_how_to_name_times(names, likely),
@@ -80,8 +80,8 @@ def _how_to_name_times(names: Sequence[str], likely: Sequence[str]) -> str:
 def find_halves(names: Sequence[str]) -> tuple[str, str] | None:
     """Find a column of whole seconds and one of nanoseconds, into which stamps of ROS are split."""
     for name in names:
-        if found := re.fullmatch(r"(.*?)n(ano)?sec(ond)?s?", name, re.IGNORECASE):
-            whole = re.compile(re.escape(found[1]) + r"sec(ond)?s?", re.IGNORECASE)
-            if other := next((n for n in names if whole.fullmatch(n)), None):
-                return other, name
+        if match := re.fullmatch(r"(.*?)n(ano)?sec(ond)?s?", name, re.IGNORECASE):
+            pattern = re.compile(re.escape(match[1]) + r"sec(ond)?s?", re.IGNORECASE)
+            if seconds := next((n for n in names if pattern.fullmatch(n)), None):
+                return seconds, name
     return None

@@ -18,11 +18,11 @@ def numbers(table: Lines, columns: list[int]) -> Array:
     Raises:
         BadInput: a cell is missing or holds no number.
     """
-    found = np.empty((len(table), len(columns)))
-    for first in range(0, len(table), AT_ONCE):
-        some = table.between(first, first + AT_ONCE)
-        found[first : first + AT_ONCE] = _plain_numbers(some, columns)
-    return found
+    values = np.empty((len(table), len(columns)))
+    for start in range(0, len(table), AT_ONCE):
+        part = table.between(start, start + AT_ONCE)
+        values[start : start + AT_ONCE] = _plain_numbers(part, columns)
+    return values
 
 
 def _plain_numbers(table: Lines, columns: list[int]) -> Array:

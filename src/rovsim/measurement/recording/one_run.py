@@ -40,9 +40,9 @@ def check_one_run(time: Array, path: Path) -> None:
             break
     else:
         return
-    told = " and ".join(f"{len(part)} samples" for part in parts)
+    sizes = " and ".join(f"{len(part)} samples" for part in parts)
     raise SeveralRuns(
-        f"{len(parts)} runs in one file: its times begin anew ({told})",
+        f"{len(parts)} runs in one file: its times begin anew ({sizes})",
         where=path,
         expected="one run a file",
         remedy="Split it where the times step back, a file for each run, and a log of commands "

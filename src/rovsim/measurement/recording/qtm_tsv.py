@@ -55,20 +55,20 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
     ]
     rows = split_lines(path, lines, layout.line, layout.names, "\t", ended=text.endswith("\n"))
     places = [body[name] for name in [*POSITION, *ROTATION]]
-    table, cut = without_cut_line(_without_events(rows), places)
+    table, cut_lines = without_cut_line(_without_events(rows), places)
     rate = _rate(path, layout)
     time = _time(table, layout, rate)
     values = numbers(table, places)
     residual = numbers(table, [body["Residual"]]) if "Residual" in body else None
     # the matrix is written column by column: element 3 c + r is row r, column c
     R = values[:, 3:].reshape(-1, 3, 3).transpose(0, 2, 1)
-    seen = finite_rows(values) & values.any(axis=1)
+    visible = finite_rows(values) & values.any(axis=1)
     if residual is not None:
-        seen &= ~(residual[:, 0] < 0.0)
-    found = seen & orthonormal(R)
-    attitude = from_matrix(np.where(found[:, None, None], R, np.eye(3)))
-    counts = {"cut_lines": cut, "bad_rotations": int(np.sum(seen & ~found))}
-    return Export(time, values[:, :3] * 1e-3, attitude, found, rate, counts=counts)
+        visible &= ~(residual[:, 0] < 0.0)
+    valid = visible & orthonormal(R)
+    attitude = from_matrix(np.where(valid[:, None, None], R, np.eye(3)))
+    counts = {"cut_lines": cut_lines, "bad_rotations": int(np.sum(visible & ~valid))}
+    return Export(time, values[:, :3] * 1e-3, attitude, valid, rate, counts=counts)
 
 
 def _layout(path: Path, lines: list[str]) -> Layout:

@@ -110,13 +110,13 @@ R = TypeVar("R", MocapReader, CommandReader)
 
 def mocap_readers() -> dict[str, MocapReader]:
     """Readers of every known format of motions by name, general ones last."""
-    found = _declared("MOCAP_READER", MocapReader)
-    return {one.name: one for one in sorted(found, key=lambda one: one.general)}
+    readers = _declared("MOCAP_READER", MocapReader)
+    return {reader.name: reader for reader in sorted(readers, key=lambda reader: reader.general)}
 
 
 def command_readers() -> dict[str, CommandReader]:
     """Readers of every known format of commands by name."""
-    return {one.name: one for one in _declared("COMMAND_READER", CommandReader)}
+    return {reader.name: reader for reader in _declared("COMMAND_READER", CommandReader)}
 
 
 def reader_of(name: str, readers: dict[str, R], where: object) -> R:
@@ -134,6 +134,6 @@ def _declared(name: str, kind: type[R]) -> list[R]:
     """Collect what the modules of this package declare under a name."""
     import rovsim.measurement.recording as package
 
-    modules = [f"{package.__name__}.{one.name}" for one in pkgutil.iter_modules(package.__path__)]
-    found = [getattr(import_module(module), name, None) for module in modules]
-    return [one for one in found if isinstance(one, kind)]
+    modules = [f"{package.__name__}.{item.name}" for item in pkgutil.iter_modules(package.__path__)]
+    declared = [getattr(import_module(module), name, None) for module in modules]
+    return [item for item in declared if isinstance(item, kind)]

@@ -74,9 +74,9 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     info = RunInfo(run.id, run.control, run.split)
     recording = to_ned(export, mocap, info, site(campaign), commands)
     notes = tuple(dict.fromkeys([*export.notes, *notes]))
-    used = tuple((begin, end) for begin, end in run.use or ())
+    spans = tuple((begin, end) for begin, end in run.use or ())
     return recording, Anomalies(
-        **counts, **command_counts, left_out=left_out, used=used, notes=notes
+        **counts, **command_counts, left_out=left_out, used=spans, notes=notes
     )
 
 
@@ -141,8 +141,8 @@ def _use(export: Export, run: Run) -> tuple[Export, int]:
     def inside(time: Array) -> Array:
         return np.any([(time >= begin) & (time <= end) for begin, end in run.use or ()], axis=0)
 
-    used = inside(export.time)
-    if not used.any():
+    mask = inside(export.time)
+    if not mask.any():
         raise BadInput(
             f"{run.use} holds nothing of it: it lasts from {export.time[0]:.10g} to "
             f"{export.time[-1]:.10g} s",
@@ -150,13 +150,17 @@ def _use(export: Export, run: Run) -> tuple[Export, int]:
             expected="spans [from, to] in s on the clock of the recording",
             remedy="Look at the time axis of the figures that `rovsim compare` draws.",
         )
-    kept = {
-        name: replace(one, time=one.time[inside(one.time)], value=one.value[inside(one.time)])
-        for name, one in export.channels.items()
+    used_channels = {
+        name: replace(
+            channel,
+            time=channel.time[inside(channel.time)],
+            value=channel.value[inside(channel.time)],
+        )
+        for name, channel in export.channels.items()
     }
     if not export.found.any():
-        return _cut(export, used, kept), int(np.sum(~used))
-    return replace(export, found=export.found & used, channels=kept), int(np.sum(~used))
+        return _cut(export, mask, used_channels), int(np.sum(~mask))
+    return replace(export, found=export.found & mask, channels=used_channels), int(np.sum(~mask))
 
 
 def _cut(export: Export, used: Array, kept: Channels) -> Export:
@@ -170,8 +174,8 @@ def _with_battery(commands: Commands, channels: Channels) -> Commands:
     battery = channels.get("voltage")
     if battery is None or "voltage" in commands.auxiliary:
         return commands
-    own = Logged(battery.time, battery.value[:, 0])
-    return replace(commands, auxiliary={**commands.auxiliary, "voltage": own})
+    voltage = Logged(battery.time, battery.value[:, 0])
+    return replace(commands, auxiliary={**commands.auxiliary, "voltage": voltage})
 
 
 def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Commands) -> Recording:
@@ -181,14 +185,14 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
     R = S_world R_file S_body, so each side is converted on its own.
     """
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
-    seen = export.found[:, None]
+    tracked = export.found[:, None]
     nu = None if export.nu is None else export.nu * np.tile(body, 2)
     return Recording(
         info,
         at,
         export.time,
-        np.where(seen, export.position * world, np.nan),
-        np.where(seen, channels.attitude_to_ned(export.attitude, mocap), np.nan),
+        np.where(tracked, export.position * world, np.nan),
+        np.where(tracked, channels.attitude_to_ned(export.attitude, mocap), np.nan),
         export.found,
         commands,
         export.rate or measured_rate(export.time),

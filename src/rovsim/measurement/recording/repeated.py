@@ -36,23 +36,23 @@ def without_repeated(export: Export) -> Export:
     Where the camera is slower than its log, the first line of each pose is kept. Poses that are
     repeated while the vehicle moves count as not found. An export with velocities stays as it is.
     """
-    seen = _Seen.of(export)
-    if export.nu is not None or not seen.same.any():
+    frames = _Seen.of(export)
+    if export.nu is not None or not frames.same.any():
         return export
-    lines = _lines_of_a_pose(seen)
+    lines = _lines_of_a_pose(frames)
     if lines > 1:
-        export = _slower(export, seen, lines)
-        seen = _Seen.of(export)
-    frozen = seen.frame[_find_frozen(seen)]
+        export = _slower(export, frames, lines)
+        frames = _Seen.of(export)
+    frozen = frames.frame[_find_frozen(frames)]
     if not len(frozen):
         return export
-    found = export.found.copy()
-    found[frozen] = False
-    said = (
+    tracked = export.found.copy()
+    tracked[frozen] = False
+    note = (
         f"{len(frozen)} frames repeat the pose before them to the last digit while the vehicle "
         "moves: they count as not found."
     )
-    return replace(export, found=found, notes=(*export.notes, said))
+    return replace(export, found=tracked, notes=(*export.notes, note))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +78,14 @@ class _Seen:
         frame = np.flatnonzero(export.found)
         position, attitude = export.position[frame], export.attitude[frame]
         pose = np.hstack([position, attitude])
-        same = (pose[1:] == pose[:-1]).all(axis=1)
-        return _Seen(frame, export.time[frame], position, attitude, same)
+        repeated = (pose[1:] == pose[:-1]).all(axis=1)
+        return _Seen(frame, export.time[frame], position, attitude, repeated)
 
     def runs(self) -> Iterator[tuple[int, int]]:
         """First frame and number of frames of each pose that stands in successive frames."""
-        first = np.concatenate([[0], np.flatnonzero(~self.same) + 1])
-        count = np.diff(np.append(first, len(self.frame)))
-        return zip(first.tolist(), count.tolist(), strict=True)
+        starts = np.concatenate([[0], np.flatnonzero(~self.same) + 1])
+        count = np.diff(np.append(starts, len(self.frame)))
+        return zip(starts.tolist(), count.tolist(), strict=True)
 
     def steps(self) -> tuple[Array, Array]:
         """Distance (n - 1,) m and angle (n - 1,) rad from each frame to the next."""
@@ -99,8 +99,8 @@ def _lines_of_a_pose(seen: _Seen) -> int:
     usual = int(np.median(count))
     if usual < 2 or len(count) < FEWEST:
         return 1
-    near = np.abs(count - usual) <= max(1.0, UNEVEN * usual)
-    return usual if np.mean(count > 1) >= NEARLY_ALL and np.mean(near) >= MOST else 1
+    regular = np.abs(count - usual) <= max(1.0, UNEVEN * usual)
+    return usual if np.mean(count > 1) >= NEARLY_ALL and np.mean(regular) >= MOST else 1
 
 
 def _slower(export: Export, seen: _Seen, lines: int) -> Export:
@@ -111,21 +111,21 @@ def _slower(export: Export, seen: _Seen, lines: int) -> Export:
         seen: its frames.
         lines: number of lines in which a pose usually stands.
     """
-    kept = ~export.found
-    for first, count in seen.runs():
-        kept[seen.frame[first : first + max(count - lines, 0) + 1 : lines]] = True
-    rows = {n: getattr(export, n)[kept] for n in ("time", "position", "attitude", "found")}
-    said = f"Each pose stands in {lines} lines or so: the camera is slower than the log."
-    return replace(export, **rows, rate=None, notes=(*export.notes, said))
+    mask = ~export.found
+    for start, count in seen.runs():
+        mask[seen.frame[start : start + max(count - lines, 0) + 1 : lines]] = True
+    rows = {n: getattr(export, n)[mask] for n in ("time", "position", "attitude", "found")}
+    note = f"Each pose stands in {lines} lines or so: the camera is slower than the log."
+    return replace(export, **rows, rate=None, notes=(*export.notes, note))
 
 
 def _find_frozen(seen: _Seen) -> Array:
     """Indices in `seen` of the frames that repeat a pose which the vehicle has left."""
     frozen = np.zeros(len(seen.frame), bool)
     ways = [_Way(step, np.diff(seen.time)) for step in seen.steps()]
-    for first, count in seen.runs():
-        if count > 1 and any(way.left(first, count) for way in ways):
-            frozen[first + 1 : first + count] = True
+    for start, count in seen.runs():
+        if count > 1 and any(way.left(start, count) for way in ways):
+            frozen[start + 1 : start + count] = True
     return np.flatnonzero(frozen)
 
 
@@ -134,8 +134,8 @@ class _Way:
 
     def __init__(self, step: Array, took: Array) -> None:
         self.step, self.took, self.speed = step, took, step / took
-        some = step[step > ROUNDING]
-        self.seen = DIGITS * float(np.percentile(some, SMALLEST)) if len(some) else np.inf
+        moving = step[step > ROUNDING]
+        self.seen = DIGITS * float(np.percentile(moving, SMALLEST)) if len(moving) else np.inf
 
     def left(self, first: int, count: int) -> bool:
         """Whether the vehicle left the pose that `count` frames from `first` on repeat."""
@@ -159,9 +159,9 @@ class _Way:
             return False
         fastest = max(self.speed[before].max(initial=0.0), self.speed[after].max(initial=0.0))
         jump = JUMP if end == first + 1 else JUMP_OF_MORE
-        held = float(self.took[first : end + 1].sum())
+        duration = float(self.took[first : end + 1].sum())
         return bool(
             self.step[end] > self.seen
             and self.speed[end] > jump * fastest
-            and self.step[end] <= MAKES_UP * fastest * held
+            and self.step[end] <= MAKES_UP * fastest * duration
         )

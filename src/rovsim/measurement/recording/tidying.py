@@ -57,9 +57,9 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
 
 def _nothing(export: Export, frames: int, path: Path) -> BadInput:
     lines = max(len(export.time), *(len(c.time) for c in export.channels.values()), 0)
-    found = "no frame in which the body was found" if frames > 1 else "no frames"
+    problem = "no frame in which the body was found" if frames > 1 else "no frames"
     return BadInput(
-        f"{found} ({lines} lines)",
+        f"{problem} ({lines} lines)",
         where=path,
         expected="a run with at least two frames and the body in sight",
         remedy="Export the run again, or take it out of 'runs'.",
@@ -112,11 +112,11 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     counts["command_duplicates"] = len(time) - len(keep)
     longest = LONG_STEP * np.median(steps) if len(steps) else np.inf
     counts["command_long_steps"] = int(np.sum(steps > longest))
-    beside = {name: _in_order(own) for name, own in log.auxiliary.items() if len(own.time)}
+    beside = {name: _in_order(logged) for name, logged in log.auxiliary.items() if len(logged.time)}
     return Commands(log.time[keep], log.value[keep], log.kind, beside), counts
 
 
 def _in_order(own: Logged) -> Logged:
     """Sort by time, and keep the first of equal times."""
-    time, first = np.unique(own.time, return_index=True)
-    return Logged(time, own.value[first])
+    time, index = np.unique(own.time, return_index=True)
+    return Logged(time, own.value[index])

@@ -60,5 +60,5 @@ def _refuse_date(table: Lines, row: int, column: int) -> None:
 def dates(table: Lines, column: int) -> Array | None:
     """Read times (n,) s of a column that begins with a date or time of day; None if it does not."""
     cells = (row[column].strip(' "') if column < len(row) else "" for row in table.all_cells())
-    first = next(cells, "")
-    return to_seconds([first, *cells]) if is_date(first) else None
+    first_cell = next(cells, "")
+    return to_seconds([first_cell, *cells]) if is_date(first_cell) else None

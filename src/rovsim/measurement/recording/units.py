@@ -78,11 +78,13 @@ def with_units(
         return list(names), header
     cells = [cell.strip().strip('"[]()').lower() for cell in lines[below].split(separator)]
     units = [find_unit_of(cell) for cell in cells]
-    told = [u or c.translate(MICRO) in OTHER - {"1"} for u, c in zip(units, cells, strict=True)]
-    if not any(cells) or not all(told):
+    recognised = [
+        u or c.translate(MICRO) in OTHER - {"1"} for u, c in zip(units, cells, strict=True)
+    ]
+    if not any(cells) or not all(recognised):
         return list(names), header
-    known = units + [""] * len(names)
-    return [_ended(name, unit) for name, unit in zip(names, known, strict=False)], below
+    padded = units + [""] * len(names)
+    return [_ended(name, unit) for name, unit in zip(names, padded, strict=False)], below
 
 
 def _ended(name: str, unit: str) -> str:

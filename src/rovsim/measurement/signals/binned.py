@@ -117,9 +117,9 @@ def _states(recording: Recording, nu: Array, edges: Array, usable: Array) -> tup
     """
     attitude = recording.attitude.copy()
     state = np.concatenate([recording.position, attitude, nu], axis=1)
-    for first, last in find_stretches(usable):
-        state[first:last, 3:7] = rotations.continuous(attitude[first:last])
-        state[first:last] = edge_values(edges[first : last + 1], state[first:last])
+    for start, end in find_stretches(usable):
+        state[start:end, 3:7] = rotations.continuous(attitude[start:end])
+        state[start:end] = edge_values(edges[start : end + 1], state[start:end])
     eta = state[:, :7]
     eta[~np.isfinite(eta).all(axis=1)] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
     eta[:, 3:] = rotations.continuous(rotations.normalized(eta[:, 3:]))

@@ -130,9 +130,9 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
     nu = np.full((len(poses.time), 6), np.nan)
     nu_dot = nu.copy()
     dt = time_step(poses.time) if len(poses.time) > 1 else 1.0
-    for first, last in find_stretches(poses.usable):
-        nu[first:last], nu_dot[first:last] = differentiate_eta(
-            poses.eta[first:last], dt, settings.differentiate
+    for start, end in find_stretches(poses.usable):
+        nu[start:end], nu_dot[start:end] = differentiate_eta(
+            poses.eta[start:end], dt, settings.differentiate
         )
     margin = settings.suited(poses).differentiate.margin
     usable = without_margins(poses.usable, round(margin / dt))

@@ -36,30 +36,30 @@ class ChosenChannels:
     @property
     def read(self) -> dict[str, Channel]:
         """The main channels: the first of each mapping, and the depth if it is used."""
-        first = [*list(self.turning)[:1], *list(self.moving)[:1], "depth"]
-        return {kind: channel for kind, channel in self.all.items() if kind in first}
+        main = [*list(self.turning)[:1], *list(self.moving)[:1], "depth"]
+        return {kind: channel for kind, channel in self.all.items() if kind in main}
 
 
 def choose_channels(recording: Recording) -> ChosenChannels:
     """Choose channels of a recording that have at least two samples."""
     delays = recording.sensors.delay_s.model_dump()
-    known = {
+    channels = {
         kind: Channel(channel.time - delays[kind], channel.value)
         for kind, channel in recording.channels.items()
         if len(channel.time) > 1
     }
-    return ChosenChannels(_choose_turning(known), _choose_moving(known))
+    return ChosenChannels(_choose_turning(channels), _choose_moving(channels))
 
 
 def doubt_delays(recording: Recording) -> Iterator[str]:
     """Yield a sentence where the campaign gives delays that are not used, and why they are not."""
-    given = [kind for kind, delay in recording.sensors.delay_s.model_dump().items() if delay]
-    idle = [kind for kind in given if recording.posed or kind not in recording.channels]
+    delayed = [kind for kind, delay in recording.sensors.delay_s.model_dump().items() if delay]
+    idle = [kind for kind in delayed if recording.posed or kind not in recording.channels]
     if idle:
-        known = ", ".join(recording.channels) or "none"
-        why = "full poses are taken at their times" if recording.posed else f"read are {known}"
+        names = ", ".join(recording.channels) or "none"
+        reason = "full poses are taken at their times" if recording.posed else f"read are {names}"
         yield (
-            f"The delay of {', '.join(idle)} (mocap.sensors.delay_s) is not used, for {why}: "
+            f"The delay of {', '.join(idle)} (mocap.sensors.delay_s) is not used, for {reason}: "
             "correct the times in the file, or the name of the channel."
         )
 

@@ -22,15 +22,15 @@ def find_stretches(usable: Array) -> list[tuple[int, int]]:
 
 def without_short(usable: Array, length: int) -> Array:
     """`usable` (n,) without its stretches of fewer than `length` samples."""
-    kept = usable.copy()
-    for first, last in find_stretches(usable):
-        kept[first:last] = last - first >= length
-    return kept
+    mask = usable.copy()
+    for start, end in find_stretches(usable):
+        mask[start:end] = end - start >= length
+    return mask
 
 
 def without_margins(usable: Array, samples: int) -> Array:
     """`usable` (n,) with every stretch shortened by `samples` at either end."""
-    kept = np.zeros_like(usable)
-    for first, last in find_stretches(usable):
-        kept[first + samples : max(last - samples, first + samples)] = True
-    return kept
+    mask = np.zeros_like(usable)
+    for start, end in find_stretches(usable):
+        mask[start + samples : max(end - samples, start + samples)] = True
+    return mask

@@ -63,8 +63,8 @@ class Butterworth(Section):
         pad = round(EXTENSION * period)
         extended = _continued(x, pad, max(round(FIT * period), 5))
         sos = scipy.signal.butter(self.order, self.cutoff, fs=1.0 / dt, output="sos")
-        there = _one_way(sos, extended)
-        back = _one_way(sos, there[..., ::-1, :])[..., ::-1, :]
+        forward = _one_way(sos, extended)
+        back = _one_way(sos, forward[..., ::-1, :])[..., ::-1, :]
         return back[..., pad : pad + x.shape[-2], :]
 
 
@@ -140,8 +140,8 @@ def filter_poses(poses: Poses, settings: Filter) -> Poses:
         BadInput: the filter cannot work at this sampling rate.
     """
     eta = poses.eta.copy()
-    for first, last in find_stretches(poses.usable):
-        eta[first:last] = filter_eta(poses.eta[first:last], time_step(poses.time), settings)
+    for start, end in find_stretches(poses.usable):
+        eta[start:end] = filter_eta(poses.eta[start:end], time_step(poses.time), settings)
     return replace(poses, eta=eta)
 
 

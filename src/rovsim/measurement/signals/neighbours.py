@@ -28,7 +28,7 @@ class Neighbours:
     @staticmethod
     def of(time: Array, step: float) -> "Neighbours":
         """Find the cubics of frames at `time` (n,) that are usually `step` s apart."""
-        ago = np.stack([time[own] - time[2:-2] for own in _NODES])
+        ago = np.stack([time[node] - time[2:-2] for node in _NODES])
         weights = np.ones_like(ago)
         for k, j in np.argwhere(~np.eye(4, dtype=bool)):
             weights[k] *= ago[j] / (ago[j] - ago[k])
@@ -38,7 +38,7 @@ class Neighbours:
 
     def beside(self, x: Array) -> Array:
         """Distance (n,) of each row of `x` (n, c) from its cubic; NaN where there is none."""
-        expected = sum(w[:, None] * x[own] for w, own in zip(self.weights, _NODES, strict=True))
+        expected = sum(w[:, None] * x[node] for w, node in zip(self.weights, _NODES, strict=True))
         return _padded(np.linalg.norm(x[2:-2] - expected, axis=1))
 
 
@@ -66,11 +66,11 @@ def find_far(off: Array, limit: Array) -> Array:
     """
     padded = np.pad(off, OTHERS, constant_values=np.nan)
     nearby = np.lib.stride_tricks.sliding_window_view(padded, 2 * OTHERS + 1)
-    far = np.zeros(len(off), bool)
+    outliers = np.zeros(len(off), bool)
     for k in np.flatnonzero(off > limit):
-        own = nearby[k, OTHERS - 2 : OTHERS + 3]
-        others = np.delete(nearby[k], slice(OTHERS - 2, OTHERS + 3))
-        usual = np.median(others[~np.isnan(others)]) if not np.isnan(others).all() else np.inf
-        sure = np.isfinite(own[1:4]).all() and off[k] >= np.nanmax(own)
-        far[k] = sure and off[k] > FAR_MORE * usual
-    return far
+        window = nearby[k, OTHERS - 2 : OTHERS + 3]
+        outer = np.delete(nearby[k], slice(OTHERS - 2, OTHERS + 3))
+        usual = np.median(outer[~np.isnan(outer)]) if not np.isnan(outer).all() else np.inf
+        sure = np.isfinite(window[1:4]).all() and off[k] >= np.nanmax(window)
+        outliers[k] = sure and off[k] > FAR_MORE * usual
+    return outliers

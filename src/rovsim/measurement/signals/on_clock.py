@@ -44,12 +44,12 @@ class OnClock:
 
         Columns with fewer than two samples are NaN.
         """
-        found = np.full((len(self.clock), channel.value.shape[1]), np.nan)
+        resampled = np.full((len(self.clock), channel.value.shape[1]), np.nan)
         for k, column in enumerate(channel.value.T):
-            known = np.isfinite(column)
-            if known.sum() > 1:
-                found[:, k] = np.interp(self.clock, channel.time[known], column[known])
-        return found
+            finite = np.isfinite(column)
+            if finite.sum() > 1:
+                resampled[:, k] = np.interp(self.clock, channel.time[finite], column[finite])
+        return resampled
 
     def attitudes(self, channel: Channel) -> Array:
         """Interpolate the unit quaternions (n, 4) of a channel."""
@@ -62,10 +62,10 @@ class OnClock:
 
     def nearest(self, instants: Array) -> Array:
         """Mask (n,) of the clock's samples that are nearest to one of the instants (k,) s."""
-        found = np.zeros(len(self.clock), bool)
+        mask = np.zeros(len(self.clock), bool)
         place = np.round((instants - self.clock[0]) / self.step).astype(int)
-        found[place[(place >= 0) & (place < len(found))]] = True
-        return found
+        mask[place[(place >= 0) & (place < len(mask))]] = True
+        return mask
 
     def sum_up(self, time: Array, rate: Array) -> Array:
         """Integrate rates (m, c) measured at `time` (m,) s to values (n, c); NaN counts as zero.
@@ -88,10 +88,12 @@ class OnClock:
         q[0] = [1.0, 0.0, 0.0, 0.0]
         for k, turn in enumerate(turns):
             q[k + 1] = rotations.multiply(q[k], turn)
-        own = np.clip(np.searchsorted(edges, self.clock, "right") - 1, 0, len(turns) - 1)
-        rest = rotations.exp(rate[own] * (self.clock - edges[own])[:, None])
-        found = rotations.multiply(q[own], rest)
-        return rotations.multiply(rotations.multiply(start, rotations.conjugate(found[0])), found)
+        interval = np.clip(np.searchsorted(edges, self.clock, "right") - 1, 0, len(turns) - 1)
+        remainder = rotations.exp(rate[interval] * (self.clock - edges[interval])[:, None])
+        attitude = rotations.multiply(q[interval], remainder)
+        return rotations.multiply(
+            rotations.multiply(start, rotations.conjugate(attitude[0])), attitude
+        )
 
     def drift(self, apart: Array, summed: Channel, direct: Channel) -> Array:
         """Estimate the drift (n, c) of an integral from direct readings of the same quantity.
@@ -112,13 +114,13 @@ class OnClock:
         # a noise density is NaN for two readings: then the shortest time
         width = np.clip(np.nan_to_num(ratio), *DRIFT)
         sigma = np.sqrt(2.0) * width * (direct.rate or 1.0)
-        found = np.full((len(self.clock), apart.shape[1]), np.nan)
+        correction = np.full((len(self.clock), apart.shape[1]), np.nan)
         for k, column in enumerate(apart.T):
-            known = np.isfinite(column)
-            if known.any():
-                smooth = scipy.ndimage.gaussian_filter1d(column[known], sigma, mode="reflect")
-                found[:, k] = np.interp(self.clock, direct.time[known], smooth)
-        return found
+            finite = np.isfinite(column)
+            if finite.any():
+                smooth = scipy.ndimage.gaussian_filter1d(column[finite], sigma, mode="reflect")
+                correction[:, k] = np.interp(self.clock, direct.time[finite], smooth)
+        return correction
 
 
 def instants_between(time: Array) -> Array:
@@ -132,5 +134,5 @@ def between(at: Array, time: Array, q: Array) -> Array:
 
     Components are interpolated linearly and scaled to unit length (k, 4).
     """
-    each = [np.interp(at, time, column) for column in q.T]
-    return rotations.normalized(np.stack(each, axis=1))
+    components = [np.interp(at, time, column) for column in q.T]
+    return rotations.normalized(np.stack(components, axis=1))

@@ -62,15 +62,17 @@ class VelocityGate(Section):
         """
         if step < SLOW:
             return ~self._chained(time, position, attitude, step)
-        kept, before = np.arange(len(time)), -1
-        while len(kept) != before:
-            before = len(kept)
-            jumps = self._there_and_back(time[kept], position[kept], attitude[kept], step)
-            kept = kept[~jumps]
+        frames, before = np.arange(len(time)), -1
+        while len(frames) != before:
+            before = len(frames)
+            jumps = self._there_and_back(time[frames], position[frames], attitude[frames], step)
+            frames = frames[~jumps]
             # only without jumps: one that is within reach of one side alone would break the chain
             if not jumps.any():
-                kept = kept[self._chained(time[kept], position[kept], attitude[kept], step)]
-        return ~np.isin(np.arange(len(time)), kept)
+                frames = frames[
+                    self._chained(time[frames], position[frames], attitude[frames], step)
+                ]
+        return ~np.isin(np.arange(len(time)), frames)
 
     def _chained(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
         """Mask (n,) of the frames in the chain."""
@@ -113,21 +115,21 @@ class Hampel(Section):
         """Mask (n,) of the found frames that are far from the median of their neighbours."""
         # Rotation matrices have no sign to agree on; |R1 - R2| / sqrt(2) is the angle when small.
         rotation = rotations.matrix(attitude).reshape(len(time), 9) / np.sqrt(2.0)
-        kept = np.arange(len(time))
-        while len(kept) > 2:
-            far = self._far(time[kept], position[kept], self.noise)
-            far |= self._far(time[kept], rotation[kept], self.angle_noise)
-            if not far.any():
+        frames = np.arange(len(time))
+        while len(frames) > 2:
+            outliers = self._far(time[frames], position[frames], self.noise)
+            outliers |= self._far(time[frames], rotation[frames], self.angle_noise)
+            if not outliers.any():
                 break
-            kept = kept[~far]
-        return ~np.isin(np.arange(len(time)), kept)
+            frames = frames[~outliers]
+        return ~np.isin(np.arange(len(time)), frames)
 
     def _far(self, time: Array, x: Array, noise: float) -> Array:
         """Mask (n,) of the rows of `x` (n, c) that are far from the median of their window."""
         n = len(x)
         width = min(2 * self.half_window + 1, n)
-        first = np.clip(np.arange(n) - width // 2, 0, n - width)
-        nearby = first[:, None] + np.arange(width)
+        start = np.clip(np.arange(n) - width // 2, 0, n - width)
+        nearby = start[:, None] + np.arange(width)
         window, ago = x[nearby], (time[nearby] - time[:, None])[..., None]
         slope = np.median(np.diff(window, axis=1) / np.diff(ago, axis=1), axis=1)
         window = window - slope[:, None] * ago
@@ -161,12 +163,12 @@ def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAl
     If these frames are removed and the search is repeated, it finds nothing more.
     """
     mask = np.zeros(len(recording.time), bool)
-    found = np.flatnonzero(recording.found)
-    if len(found) > 1:
-        time = recording.time[found]
+    frames = np.flatnonzero(recording.found)
+    if len(frames) > 1:
+        time = recording.time[frames]
         step = max(1.0 / recording.rate, float(np.median(np.diff(recording.time))))
-        mask[found] = settings.rejected(
-            time, recording.position[found], recording.attitude[found], step
+        mask[frames] = settings.rejected(
+            time, recording.position[frames], recording.attitude[frames], step
         )
     return mask
 
@@ -175,11 +177,11 @@ def _stretches(
     gate: VelocityGate, time: Array, position: Array, attitude: Array, step: float
 ) -> tuple[Array, Array]:
     """First and last index, (s,) each, of every stretch without dropout or implausible step."""
-    near = _within_reach(
+    plausible = _within_reach(
         gate, np.diff(time), position[1:] - position[:-1], attitude[:-1], attitude[1:], step
     )
-    cut = np.flatnonzero(~near | (np.diff(time) > LONG_STEP * step))
-    return np.concatenate([[0], cut + 1]), np.concatenate([cut, [len(time) - 1]])
+    breaks = np.flatnonzero(~plausible | (np.diff(time) > LONG_STEP * step))
+    return np.concatenate([[0], breaks + 1]), np.concatenate([breaks, [len(time) - 1]])
 
 
 def _within_reach(
@@ -198,8 +200,8 @@ def _within_reach(
     # Jittered stamps can be closer than a step although the exposures were not.
     elapsed = np.maximum(elapsed, step)
     angle = 2.0 * np.arccos(np.clip(np.abs(np.sum(q0 * q1, axis=-1)), 0.0, 1.0))
-    near = np.linalg.norm(moved, axis=-1) <= gate.max_speed * elapsed + gate.tolerance
-    return near & (angle <= gate.max_rate * elapsed + gate.angle_tolerance)
+    plausible = np.linalg.norm(moved, axis=-1) <= gate.max_speed * elapsed + gate.tolerance
+    return plausible & (angle <= gate.max_rate * elapsed + gate.angle_tolerance)
 
 
 def _longest_chain(
@@ -234,16 +236,16 @@ def _longest_chain(
     best[1:] -= CUT_END
     for j in range(1, len(size)):
         i = np.arange(max(0, j - LOOK_BACK), j)
-        last, first = ends[i], starts[j]
-        near = _within_reach(
+        end, start = ends[i], starts[j]
+        reachable = _within_reach(
             gate,
-            time[first] - time[last],
-            position[first] - position[last],
-            attitude[last],
-            attitude[first],
+            time[start] - time[end],
+            position[start] - position[end],
+            attitude[end],
+            attitude[start],
             step,
         )
-        score = np.where(near, best[i] - DETOUR * (i < j - 1), -np.inf)
+        score = np.where(reachable, best[i] - DETOUR * (i < j - 1), -np.inf)
         k = int(np.argmax(score))
         if size[j] + score[k] > best[j]:
             best[j], before[j] = size[j] + score[k], i[k]

@@ -37,20 +37,20 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
     Raises:
         BadInput: there is no channel of the motion.
     """
-    chosen = choose_channels(recording)
-    if not chosen.all:
+    channels = choose_channels(recording)
+    if not channels.all:
         raise BadInput(
             f"no channel of the motion, but {', '.join(recording.channels) or 'nothing'}",
             where=f"run {recording.run.id}",
             expected="some of position, depth, attitude, velocity, rates",
             remedy="Name the topics or columns that hold them.",
         )
-    clock = _make_clock(chosen, settings, recording.run.id)
+    clock = _make_clock(channels, settings, recording.run.id)
     at = OnClock(clock, settings.max_gap)
-    turned = _turn(at, chosen.turning)
-    moved = _move(at, chosen.moving, turned.value, recording)
+    turned = _turn(at, channels.turning)
+    moved = _move(at, channels.moving, turned.value, recording)
     rate = 1.0 / at.step
-    usable = np.logical_and.reduce([at.bridged(channel) for channel in chosen.read.values()])
+    usable = np.logical_and.reduce([at.bridged(channel) for channel in channels.read.values()])
     usable = without_short(usable, round(settings.min_segment * rate))
     return Poses(
         recording.run,
@@ -59,7 +59,7 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
         np.hstack([moved.value, turned.value]),
         usable,
         recording.commands,
-        _describe(at, chosen, turned, moved),
+        _describe(at, channels, turned, moved),
     )
 
 
@@ -69,20 +69,20 @@ def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Arr
     It starts at a sample of that channel, or midway between two if the channel is integrated, and
     covers the time in which all chosen channels were measured.
     """
-    kind, fastest = max(chosen.read.items(), key=lambda one: one[1].rate or 0.0)
+    kind, fastest = max(chosen.read.items(), key=lambda item: item[1].rate or 0.0)
     rate = min(settings.rate or FASTEST, FASTEST, fastest.rate or FASTEST)
-    first = max(channel.time[0] for channel in chosen.all.values())
-    last = min(channel.time[-1] for channel in chosen.all.values())
-    if (last - first) * rate > LONGEST:
+    start = max(channel.time[0] for channel in chosen.all.values())
+    end = min(channel.time[-1] for channel in chosen.all.values())
+    if (end - start) * rate > LONGEST:
         raise BadInput(
-            f"its channels last {last - first:.3g} s",
+            f"its channels last {end - start:.3g} s",
             where=f"run {where}",
             expected=f"at most {LONGEST / rate:.3g} s",
             remedy="Look for time stamps that jump.",
         )
     instants = instants_between(fastest.time) if kind in SUMMED else fastest.time
-    first = float(instants[min(np.searchsorted(instants, first), len(instants) - 1)])
-    return uniform_clock(first, max(last, first), rate)
+    start = float(instants[min(np.searchsorted(instants, start), len(instants) - 1)])
+    return uniform_clock(start, max(end, start), rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,25 +107,25 @@ def _turn(at: OnClock, turning: Mapping[str, Channel]) -> _Tracked:
     if "rates" not in turning:
         return direct
     rates = turning["rates"]
-    q, known = at.turn_up(rates, direct.value[0]), np.isfinite(rates.value).any(axis=0)
+    q, measured = at.turn_up(rates, direct.value[0]), np.isfinite(rates.value).any(axis=0)
     for channel in beside.values():
-        read = _read_attitude(OnClock(channel.time, at.max_gap), beside).value
+        reference = _read_attitude(OnClock(channel.time, at.max_gap), beside).value
         summed = between(channel.time, at.clock, rotations.continuous(q))
-        apart = rotations.log(rotations.multiply(rotations.conjugate(summed), read))
+        apart = rotations.log(rotations.multiply(rotations.conjugate(summed), reference))
         drift = np.where(direct.known, at.drift(apart, rates, channel), 0.0)
         q = rotations.multiply(q, rotations.exp(drift))
-    return _Tracked(_continuous(q), known | direct.known, known)
+    return _Tracked(_continuous(q), measured | direct.known, measured)
 
 
 def _read_attitude(at: OnClock, direct: Mapping[str, Channel]) -> _Tracked:
-    none = np.zeros(3, bool)
+    no_axes = np.zeros(3, bool)
     if "attitude" in direct:
-        return _Tracked(at.attitudes(direct["attitude"]), ~none, none)
+        return _Tracked(at.attitudes(direct["attitude"]), ~no_axes, no_axes)
     angles = np.full((len(at.clock), 3), np.nan)
     for channel in direct.values():
         angles = at.values(Channel(channel.time, rotations.unwrapped(channel.value)))
-    known = ~np.isnan(angles).all(axis=0)
-    return _Tracked(_continuous(rotations.from_euler(*np.nan_to_num(angles).T)), known, none)
+    measured = ~np.isnan(angles).all(axis=0)
+    return _Tracked(_continuous(rotations.from_euler(*np.nan_to_num(angles).T)), measured, no_axes)
 
 
 def _continuous(q: Array) -> Array:
@@ -160,8 +160,8 @@ def _move(
     if "depth" in moving:
         position[:, 2] = _depth_of_origin(at.values(moving["depth"])[:, 0], attitude, recording)
         summed[2] = False
-    known = ~np.isnan(position).all(axis=0)
-    return _Tracked(np.nan_to_num(position), known, summed & known)
+    measured = ~np.isnan(position).all(axis=0)
+    return _Tracked(np.nan_to_num(position), measured, summed & measured)
 
 
 def _sum_velocities(
@@ -175,16 +175,16 @@ def _sum_velocities(
         Positions (n, 3), m, relative to the start, NaN where not measured; and which coordinates
         (3,) were measured.
     """
-    known = np.isfinite(channel.value).any(axis=0)
+    measured_axes = np.isfinite(channel.value).any(axis=0)
     q = between(channel.time, at.clock, attitude)
     v, place = np.nan_to_num(channel.value), np.array(recording.sensors.velocity_at)
     if place.any() and len(at.clock) > 1:
         q_dot = np.gradient(attitude, at.clock, axis=0)
         turning = rotations.body_rates(attitude, q_dot)
-        spin = np.stack([np.interp(channel.time, at.clock, own) for own in turning.T], axis=1)
+        spin = np.stack([np.interp(channel.time, at.clock, rate) for rate in turning.T], axis=1)
         v = v - np.cross(spin, place)
-    both = np.array([known[:2].all(), known[:2].all(), known[2]])
-    return np.where(both, at.sum_up(channel.time, rotations.rotate(q, v)), np.nan), both
+    measured = np.array([measured_axes[:2].all(), measured_axes[:2].all(), measured_axes[2]])
+    return np.where(measured, at.sum_up(channel.time, rotations.rotate(q, v)), np.nan), measured
 
 
 def _depth_of_origin(depth: Array, attitude: Array, recording: Recording) -> Array:
@@ -203,17 +203,17 @@ def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tra
     axes = np.array([flat, flat, moved.known[2], *turned.known])
     place = [kind for kind in chosen.moving if kind != "depth"][:1]
     height = ["depth"] if "depth" in chosen.moving else place
-    when = np.zeros((len(at.clock), 6), bool)
-    for own, kinds in (([0, 1], place), ([2], height), ([3, 4, 5], list(chosen.turning)[:1])):
+    samples = np.zeros((len(at.clock), 6), bool)
+    for columns, kinds in (([0, 1], place), ([2], height), ([3, 4, 5], list(chosen.turning)[:1])):
         for kind in kinds:
-            when[:, own] = at.nearest(_read_at(kind, chosen.all[kind]))[:, None]
+            samples[:, columns] = at.nearest(_read_at(kind, chosen.all[kind]))[:, None]
     slowest = min(channel.rate or 0.0 for channel in chosen.read.values())
     return Measured(
         moved.known,
         turned.known[2:],
         axes,
         np.append(moved.summed, turned.summed),
-        when & axes,
+        samples & axes,
         np.array([SHARE * slowest]),
     )
 

@@ -30,19 +30,19 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     Raises:
         BadInput: no such log, no such column in it, or other kinds of command.
     """
-    wanted, numbers = _wanted(path, log)
-    held = open_log(path)
-    series, field = _series(held, wanted)
+    kind, numbers = _wanted(path, log)
+    vehicle_log = open_log(path)
+    series, field = _series(vehicle_log, kind)
     names = [field.format(number) for number in numbers]
     missing = [log.names[k] for k, name in enumerate(names) if name not in series.fields]
     if missing:
         raise BadInput(
-            f"no output or channel {', '.join(missing)} in {SOURCES[held.kind][wanted][0]}",
+            f"no output or channel {', '.join(missing)} in {SOURCES[vehicle_log.kind][kind][0]}",
             where=path,
             expected="columns that the log holds",
             remedy="Correct 'commands.columns'.",
         )
-    value, notes = _without_pulse(series.of(names), wanted)
+    value, notes = _without_pulse(series.of(names), kind)
 
     def place(line: int, column: int) -> str:
         return f"{path}, at {series.time[line]:.3f} s, column '{log.names[column]}'"

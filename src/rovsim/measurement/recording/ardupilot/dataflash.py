@@ -73,19 +73,19 @@ def read_dataflash(path: Path) -> ArduPilotLog:
     if not raw.startswith(HEAD):
         raise no_log(path, "the file is empty" if not raw else "it does not start as a .BIN does")
     formats, places, skipped = _index(raw)
-    named = {form.name: kind for kind, form in formats.items() if form.fields is not None}
+    kind_by_name = {form.name: kind for kind, form in formats.items() if form.fields is not None}
     tables = {
-        name: _table(raw, formats[named[name]], places[named[name]])
+        name: _table(raw, formats[kind_by_name[name]], places[kind_by_name[name]])
         for name in WANTED
-        if name in named and places[named[name]]
+        if name in kind_by_name and places[kind_by_name[name]]
     }
-    said = tables.pop("MSG", None)
-    told = said is not None and "Message" in (said.dtype.names or ())
-    texts = b" ".join(said["Message"]) if said is not None and told else b""
+    messages = tables.pop("MSG", None)
+    has_text = messages is not None and "Message" in (messages.dtype.names or ())
+    texts = b" ".join(messages["Message"]) if messages is not None and has_text else b""
     series = {
-        name: one
+        name: signal
         for name, table in tables.items()
-        if (one := _series(table, formats[named[name]])) is not None
+        if (signal := _series(table, formats[kind_by_name[name]])) is not None
     }
     if not series:
         raise no_log(path, f"no message of a known type in {len(raw)} bytes")
@@ -95,8 +95,8 @@ def read_dataflash(path: Path) -> ArduPilotLog:
 
 def _submarine(texts: bytes) -> bool | None:
     kinds = (b"ArduSub", b"ArduRover", b"ArduCopter", b"ArduPlane", b"Rover ", b"Blimp")
-    said = next((kind for kind in kinds if kind in texts), None)
-    return None if said is None else said == b"ArduSub"
+    vehicle = next((kind for kind in kinds if kind in texts), None)
+    return None if vehicle is None else vehicle == b"ArduSub"
 
 
 def _index(raw: bytes) -> _Index:
@@ -139,9 +139,9 @@ def _learn(body: bytes, formats: dict[int, Format]) -> None:
 def _table(raw: bytes, form: Format, places: list[int]) -> Array:
     """Messages of one type, at n offsets, as a structured array (n,)."""
     assert form.fields is not None
-    whole = np.frombuffer(raw, np.uint8)
+    data = np.frombuffer(raw, np.uint8)
     body = np.array(places)[:, None] + np.arange(3, form.length)
-    return whole[body].view(form.fields)[:, 0]
+    return data[body].view(form.fields)[:, 0]
 
 
 def _series(table: Array, form: Format) -> Series | None:

@@ -66,8 +66,12 @@ def read_log(path: Path, mocap: Mocap) -> Export:
     """
     _check_axes(mocap, path)
     log = open_log(path)
-    found = {kind: _read(log, sources) for kind, sources in SOURCES[log.kind].items()}
-    channels = {kind: one for kind, one in found.items() if one is not None and len(one.time)}
+    readings = {kind: _read(log, sources) for kind, sources in SOURCES[log.kind].items()}
+    channels = {
+        kind: channel
+        for kind, channel in readings.items()
+        if channel is not None and len(channel.time)
+    }
     if not channels:
         names = [source.series for options in SOURCES[log.kind].values() for source in options]
         raise needs(log, list(dict.fromkeys(names)), "nothing of the motion")
@@ -98,12 +102,12 @@ def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
     notes = []
     if "attitude" in channels:
         time, angles = channels["attitude"].time, channels["attitude"].value
-        whole = np.isfinite(angles).all(axis=1)
-        channels["attitude"] = Channel(time[whole], from_euler(*angles[whole].T))
+        complete = np.isfinite(angles).all(axis=1)
+        channels["attitude"] = Channel(time[complete], from_euler(*angles[complete].T))
     if "voltage" in channels:
         time, volts = channels["voltage"].time, channels["voltage"].value
-        given = (volts[:, 0] > 0.0) & (volts[:, 0] != NO_VOLTAGE)
-        channels["voltage"] = Channel(time[given], volts[given])
+        valid = (volts[:, 0] > 0.0) & (volts[:, 0] != NO_VOLTAGE)
+        channels["voltage"] = Channel(time[valid], volts[valid])
     if "depth" in channels and log.submarine is False:
         del channels["depth"]
         notes.append("The vehicle is no submarine: its altitude is not read as a depth.")
@@ -115,27 +119,27 @@ def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
 def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[str]:
     """Keep positions of the Kalman filter that it says are known; z only if there is no depth."""
     position = channels.pop("position")
-    known = _known(log, position.time)
-    if not known.any():
+    valid = _known(log, position.time)
+    if not valid.any():
         return ["The filter never knew where the vehicle was: its position is not measured."]
-    value = position.value[known]
+    value = position.value[valid]
     if "depth" in channels:  # the filter computes its height from the depth
         value = np.where([True, True, False], value, np.nan)
-    channels["position"] = Channel(position.time[known], value)
-    left = int(np.sum(~known))
-    return [f"{left} positions that the filter did not know were left out."] if left else []
+    channels["position"] = Channel(position.time[valid], value)
+    left_out = int(np.sum(~valid))
+    return [f"{left_out} positions that the filter did not know were left out."] if left_out else []
 
 
 def _known(log: ArduPilotLog, time: Array) -> Array:
     """Mask (n,) of times at which the filter's last status said that it knows the position."""
-    given = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
-    if given is None:
+    source = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
+    if source is None:
         return np.zeros(len(time), bool)
-    status = _in_order(log.series[given[0]])
-    flags = np.nan_to_num(status.of([given[1]])[:, 0]).astype(np.int64)
+    status = _in_order(log.series[source[0]])
+    flags = np.nan_to_num(status.of([source[1]])[:, 0]).astype(np.int64)
     good = (flags & POSITION_KNOWN != 0) & (flags & POSITION_ASSUMED == 0)
-    last = np.searchsorted(status.time, time, side="right") - 1
-    return np.where(last >= 0, good[np.maximum(last, 0)], False)
+    latest = np.searchsorted(status.time, time, side="right") - 1
+    return np.where(latest >= 0, good[np.maximum(latest, 0)], False)
 
 
 def _in_order(series: Series) -> Series:
@@ -152,8 +156,8 @@ def _modes(log: ArduPilotLog) -> tuple[str, ...]:
     number = np.unique(number[np.isfinite(number)]).astype(int)
     if not len(number):
         return ()
-    named = ", ".join(MODES.get(int(n), f"number {n}") for n in number)
-    return (f"Flight modes in this log: {named}. In all but MANUAL the autopilot adds its own.",)
+    names = ", ".join(MODES.get(int(n), f"number {n}") for n in number)
+    return (f"Flight modes in this log: {names}. In all but MANUAL the autopilot adds its own.",)
 
 
 MOCAP_READER = MocapReader(

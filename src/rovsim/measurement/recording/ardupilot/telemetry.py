@@ -35,15 +35,15 @@ def read_telemetry(path: Path) -> ArduPilotLog:
 
     raw = path.read_bytes()
     numbers = {m.id for m in dialect.mavlink_map.values() if m.msgname in WANTED}
-    found = list(_messages(raw, dialect, numbers))
-    if not found:
-        said = f"no message of a known type in {len(raw)} bytes" if raw else "the file is empty"
-        raise no_log(path, said)
-    found, submarine = _of_vehicle(found)
+    packets = list(_messages(raw, dialect, numbers))
+    if not packets:
+        problem = f"no message of a known type in {len(raw)} bytes" if raw else "the file is empty"
+        raise no_log(path, problem)
+    packets, submarine = _of_vehicle(packets)
     by_type: dict[str, list[Received]] = defaultdict(list)
-    for received, message in found:
+    for received, message in packets:
         by_type[message.get_type()].append((received, message))
-    offset, notes = _boot(found)
+    offset, notes = _boot(packets)
     series = {name: _series(messages, offset) for name, messages in by_type.items()}
     return ArduPilotLog(path, "telemetry", series, submarine, notes)
 
@@ -97,10 +97,10 @@ def _of_vehicle(found: list[Received]) -> tuple[list[Received], bool | None]:
     beats = [m for _, m in found if m.get_type() == "HEARTBEAT" and m.autopilot != NO_AUTOPILOT]
     if not beats:
         return found, None
-    first = beats[0]
-    source = (first.get_srcSystem(), first.get_srcComponent())
-    own = [(t, m) for t, m in found if (m.get_srcSystem(), m.get_srcComponent()) == source]
-    return own, first.type == SUBMARINE
+    heartbeat = beats[0]
+    source = (heartbeat.get_srcSystem(), heartbeat.get_srcComponent())
+    packets = [(t, m) for t, m in found if (m.get_srcSystem(), m.get_srcComponent()) == source]
+    return packets, heartbeat.type == SUBMARINE
 
 
 def _since_boot(message: Any) -> float:
@@ -122,10 +122,10 @@ def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
     """
     received = np.array([t for t, _ in found])
     boot = np.array([_since_boot(m) for _, m in found])
-    known = np.isfinite(boot)
-    if not known.any():
+    valid = np.isfinite(boot)
+    if not valid.any():
         return float("nan"), ()
-    boot, received = boot[known], received[known]
+    boot, received = boot[valid], received[valid]
     back = np.diff(boot)
     late = received - boot
     if len(back) and (back.min() < -REBOOT or np.ptp(np.percentile(late, [5, 95])) > REBOOT):
@@ -139,8 +139,8 @@ def _series(messages: list[Received], offset: float) -> Series:
     if np.isfinite(offset):
         boot = np.array([_since_boot(m) for _, m in messages]) + offset
         time = np.where(np.isfinite(boot), boot, time)
-    first = messages[0][1]
-    names = [n for n in first.get_fieldnames() if isinstance(getattr(first, n), int | float)]
+    message = messages[0][1]
+    names = [n for n in message.get_fieldnames() if isinstance(getattr(message, n), int | float)]
     return Series(time, {name: _values(messages, name) for name in names})
 
 

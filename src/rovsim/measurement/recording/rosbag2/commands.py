@@ -43,9 +43,9 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     """
     with opened(path, by="commands.format: rosbag2") as bag:
         topic = log.topic or _only_topic(bag)
-        kind, first = bag.first(topic, "commands.topic")
-        gets = [_getter(kind, first, log, k, f"{path}, {topic}") for k in range(len(log.names))]
-        found = bag.read(
+        kind, sample = bag.first(topic, "commands.topic")
+        gets = [_getter(kind, sample, log, k, f"{path}, {topic}") for k in range(len(log.names))]
+        samples = bag.read(
             topic,
             "commands.topic",
             lambda message: [_number(get, message) for get in gets],
@@ -53,12 +53,12 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
         )
 
     def place(line: int, column: int) -> str:
-        return f"{path}, {found.topic}, message {line + 1}, column '{log.names[column]}'"
+        return f"{path}, {samples.topic}, message {line + 1}, column '{log.names[column]}'"
 
-    pulses = found.kind.endswith(PULSES) and log.kind != "wrench"
-    value, notes = _without_pulse(found) if pulses else (found.value, ())
-    notes = (*found.notes, *notes)
-    return as_commands(found.time, value, log, place, pulses=pulses, notes=notes)
+    pulses = samples.kind.endswith(PULSES) and log.kind != "wrench"
+    value, notes = _without_pulse(samples) if pulses else (samples.value, ())
+    notes = (*samples.notes, *notes)
+    return as_commands(samples.time, value, log, place, pulses=pulses, notes=notes)
 
 
 def pushed(message: Any, axis: str) -> float:

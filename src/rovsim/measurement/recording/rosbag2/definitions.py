@@ -64,7 +64,7 @@ def _defined(name: str, language: str, text: str, where: str) -> Any:
         types = dict(get_types_from_msg(text, name))
     store = get_typestore(Stores.EMPTY)
     # rosbags writes Python code from definitions: only plain names may get there, and no values
-    store.register({_plain(one, where): ([], _fields(of, where)) for one, of in types.items()})
+    store.register({_plain(t, where): ([], _fields(of, where)) for t, of in types.items()})
     return store
 
 
@@ -81,12 +81,12 @@ def _named_types(fields: Any) -> list[str]:
     """List the types that fields refer to by name, also as elements of arrays."""
     from rosbags.interfaces import Nodetype
 
-    found = []
+    names = []
     for _, (kind, of) in fields:
         inner = (kind, of) if kind in (Nodetype.BASE, Nodetype.NAME) else of[0]
         if inner[0] == Nodetype.NAME:
-            found.append(inner[1])
-    return found
+            names.append(inner[1])
+    return names
 
 
 def _plain(name: str, where: str) -> str:

@@ -31,9 +31,9 @@ def read_bag(path: Path, mocap: Mocap) -> Export:
         for key, reading in readings(mocap).items():
             topic = getattr(topics, key)
             if topic and topic != pose_topic:
-                found = bag.read(topic, f"mocap.topics.{key}", reading.numbers, reading.expected)
-                channels |= _channels(found, reading)
-                notes += found.notes
+                samples = bag.read(topic, f"mocap.topics.{key}", reading.numbers, reading.expected)
+                channels |= _channels(samples, reading)
+                notes += samples.notes
         if pose_topic is None:
             return Export.of_channels(channels, notes=tuple(notes))
         channels.pop("attitude", None)  # it is part of the poses
@@ -42,33 +42,33 @@ def read_bag(path: Path, mocap: Mocap) -> Export:
 
 def _pose_topic(bag: Bag, mocap: Mocap, topics: Topics) -> str | None:
     """The topic of full poses; None where the campaign names topics of other channels alone."""
-    named = topics.pose or topics.odometry or mocap.body
-    if named:
-        return named
+    stated = topics.pose or topics.odometry or mocap.body
+    if stated:
+        return stated
     if mocap.topics is not None:
         return None
-    found = [
+    candidates = [
         topic for topic, kind in bag.topics.items() if kind.endswith(tuple(f"/{p}" for p in POSES))
     ]
-    if len(found) == 1:
-        return found[0]
+    if len(candidates) == 1:
+        return candidates[0]
     raise BadInput(
-        f"{len(found)} topics of poses: {', '.join(found) or 'none'}",
+        f"{len(candidates)} topics of poses: {', '.join(candidates) or 'none'}",
         where=bag.path,
         expected="the topic to read as 'mocap.body', or 'mocap.topics'",
-        remedy="Name one." if found else nearest("", bag.topics),
+        remedy="Name one." if candidates else nearest("", bag.topics),
     )
 
 
 def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str, ...]) -> Export:
-    found = bag.read(topic, "mocap.body", pose, "a pose: position and orientation")
-    position = found.value[:, :3]
-    attitude, seen = unit_quaternions(found.value[:, 3:])
-    seen &= finite_rows(position)
+    samples = bag.read(topic, "mocap.body", pose, "a pose: position and orientation")
+    position = samples.value[:, :3]
+    attitude, valid = unit_quaternions(samples.value[:, 3:])
+    valid &= finite_rows(position)
     place = f"{bag.path}, topic {topic}"
-    doubts = check_unit_length(found.value[:, 3:], lambda row: f"{place}, message {row + 1}")
-    notes = (*found.notes, *notes, *doubts)
-    return Export(found.time, position, attitude, seen, channels=channels, notes=notes)
+    doubts = check_unit_length(samples.value[:, 3:], lambda row: f"{place}, message {row + 1}")
+    notes = (*samples.notes, *notes, *doubts)
+    return Export(samples.time, position, attitude, valid, channels=channels, notes=notes)
 
 
 def _channels(found: Samples, reading: Reading) -> dict[str, Channel]:

@@ -30,8 +30,8 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
     """
     bag = arrived * NANO
     if not stamps.all():
-        said = () if not stamps.any() else (f"{topic}: stamps are missing; the bag's times hold.",)
-        return bag, said
+        notes = () if not stamps.any() else (f"{topic}: stamps are missing; the bag's times hold.",)
+        return bag, notes
     late = (arrived - stamps) * NANO
     low, middle, high = np.percentile(late, [5.0, 50.0, 95.0])
     if high - low > STEADY or (len(stamps) > 1 and not stamps[-1] > stamps[0]):
@@ -47,5 +47,5 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
 def stamp(message: Any) -> int:
     """Time stamp in the header of a message, ns; 0 where there is none."""
     header = getattr(message, "header", None)
-    given = getattr(header, "stamp", None)
-    return 0 if given is None else given.sec * 1_000_000_000 + given.nanosec
+    time = getattr(header, "stamp", None)
+    return 0 if time is None else time.sec * 1_000_000_000 + time.nanosec
