@@ -99,8 +99,8 @@ def _upright(
 
 def _mean_attitude(tracks: Sequence[Track]) -> Array | None:
     """Average the rotation matrices (3, 3), each run with equal weight; None without attitudes."""
-    turns = [R.mean(axis=0) for t in tracks if (R := _attitudes(t)) is not None]
-    return np.mean(turns, axis=0) if turns else None
+    means = [R.mean(axis=0) for t in tracks if (R := _attitudes(t)) is not None]
+    return np.mean(means, axis=0) if means else None
 
 
 def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple[str, str]:

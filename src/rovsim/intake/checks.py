@@ -153,9 +153,9 @@ def _score(nu: Array, time: Array, commands: Commands, fit: VehicleMatch) -> flo
     """
     caused = velocity(fit.vehicle, commands, time)
     excited = caused.std(axis=0) > EXCITED
-    alike = _alike(nu, caused)[excited]
-    measured = np.isfinite(alike)
-    return float(alike[measured].mean()) if measured.any() else 0.0
+    correlation = _alike(nu, caused)[excited]
+    measured = np.isfinite(correlation)
+    return float(correlation[measured].mean()) if measured.any() else 0.0
 
 
 def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
@@ -166,6 +166,6 @@ def _orders(value: Array, names: Sequence[str]) -> Iterator[tuple[str, Array]]:
         swapped[:, [a, b]] = value[:, [b, a]]
         yield f"{names[a]} and {names[b]} swapped", swapped
     for k, name in enumerate(names):
-        turned = value.copy()
-        turned[:, k] *= -1.0
-        yield f"{name} reversed", turned
+        negated = value.copy()
+        negated[:, k] *= -1.0
+        yield f"{name} reversed", negated

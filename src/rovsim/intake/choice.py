@@ -49,15 +49,17 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     if not fits:
         return Choice(None, "no vehicle file has as many commands", (), (), {})
     compared = {fit.name: _compared(fit, pairs) for fit in fits}
-    turns = {name: turned(correlations) for name, correlations in compared.items() if correlations}
-    scores = {name: _score(compared[name], turns[name]) for name in turns}
+    by_axes = {
+        name: turned(correlations) for name, correlations in compared.items() if correlations
+    }
+    scores = {name: _score(compared[name], by_axes[name]) for name in by_axes}
     ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
     best = _first(ordered, scores)
     undecided = Choice(
         None,
         _told(ordered, scores),
         tuple(ordered),
-        tuple(turns.get(best.name, [])),
+        tuple(by_axes.get(best.name, [])),
         compared[best.name],
         best,
     )

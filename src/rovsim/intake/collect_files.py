@@ -51,9 +51,9 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
     recordings, inside = gather(paths)
     by_path, refused = _look_into_all([*recordings, *inside], scratch)
     ambiguous = [path for path in inside if isinstance(refused.get(path), ASKED)]
-    bad = [str(refused[path]) for path in (*recordings, *ambiguous) if path in refused]
-    if bad:
-        raise RovsimError("\n".join(bad))
+    errors = [str(refused[path]) for path in (*recordings, *ambiguous) if path in refused]
+    if errors:
+        raise RovsimError("\n".join(errors))
     contents = list(by_path.values())
     left_out = tuple(
         f"{path.name}{_place(refused[path])} is left out: {refused[path].found}. "
@@ -138,15 +138,15 @@ def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: obj
     content = "no recording"
     if logs:
         content = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
-    alike: dict[tuple[str, str], list[str]] = {}
+    groups: dict[tuple[str, str], list[str]] = {}
     for error in refused:
         name = Path(error.where.partition(", ")[0]).name
-        alike.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
+        groups.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
     reasons = [
         f"{', '.join(names[:MOST_TOLD])}: {problem}"
-        for (problem, _), names in [*alike.items()][:MOST_TOLD]
+        for (problem, _), names in [*groups.items()][:MOST_TOLD]
     ]
-    remedies = [remedy for _, remedy in alike if remedy]
+    remedies = [remedy for _, remedy in groups if remedy]
     remedies += [note for log in logs for note in log.notes]
     if not remedies:
         remedies = ["Name the export of the motion capture, the bag or the log as well."]

@@ -127,9 +127,9 @@ def _by_convention(
     angles = "y_up" not in mocap_readers()[facts.motions[0].format].axes.world
     for k, correlation in facts.choice.runs.items():
         score, lag = correlation.best(axes)
-        pair, unlike = facts.pairs[k], score < MIN_CORRELATION
-        if pair.shown and (k == most or unlike):
-            late = 0.0 if unlike else lag
-            remark = checks.check_attitudes(pair.motion, pair.shown, fit, possible, late, angles)
+        pair, unrelated = facts.pairs[k], score < MIN_CORRELATION
+        if pair.shown and (k == most or unrelated):
+            delay = 0.0 if unrelated else lag
+            remark = checks.check_attitudes(pair.motion, pair.shown, fit, possible, delay, angles)
             if remark:
                 yield k, remark

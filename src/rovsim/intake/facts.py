@@ -111,13 +111,13 @@ def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], scor
 
 def _logs(found: CollectedFiles) -> list[CommandFile]:
     """List the logs of commands: files of their own, else those in the files of the motions."""
-    alone = [
+    separate = [
         CommandFile(contents.named, contents.drives[0])
         for contents in found.logs
         if contents.drives
     ]
-    if alone:
-        return alone
+    if separate:
+        return separate
     inside = []
     for contents in (file for motion in found.motions for file in motion.files):
         moving = [drive for drive in contents.drives if drive.moves]

@@ -98,9 +98,9 @@ def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossC
     clock = motion.measured.time
     if np.ptp(clock) < SHORTEST:
         return None
-    apart = clock[-1] < time[0] or time[-1] < clock[0]
-    shift = float(clock[0] - time[0]) if apart else 0.0
-    reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if apart else REACH
+    disjoint = clock[-1] < time[0] or time[-1] < clock[0]
+    shift = float(clock[0] - time[0]) if disjoint else 0.0
+    reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if disjoint else REACH
     return cross_correlate(motion.measured, time, nu, shift, min(reach, LONGEST))
 
 

@@ -143,10 +143,10 @@ def _by_first_words(
 
 def _alike(one: str, other: str) -> int:
     """Count the leading words that two names share; 0 where the rest of either has a digit."""
-    ours, theirs = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
-    pairs = zip(ours, theirs, strict=False)
+    words, other_words = (re.split(r"[\W_]+", stem.casefold()) for stem in (one, other))
+    pairs = zip(words, other_words, strict=False)
     count = len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
-    remainder = "".join(ours[count:] + theirs[count:])
+    remainder = "".join(words[count:] + other_words[count:])
     return 0 if re.search(r"\d", remainder) else count
 
 
@@ -205,13 +205,13 @@ def _decided(
             f"{logs[content].path.name} (likeness {scores[content]:.2f} against {scores[name]:.2f})"
         )
         return Pair(motion, None, explanation, (logs[content], logs[name]), logs[content])
-    for place, explanation in ((name, "by its name"), (clock, "the only log at that time")):
-        if place is not None:
-            weak = f"; the motion does not show it (likeness {scores[place]:.2f})"
+    for candidate, explanation in ((name, "by its name"), (clock, "the only log at that time")):
+        if candidate is not None:
+            caveat = f"; the motion does not show it (likeness {scores[candidate]:.2f})"
             return Pair(
                 motion,
-                logs[place],
-                explanation + (weak if 0 < scores[place] < MIN_CORRELATION else ""),
+                logs[candidate],
+                explanation + (caveat if 0 < scores[candidate] < MIN_CORRELATION else ""),
             )
     if len(logs) == 1:
         return Pair(motion, logs[0], "the only log of commands")

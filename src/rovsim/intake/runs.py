@@ -77,8 +77,8 @@ def missing(one: Pair) -> str:
     if not one.motion.track.posed:
         channels = [f"{kind} at {c.rate:.3g} Hz" for kind, c in export.channels.items() if c.rate]
         return f"; no full poses, but {', '.join(channels)}"
-    lost = int(np.sum(~export.found))
-    return f", {lost} of them without the body" if lost else ""
+    untracked = int(np.sum(~export.found))
+    return f", {untracked} of them without the body" if untracked else ""
 
 
 def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:

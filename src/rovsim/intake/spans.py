@@ -54,8 +54,8 @@ def _split(k: int, name: str, export: Export) -> Iterator[Entry]:
     if not spans:
         yield Entry(k, name)
         return
-    before = spans[0][0]
+    previous_end = spans[0][0]
     for number, (begin, end) in enumerate(spans, start=1):
         use = floor(1e3 * begin) / 1e3, ceil(1e3 * end) / 1e3
-        yield Entry(k, f"{name}-{number}", use, begin - before)
-        before = end
+        yield Entry(k, f"{name}-{number}", use, begin - previous_end)
+        previous_end = end

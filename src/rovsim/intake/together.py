@@ -24,12 +24,12 @@ def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tup
     """
     if len(motions) < 2 or any(contents.format != FORMAT for contents in motions):
         return tuple(motions), ()
-    runs, apart = _by_name(motions)
-    if len(runs) == len(motions) and not apart:
-        runs, apart = _by_clock(runs)
+    runs, notes = _by_name(motions)
+    if len(runs) == len(motions) and not notes:
+        runs, notes = _by_clock(runs)
     order = {contents.named: k for k, contents in enumerate(motions)}
     position = {run.named: min(order[file.named] for file in run.files) for run in runs}
-    return tuple(sorted(runs, key=lambda run: position[run.named])), tuple(apart)
+    return tuple(sorted(runs, key=lambda run: position[run.named])), tuple(notes)
 
 
 def list_stems(motions: Sequence[Contents]) -> list[str]:
@@ -56,7 +56,7 @@ def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
     groups: dict[tuple[Path, str], list[Contents]] = defaultdict(list)
     for contents in motions:
         groups[contents.named.absolute().parent, sensor_key(contents.named.stem)].append(contents)
-    runs, apart = [], []
+    runs, notes = [], []
     for group in groups.values():
         if len(group) == 1:
             runs += group
@@ -66,8 +66,8 @@ def _by_name(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:
         except BadInput as error:
             runs += group
             if _all_different(group):
-                apart.append(f"{_names(group)} look like one run by their names, but {error.found}")
-    return runs, apart
+                notes.append(f"{_names(group)} look like one run by their names, but {error.found}")
+    return runs, notes
 
 
 def _by_clock(motions: Sequence[Contents]) -> tuple[list[Contents], list[str]]:

@@ -83,9 +83,9 @@ def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
 
 
 def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
-    old = node.ca.items.get(key)
-    before = [*_texts(old), _wrapped(lines, WIDTH - depth)]
-    node.yaml_set_comment_before_after_key(key, before="\n".join(before), indent=depth)
+    existing = node.ca.items.get(key)
+    comments = [*_texts(existing), _wrapped(lines, WIDTH - depth)]
+    node.yaml_set_comment_before_after_key(key, before="\n".join(comments), indent=depth)
 
 
 def _texts(old: Any) -> list[str]:

@@ -63,21 +63,21 @@ def look_into_bag(path: Path) -> Contents:
         topics = bag.topics
         drives = tuple(_drives(bag, notes))
     poses = _pose_topics(topics)
-    beside = {key: topic for key in CHANNELS if (topic := _channel(topics, key))}
+    channels = {key: topic for key in CHANNELS if (topic := _channel(topics, key))}
     tracks = tuple(_tracks(path, poses, notes))
-    if not tracks and beside:
-        tracks = tuple(_of_channels(path, beside, notes))
-    elif beside:
-        listed = ", ".join(f"{key}: {topic}" for key, topic in beside.items())
+    if not tracks and channels:
+        tracks = tuple(_of_channels(path, channels, notes))
+    elif channels:
+        listed = ", ".join(f"{key}: {topic}" for key, topic in channels.items())
         notes.append(f"{path.name}: the bag also holds {listed}; 'mocap.topics' would read them.")
     if not tracks:
         notes += _unread(topics, "", "TFMessage", NOT_POSES)
-    wished = () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NOT_COMMANDS)
+    command_notes = () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NOT_COMMANDS)
     if tracks or drives:
         return Contents(
-            path, "rosbag2", tracks, drives, notes=tuple(notes), unknown=" ".join(wished)
+            path, "rosbag2", tracks, drives, notes=tuple(notes), unknown=" ".join(command_notes)
         )
-    notes += wished
+    notes += command_notes
     raise BadInput(
         f"no topic of motion or of commands among {len(topics)}",
         where=path,
@@ -169,8 +169,8 @@ def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
 
 def _place(kind: str) -> int:
     """Return the position of a message type in `OUTPUTS`, its length where it is no command."""
-    matching = [k for k, name in enumerate(OUTPUTS) if _short(kind).endswith(name)]
-    return min(matching, default=len(OUTPUTS))
+    ranks = [k for k, name in enumerate(OUTPUTS) if _short(kind).endswith(name)]
+    return min(ranks, default=len(OUTPUTS))
 
 
 def _drive(bag: Bag, topic: str) -> CommandCandidate:

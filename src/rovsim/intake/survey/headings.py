@@ -157,9 +157,9 @@ def _drop_ambiguous(places: dict[str, int], lines: Lines) -> None:
 
 def _of_a_stick(lines: Lines, places: dict[str, int]) -> bool:
     """Whether x, y, z are a pilot's stick: beside a column r, and no attitude in the file."""
-    turned = any(name in places for name in (*EULER, *QUATERNION))
+    has_attitude = any(name in places for name in (*EULER, *QUATERNION))
     sticks = {n: k for k, n in enumerate(lines.names) if n.lower() in STICKS}
-    if turned or len(sticks) < len(STICKS):
+    if has_attitude or len(sticks) < len(STICKS):
         return False
     return are_sticks({name: _values(lines, place) for name, place in sticks.items()})
 

@@ -46,9 +46,9 @@ def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
         The name of a column, and its first `count` cells.
     """
     places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN, TIME)]
-    glance = _cells(lines, min(count, GLANCE), places)
-    few = [k for k, column in zip(places, glance, strict=True) if len(set(column)) <= LABELS]
-    for place, column in zip(few, _cells(lines, count, few), strict=True):
+    head = _cells(lines, min(count, GLANCE), places)
+    candidates = [k for k, column in zip(places, head, strict=True) if len(set(column)) <= LABELS]
+    for place, column in zip(candidates, _cells(lines, count, candidates), strict=True):
         if 1 < len(set(column)) <= LABELS:
             yield lines.names[place], np.array(column)
 
@@ -100,12 +100,12 @@ def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
     if _double(time) < MANY * len(time) or not columns:
         return ()
     value = numbers(without_cut_line(lines, [lines.names.index(TIME), *places])[0], places)
-    double = max(_double(time[np.isfinite(column)]) for column in value.T)
-    if double < MANY * len(time):
+    repeats = max(_double(time[np.isfinite(column)]) for column in value.T)
+    if repeats < MANY * len(time):
         return ()
     coarse = ". They are whole seconds: export them with decimals"
     advice = coarse if np.array_equal(time, np.round(time)) else ""
-    return (f"{double} of {len(time)} lines have the time of another and are not used{advice}",)
+    return (f"{repeats} of {len(time)} lines have the time of another and are not used{advice}",)
 
 
 def _double(time: Array) -> int:

@@ -167,8 +167,8 @@ def _metres(of: _Columns) -> Unit:
 def _radians(of: _Columns) -> Unit:
     """Tell the unit of angles by how large roll and pitch are, and how fast angles change."""
     size = np.nanmax(np.abs(of.value), axis=0)
-    turns = [s for n, s in zip(of.names, size, strict=True) if n != "yaw_rad"]
-    tilted = max(turns, default=0.0)
+    tilts = [s for n, s in zip(of.names, size, strict=True) if n != "yaw_rad"]
+    tilted = max(tilts, default=0.0)
     # a pitch lies within a quarter turn, a roll within half a turn; a heading may count its turns
     degrees = tilted > 1.02 * np.pi
     return _named_radians(of, tilted, degrees) if of.named else _free_radians(of, size, degrees)

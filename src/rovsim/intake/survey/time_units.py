@@ -37,20 +37,20 @@ def find_time_unit(
     """
     if not np.isfinite(value).any():
         times(lines, place)  # says what they are
-    late = float(np.nanmax(np.abs(value), initial=0.0))
+    latest = float(np.nanmax(np.abs(value), initial=0.0))
     step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
     in_seconds = lines.names[place] == TIME
-    if in_seconds and step < LONGEST_STEP and not late > LATEST:
+    if in_seconds and step < LONGEST_STEP and not latest > LATEST:
         return 1.0, ""
     if unit and not in_seconds:
         return FACTORS[unit], f" in {unit}"
     for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
-        if late > size:
+        if latest > size:
             return FACTORS[name], f" in {name} since 1970, by its size"
     if not step > 0.0:
         return 1.0, " in s, by its steps"
-    key, lasts = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
-    settled = units.settle(key, lambda: _by_steps(lines, key, step, lasts))
+    key, duration = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
+    settled = units.settle(key, lambda: _by_steps(lines, key, step, duration))
     return settled.factor, settled.said
 
 
@@ -61,13 +61,13 @@ def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
         UnknownUnit: several units suit, or none.
     """
     names = [n for n in ("s", "ms", "us", "ns") if _is_step(step * FACTORS[n])]
-    long = [n for n in names if _is_recording(step * FACTORS[n], lasts * FACTORS[n])]
-    if len(long) == 1:
+    suited = [n for n in names if _is_recording(step * FACTORS[n], lasts * FACTORS[n])]
+    if len(suited) == 1:
         sure = len(names) == 1
-        return Unit(FACTORS[long[0]], f" in {long[0]}, by its steps", sure, shared=False)
-    perhaps = " or ".join(long) if long else "days (of a spreadsheet, or datenum) or minutes"
+        return Unit(FACTORS[suited[0]], f" in {suited[0]}, by its steps", sure, shared=False)
+    options = " or ".join(suited) if suited else "days (of a spreadsheet, or datenum) or minutes"
     raise UnknownUnit(
-        f"times ('{key[0]}') in steps of {step:.3g} over {lasts:.3g} ({perhaps}?)",
+        f"times ('{key[0]}') in steps of {step:.3g} over {lasts:.3g} ({options}?)",
         lines,
         key,
         EXPECTED,
