@@ -64,8 +64,8 @@ class Campaign:
     def raw_files(self, run: Run) -> list[Path]:
         """Files that hold the run, each once; for a folder (a ROS 2 bag) the files in it."""
         paths = [*self.mocap_paths(run), *([self.commands_path(run)] if run.commanded else [])]
-        inside = [sorted(p.iterdir()) if p.is_dir() else [p] for p in paths]
-        return list(dict.fromkeys(path for files in inside for path in files))
+        groups = [sorted(p.iterdir()) if p.is_dir() else [p] for p in paths]
+        return list(dict.fromkeys(path for files in groups for path in files))
 
     def tank_ned(self) -> np.ndarray:
         """Low and high walls (3, 2) along the axes of NED, m; NaN where unknown."""

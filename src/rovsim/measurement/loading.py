@@ -60,12 +60,12 @@ def check_ids(runs: Sequence[Run], where: Path | str) -> None:
         BadInput: there are two such ids; it names both.
     """
     ids: dict[str, str] = {}
-    for place, run in enumerate(runs):
+    for n, run in enumerate(runs):
         # some file systems see neither case nor Unicode form
         key = unicodedata.normalize("NFC", run.id).casefold()
         if key in ids:
             raise BadInput(
-                f"'runs.{place}.id' is {run.id!r}, and an earlier run is {ids[key]!r}",
+                f"'runs.{n}.id' is {run.id!r}, and an earlier run is {ids[key]!r}",
                 where=where,
                 expected="a different id for each run (case does not count)",
                 remedy="Rename one of them.",
@@ -125,11 +125,11 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             expected="further columns of a csv; no other format has any",
             remedy="Leave it out; the battery's voltage is read from a log by itself.",
         )
-    if log is not None and (strange := [name for name in log.angles if name not in log.names]):
+    if log is not None and (unknown := [name for name in log.angles if name not in log.names]):
         raise unlisted(
-            strange[0],
+            unknown[0],
             log.names,
-            found=f"'commands.angles' names '{strange[0]}', which is none of 'commands.columns'",
+            found=f"'commands.angles' names '{unknown[0]}', which is none of 'commands.columns'",
             where=file,
         )
     if log is not None and log.per_axis and len(log.axis_numbers) != len(log.columns):
@@ -181,13 +181,13 @@ def _check_files(campaign: Campaign) -> None:
         return
     key, run_id, first_path = missing[0]
     others = dict.fromkeys(path.name for _, _, path in missing if path != first_path)
-    so_are = f"; so are {', '.join(others)}" if others else ""
+    also_missing = f"; so are {', '.join(others)}" if others else ""
     remedy = (
         f"Put {'them' if others else 'it'} there, correct '{key}' of that run, or set 'folder' (or "
         "the environment variable that it names) to where the recordings are."
     )
     raise BadInput(
-        f"the {key} file of run '{run_id}' is missing: {first_path}{so_are}",
+        f"the {key} file of run '{run_id}' is missing: {first_path}{also_missing}",
         where=campaign.file,
         expected=f"{'these files' if others else 'that file'} in {campaign.folder}",
         remedy=f"{remedy} {campaign.source}".strip(),

@@ -25,8 +25,8 @@ def doubt_means(recording: Recording) -> Iterator[str]:
     differences = _differences(recording)
     if differences is None:
         return
-    to_next, at_times, both_means, even = differences
-    if _ratio(at_times, to_next) < NEARER and (even or _ratio(both_means, at_times) > APART):
+    to_next, at_times, both_means, even_steps = differences
+    if _ratio(at_times, to_next) < NEARER and (even_steps or _ratio(both_means, at_times) > APART):
         yield (
             "The body velocities fit the poses as values at their times, not as means from line to "
             "line: write 'velocity: instant' below 'mocap'. Only where the poses are means over "
@@ -46,7 +46,7 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
     if nu is None:
         return None
     step = np.diff(time)
-    moved = _moved(recording) / step[:, None]
+    pose_nu = _moved(recording) / step[:, None]
     length = np.append(step, np.median(step))[:, None]
     passed = length * nu
     readings = (
@@ -54,19 +54,19 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
         0.5 * (nu[:-1] + nu[1:]),
         0.5 * (passed[:-1] + passed[1:]) / step[:, None],
     )
-    good = np.isfinite(np.hstack([moved, *readings])).all(axis=1)
-    good &= step < LONG_BIN * np.median(step)
-    if good.sum() < FEWEST:
+    mask = np.isfinite(np.hstack([pose_nu, *readings])).all(axis=1)
+    mask &= step < LONG_BIN * np.median(step)
+    if mask.sum() < FEWEST:
         return None
-    to_next, at_times, both_means = (np.median(np.abs(moved - x)[good], axis=0) for x in readings)
-    return to_next, at_times, both_means, bool(np.std(step[good]) < UNEVEN * np.mean(step[good]))
+    to_next, at_times, both_means = (np.median(np.abs(pose_nu - x)[mask], axis=0) for x in readings)
+    return to_next, at_times, both_means, bool(np.std(step[mask]) < UNEVEN * np.mean(step[mask]))
 
 
 def _moved(recording: Recording) -> Array:
     """Displacement, m, and turn, rad, (n - 1, 6) from pose to pose, in the body axes halfway."""
-    turn = turns(recording.attitude)
-    halfway = multiply(recording.attitude[:-1], exp(0.5 * turn))
-    return np.hstack([unrotate(halfway, np.diff(recording.position, axis=0)), turn])
+    rotation = turns(recording.attitude)
+    halfway = multiply(recording.attitude[:-1], exp(0.5 * rotation))
+    return np.hstack([unrotate(halfway, np.diff(recording.position, axis=0)), rotation])
 
 
 def _ratio(one: Array, other: Array) -> float:

@@ -106,8 +106,8 @@ def usable_reason(recording: Recording) -> str | None:
         return too_fast
     if not recording.posed:
         length = float(np.ptp(recording.time))
-        short = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"
-        return short if length < SHORTEST_RUN else None
+        reason = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"
+        return reason if length < SHORTEST_RUN else None
     tracked_s = float(np.sum(tracked)) / recording.rate
     duration = float(np.ptp(recording.time[tracked])) if tracked.any() else 0.0
     if min(tracked_s, duration) < SHORTEST_RUN:
@@ -211,9 +211,9 @@ def measure_noise(recording: Recording) -> PoseNoise:
     not, and the number is an upper bound. None with too few samples.
     """
     _, position, attitude = _seen(recording)
-    even = _evenly_spaced(recording)
-    moved, turned = np.diff(position, 3, axis=0)[even], np.diff(turns(attitude), 2, axis=0)[even]
-    return PoseNoise(position_m=_robust_std(moved), attitude_rad=_robust_std(turned))
+    mask = _evenly_spaced(recording)
+    dp, dtheta = np.diff(position, 3, axis=0)[mask], np.diff(turns(attitude), 2, axis=0)[mask]
+    return PoseNoise(position_m=_robust_std(dp), attitude_rad=_robust_std(dtheta))
 
 
 def _describe_channels(recording: Recording) -> dict[str, MeasuredChannel]:

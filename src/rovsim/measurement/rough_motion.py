@@ -59,9 +59,11 @@ def even_poses(export: Export | Recording) -> ResampledPoses:
     step = clock[1] - clock[0]
     bins = np.floor((time - clock[0]) / step + 0.5).astype(int)
     inside = bins < len(clock) + 1
-    middle = _medians(bins[inside], np.column_stack([time, position, attitude])[inside])
-    valid = np.flatnonzero(np.isfinite(middle).all(axis=1))
-    filled = np.stack([np.interp(clock, middle[valid, 0], c) for c in middle[valid, 1:].T], axis=1)
+    medians = _medians(bins[inside], np.column_stack([time, position, attitude])[inside])
+    valid = np.flatnonzero(np.isfinite(medians).all(axis=1))
+    filled = np.stack(
+        [np.interp(clock, medians[valid, 0], c) for c in medians[valid, 1:].T], axis=1
+    )
     filled[_far(clock, time)] = np.nan
     return ResampledPoses(clock, filled[:, :3], normalized(filled[:, 3:]))
 
@@ -89,9 +91,9 @@ def _medians(bins: Array, values: Array) -> Array:
     unique_bins, starts, counts = np.unique(bins, return_index=True, return_counts=True)
     medians = np.full((bins[-1] + 1, values.shape[1]), np.nan)
     for count in np.unique(counts):  # all bins with the same number of rows at once
-        alike = counts == count
-        rows = starts[alike][:, None] + np.arange(count)
-        medians[unique_bins[alike]] = np.median(values[rows], axis=1)
+        same_count = counts == count
+        rows = starts[same_count][:, None] + np.arange(count)
+        medians[unique_bins[same_count]] = np.median(values[rows], axis=1)
     return medians
 
 
@@ -134,8 +136,8 @@ def _of_channels(channels: Channels) -> Velocities:
     if "rates" in channels:
         nu[:, 3:] = _interpolated(clock, *_whole(channels["rates"]))
     elif "attitude" in channels and len(channels["attitude"].time) > 1:
-        turn = channels["attitude"]
-        q = normalized(_interpolated(clock, turn.time, continuous(turn.value)))
+        attitude = channels["attitude"]
+        q = normalized(_interpolated(clock, attitude.time, continuous(attitude.value)))
         nu[:, 3:] = _rates(clock, q)
     return Velocities(clock, nu)
 
@@ -155,8 +157,8 @@ def _interpolated(clock: Array, time: Array, values: Array) -> Array:
 
 def _rates(time: Array, attitude: Array) -> Array:
     """Angular velocities (n, 3) rad/s in body axes, from attitudes (n, 4) at even times (n,) s."""
-    turned = turns(attitude)
-    return smooth(np.vstack([turned, turned[-1:]]) / time_step(time))
+    rotation = turns(attitude)
+    return smooth(np.vstack([rotation, rotation[-1:]]) / time_step(time))
 
 
 def slopes(time: Array, values: Array) -> Array:

@@ -83,49 +83,51 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
     if len(time) < FEWEST:
         return None
     k = max(1, round(WINDOW / float(np.median(np.diff(time)))))
-    lasts = (time[k:] - time[:-k])[:, None]
-    good = lasts[:, 0] < 2.0 * WINDOW + 2.0 * np.median(np.diff(time))
-    if good.sum() < FEWEST:
+    duration = (time[k:] - time[:-k])[:, None]
+    usable = duration[:, 0] < 2.0 * WINDOW + 2.0 * np.median(np.diff(time))
+    if usable.sum() < FEWEST:
         return None
     if kind == "velocity":
-        world = (position[k:] - position[:-k]) / lasts
+        world = (position[k:] - position[:-k]) / duration
         body = unrotate(attitude[k // 2 : len(attitude) - k + k // 2], world)
     else:
-        body = log(multiply(conjugate(attitude[:-k]), attitude[k:])) / lasts
-        world = log(multiply(attitude[k:], conjugate(attitude[:-k]))) / lasts
+        body = log(multiply(conjugate(attitude[:-k]), attitude[k:])) / duration
+        world = log(multiply(attitude[k:], conjugate(attitude[:-k]))) / duration
     step = np.diff(time)[:, None]
     value = measured[tracked]
-    way = np.vstack([np.zeros((1, 3)), np.cumsum(0.5 * step * (value[1:] + value[:-1]), axis=0)])
-    mean = (way[k:] - way[:-k]) / lasts
-    if float(np.sqrt(np.mean(body[good] ** 2))) < EXCITED:
+    integral = np.vstack(
+        [np.zeros((1, 3)), np.cumsum(0.5 * step * (value[1:] + value[:-1]), axis=0)]
+    )
+    mean = (integral[k:] - integral[:-k]) / duration
+    if float(np.sqrt(np.mean(body[usable] ** 2))) < EXCITED:
         return None
-    return _Both(body[good], world[good], mean[good])
+    return _Both(body[usable], world[usable], mean[usable])
 
 
 def _judge(kind: str, both: _Both) -> str:
-    quantity, alike = SAID[kind], _cosine(both.measured, both.body)
-    if alike > ALIKE:
+    quantity, likeness = SAID[kind], _cosine(both.measured, both.body)
+    if likeness > ALIKE:
         return _judge_size(kind, both)
     in_world = _cosine(both.measured, both.world)
     if in_world > ALIKE:
         return (
             f"The {quantity} lie along the axes of the world, by the poses beside them (likeness "
-            f"{in_world:.2f}, along the body {alike:.2f}): turn them into the body's axes, or "
+            f"{in_world:.2f}, along the body {likeness:.2f}): turn them into the body's axes, or "
             "leave them out."
         )
     signs = max(product((1.0, -1.0), repeat=3), key=lambda s: _cosine(both.measured * s, both.body))
-    turned = _cosine(both.measured * signs, both.body)
-    if turned > ALIKE:
+    mirrored = _cosine(both.measured * signs, both.body)
+    if mirrored > ALIKE:
         axes = " and ".join(n for n, s in zip("xyz", signs, strict=True) if s < 0.0)
         return (
             f"The {quantity} fit the poses beside them with the sign of {axes} turned (likeness "
-            f"{turned:.2f}, as they are {alike:.2f}): poses and {quantity} have other axes. Bring "
-            "them to the same."
+            f"{mirrored:.2f}, as they are {likeness:.2f}): poses and {quantity} have other axes. "
+            "Bring them to the same."
         )
-    if alike < UNLIKE:
+    if likeness < UNLIKE:
         return (
-            f"The {quantity} do not fit the poses beside them (likeness {alike:.2f}): check their "
-            "axes, their order and their clock, or leave them out."
+            f"The {quantity} do not fit the poses beside them (likeness {likeness:.2f}): check "
+            "their axes, their order and their clock, or leave them out."
         )
     return ""
 

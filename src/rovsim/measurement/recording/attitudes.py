@@ -43,19 +43,19 @@ def check_unit_length(values: Array, place: Callable[[int], str]) -> tuple[str, 
     """
     nonzero = finite_rows(values) & values.any(axis=1)
     length = _length(values)
-    off = np.flatnonzero(nonzero & ~(np.abs(length - 1.0) < UNIT_WITHIN))
-    if 2 * len(off) > nonzero.sum():
+    invalid = np.flatnonzero(nonzero & ~(np.abs(length - 1.0) < UNIT_WITHIN))
+    if 2 * len(invalid) > nonzero.sum():
         raise BadInput(
-            f"a quaternion of length {length[off[0]]:.3g} ({len(off)} of {nonzero.sum()} have not "
-            "length 1)",
-            where=place(int(off[0])),
+            f"a quaternion of length {length[invalid[0]]:.3g} ({len(invalid)} of {nonzero.sum()} "
+            "have not length 1)",
+            where=place(int(invalid[0])),
             expected="quaternions of length 1, or zeros where the body was not found",
             remedy="Check which columns hold it, and that all four have the same scale; if they "
             "are a multiple of it, divide them by their length.",
         )
-    if not len(off):
+    if not len(invalid):
         return ()
-    return (f"{len(off)} lines whose quaternion has not length 1 count as not found.",)
+    return (f"{len(invalid)} lines whose quaternion has not length 1 count as not found.",)
 
 
 def _length(values: Array) -> Array:

@@ -104,8 +104,8 @@ def to_ned(channels: Channels, mocap: Mocap) -> dict[str, Channel]:
 def attitude_to_ned(attitude: Array, mocap: Mocap) -> Array:
     """Turn attitudes (n, 4) between the axes of a file into attitudes from FRD to NED, w >= 0."""
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
-    turned = multiply(multiply(half_turn(world), attitude), half_turn(body))
-    return np.where(turned[:, :1] < 0, -turned, turned)
+    q = multiply(multiply(half_turn(world), attitude), half_turn(body))
+    return np.where(q[:, :1] < 0, -q, q)
 
 
 def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
@@ -124,12 +124,12 @@ def _turned_angles(angles: Array, world: Array, body: Array) -> Array:
     S Rz(yaw) Ry(pitch) Rx(roll) = Rz(-yaw) Ry(-pitch) Rx(roll) S for a half turn S about x, and S
     beside Rx adds pi to the roll.
     """
-    turned = angles * world
+    angles_ned = angles * world
     half_turns = int(world[1] < 0) + int(body[1] < 0)
     if half_turns == 1:
-        turned[:, 0] += np.pi
-    turned[:, [0, 2]] = np.remainder(turned[:, [0, 2]] + np.pi, 2.0 * np.pi) - np.pi
-    return turned
+        angles_ned[:, 0] += np.pi
+    angles_ned[:, [0, 2]] = np.remainder(angles_ned[:, [0, 2]] + np.pi, 2.0 * np.pi) - np.pi
+    return angles_ned
 
 
 def by_name(channels: Channels) -> Iterator[tuple[str, Array]]:

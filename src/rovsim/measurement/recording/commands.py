@@ -54,14 +54,14 @@ def as_commands(
         BadInput: values that no such command can have.
     """
     unit = "pwm" if pulses else log.kind
-    value, beside = value[:, : len(log.names)], value[:, len(log.names) :]
+    value, extra = value[:, : len(log.names)], value[:, len(log.names) :]
     _check_range(value, log, unit, locate)
     complete = finite_rows(value)
     value, clipped = _normalized(value[complete], log, unit)
     counts = {**(counts or {}), "dropped": int(np.sum(~complete)), "clipped": clipped}
     auxiliary = {
         name: Logged(time[np.isfinite(column)], column[np.isfinite(column)])
-        for name, column in zip(log.auxiliary, beside.T, strict=False)
+        for name, column in zip(log.auxiliary, extra.T, strict=False)
     }
     return CommandExport(time[complete], value, KIND[log.kind], counts, notes, auxiliary)
 
@@ -79,11 +79,11 @@ def are_pulses(value: Array) -> bool:
 def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:
     low, high, expected = ALLOWED[unit]
     beyond = ((value < low) | (value > high)) & ~np.array(log.turned)
-    bad = np.argwhere(beyond | np.isinf(value))
-    if bad.size:
-        line, column = (int(k) for k in bad[0])
+    invalid = np.argwhere(beyond | np.isinf(value))
+    if invalid.size:
+        line, column = (int(k) for k in invalid[0])
         raise BadInput(
-            f"the value {value[line, column]:g} ({len(bad)} such cells)",
+            f"the value {value[line, column]:g} ({len(invalid)} such cells)",
             where=locate(line, column),
             expected=f"{expected}, as 'commands.kind: {log.kind}' says",
             remedy=f"{_hint(value, log)}Correct 'commands.kind' in campaign.yaml, or that value.",
@@ -138,11 +138,11 @@ def _normalized(value: Array, log: CommandLog, unit: str) -> tuple[Array, int]:
         value = _all_axes(value, log.axis_numbers)
     if log.kind == "wrench":
         return value, 0
-    turned = np.zeros(value.shape[1], bool) if log.per_axis else np.array(log.turned)
-    beyond = (np.abs(value) > 1.0) & ~turned
+    is_angle = np.zeros(value.shape[1], bool) if log.per_axis else np.array(log.turned)
+    beyond = (np.abs(value) > 1.0) & ~is_angle
     clipped = np.clip(value, -1.0, 1.0)
-    if turned.any():
-        clipped = np.where(turned, angles, clipped)
+    if is_angle.any():
+        clipped = np.where(is_angle, angles, clipped)
     return clipped, int(np.sum(beyond.any(axis=1)))
 
 

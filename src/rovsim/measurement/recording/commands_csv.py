@@ -39,12 +39,12 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
     time, value = times(table, places[0]), numbers(table, places[1:])
     command_columns = slice(len(log.names))
-    value[:, command_columns], silent = _without_pulse(value[:, command_columns], log)
-    value[:, command_columns], filled = _held(time, value[:, command_columns])
-    value, radio = _of_a_radio(value, log)
-    notes = (*silent, *radio, *filled)
+    value[:, command_columns], pulse_notes = _without_pulse(value[:, command_columns], log)
+    value[:, command_columns], fill_notes = _held(time, value[:, command_columns])
+    value, radio_notes = _of_a_radio(value, log)
+    notes = (*pulse_notes, *radio_notes, *fill_notes)
     return as_commands(
-        time, value, log, place, {"cut_lines": cut_lines}, pulses=bool(radio), notes=notes
+        time, value, log, place, {"cut_lines": cut_lines}, pulses=bool(radio_notes), notes=notes
     )
 
 
@@ -115,7 +115,7 @@ def _of_a_radio(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:
 def format_commands(commands: Commands, log: CommandLog) -> str:
     """Write commands as text that `read_commands` can read: times to 0.1 ms, pulses in whole us."""
     pulses = log.kind == "pwm"
-    shapes = ["%d" if pulses and not turned else "%.4f" for turned in log.turned]
+    shapes = ["%d" if pulses and not is_angle else "%.4f" for is_angle in log.turned]
     text = io.StringIO()
     text.write(",".join(["time_s", *log.names]) + "\n")
     table = np.column_stack([commands.time, as_logged(commands, log)])

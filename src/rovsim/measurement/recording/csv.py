@@ -92,10 +92,10 @@ def _zeros(names: list[str], values: Array) -> Array:
     Zeros at the start count as poses if the next pose is close to zero, as where motion is measured
     from the first line. Nothing is masked unless two coordinates and an angle were measured.
     """
-    place, turn = np.isin(names, POSITION), np.isin(names, EULER)
-    if place.sum() < 2 or not turn.any() or not len(values):
+    is_position, is_angle = np.isin(names, POSITION), np.isin(names, EULER)
+    if is_position.sum() < 2 or not is_angle.any() or not len(values):
         return np.zeros(len(values), bool)
-    pose = values[:, place | turn]
+    pose = values[:, is_position | is_angle]
     zeros = (pose == 0.0).all(axis=1)
     start = int(np.argmin(zeros)) if not zeros.all() else len(zeros)
     if start == len(zeros) or np.nanmax(np.abs(pose[start]), initial=0.0) < NEAR_ZERO:
@@ -116,8 +116,8 @@ def _export(
     notes += doubt_order(angles) if quaternions else ()
     posed = finite_rows(position, angles)
     channels = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
-    partly = np.isfinite(np.hstack([position, angles])).any(axis=1)
-    if not posed.any() or posed.sum() < TOGETHER * partly.sum():
+    nonempty = np.isfinite(np.hstack([position, angles])).any(axis=1)
+    if not posed.any() or posed.sum() < TOGETHER * nonempty.sum():
         channels |= _apart(columns, position, angles) | _velocities(columns, nu)
         return Export.of_channels(channels, counts, notes)
     binned = _means(posed, nu, mocap)
@@ -126,7 +126,7 @@ def _export(
         notes += _instant(channels, mocap)
     attitude, valid = _attitude(angles)
     valid &= finite_rows(position, *([nu] if binned else []))
-    frame = _frames(columns.time, partly, channels)
+    frame = _frames(columns.time, nonempty, channels)
     return Export(
         columns.time[frame],
         position[frame],

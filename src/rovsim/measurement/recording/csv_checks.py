@@ -148,8 +148,8 @@ def usual_speed(value: Array, time: Array) -> float:
     t, x = time[valid], value[valid]
     stride = max(1, round(0.2 / max(float(np.median(np.diff(t))), 1e-6)))
     dt, dx = t[stride:] - t[:-stride], np.linalg.norm(x[stride:] - x[:-stride], axis=1)
-    good = dt > 0
-    return float(np.percentile(dx[good] / dt[good], 90)) if good.any() else 0.0
+    increasing = dt > 0
+    return float(np.percentile(dx[increasing] / dt[increasing], 90)) if increasing.any() else 0.0
 
 
 def doubt_order(quaternion: Array) -> tuple[str, ...]:

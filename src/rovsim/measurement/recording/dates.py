@@ -39,10 +39,10 @@ def to_seconds(cells: Iterable[str]) -> Array:
 def _seconds(cell: str) -> float:
     try:
         if DATE.match(cell):
-            at = datetime.fromisoformat(cell)
-            return (at if at.tzinfo else at.replace(tzinfo=UTC)).timestamp()
-        at_day = time.fromisoformat(cell)
+            date = datetime.fromisoformat(cell)
+            return (date if date.tzinfo else date.replace(tzinfo=UTC)).timestamp()
+        time_of_day = time.fromisoformat(cell)
     except ValueError:
         return float("nan")
-    within = 60.0 * (60.0 * at_day.hour + at_day.minute) + at_day.second
-    return within + 1e-6 * at_day.microsecond
+    seconds = 60.0 * (60.0 * time_of_day.hour + time_of_day.minute) + time_of_day.second
+    return seconds + 1e-6 * time_of_day.microsecond

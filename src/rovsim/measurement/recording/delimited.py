@@ -89,11 +89,11 @@ def csv_lines(path: Path) -> Lines:
 
 def find_separator(head: str, below: str) -> str:
     """Find what separates the cells of a line of names and of the line below it."""
-    fitting = [s for s in ",;\t" if head.count(s)]
+    separators = [s for s in ",;\t" if head.count(s)]
     # the comma comes last: names may have as many ("x, m") as the numbers have decimal commas
-    alike = [s for s in reversed(fitting) if head.count(s) == below.count(s)]
-    if fitting:
-        return (alike or fitting)[0]
+    matches = [s for s in reversed(separators) if head.count(s) == below.count(s)]
+    if separators:
+        return (matches or separators)[0]
     return " " if len(head.split()) == len(below.split()) > 1 else ","
 
 
@@ -123,10 +123,10 @@ def find_header(lines: Sequence[str]) -> int | None:
     """
     filled = [n for n, line in enumerate(lines) if line.strip()]
     header = next((n for n in filled if not lines[n].lstrip().startswith("#")), None)
-    before = [n for n in filled if header is None or n < header]
+    comments = [n for n in filled if header is None or n < header]
     begins = "" if header is None else re.split(r"[,;\t]", lines[header])[0]
-    if header is None or (before and (is_number(begins.split(" ")[0]) or is_date(begins))):
-        return before[-1] if before else header
+    if header is None or (comments and (is_number(begins.split(" ")[0]) or is_date(begins))):
+        return comments[-1] if comments else header
     return header
 
 

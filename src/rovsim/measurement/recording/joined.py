@@ -52,12 +52,12 @@ def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export]
         return exports, []
     remaining, notes = dict(exports), []
     for path, export in exports.items():
-        double = [kind for kind in list_held(export) if kind in TOLD and path != posed[0]]
-        if double:
+        repeated = [kind for kind in list_held(export) if kind in TOLD and path != posed[0]]
+        if repeated:
             channels = {kind: c for kind, c in export.channels.items() if kind not in TOLD}
             remaining[path] = replace(export, channels=channels)
             notes.append(
-                f"The {' and '.join(double)} in {path.name} is not used: {posed[0].name} holds "
+                f"The {' and '.join(repeated)} in {path.name} is not used: {posed[0].name} holds "
                 "full poses."
             )
     return remaining, notes

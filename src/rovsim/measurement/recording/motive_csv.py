@@ -62,12 +62,12 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     text = read_text(path)
     lines = text.split("\n")
     layout = _layout(path, lines)
-    turns, places = _body(path, layout, mocap.body)
+    rotation_columns, position_columns = _body(path, layout, mocap.body)
     rows = split_lines(path, lines, layout.line, layout.names, ",", ended=text.endswith("\n"))
-    table, cut_lines = without_cut_line(rows, [*turns, *places])
+    table, cut_lines = without_cut_line(rows, [*rotation_columns, *position_columns])
     time = times(table, _time_column(path, layout))
-    position = numbers(table, places) * _metres(path, layout)
-    angles = numbers(table, turns)
+    position = numbers(table, position_columns) * _metres(path, layout)
+    angles = numbers(table, rotation_columns)
     attitude, valid = _attitude(path, layout, angles)
     doubts: tuple[str, ...] = ()
     if angles.shape[1] == 4:
@@ -104,10 +104,10 @@ def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
     if values.shape[1] == 3 and kind.upper() in ORDERS:
         valid = finite_rows(values)
         # intrinsic angles: each about the axis that the earlier ones have turned (OptiTrack)
-        places = ["XYZ".index(axis) for axis in kind.upper()]
-        angles = np.where(valid[:, None], values, 0.0)[:, places]
-        turned = scipy.spatial.transform.Rotation.from_euler(kind.upper(), angles, degrees=True)
-        return turned.as_quat(scalar_first=True), valid
+        order = ["XYZ".index(axis) for axis in kind.upper()]
+        angles = np.where(valid[:, None], values, 0.0)[:, order]
+        rotation = scipy.spatial.transform.Rotation.from_euler(kind.upper(), angles, degrees=True)
+        return rotation.as_quat(scalar_first=True), valid
     raise BadInput(
         f"Rotation Type is '{kind}' with {values.shape[1]} columns",
         where=path,
@@ -169,15 +169,15 @@ def _bodies(
 
 def _body(path: Path, layout: Layout, name: str) -> tuple[list[int], list[int]]:
     body = choose_body(tuple(layout.bodies), name, path)
-    turns, places = layout.bodies[body]
-    if len(places) != 3 or len(turns) not in (3, 4):
+    rotation, position = layout.bodies[body]
+    if len(position) != 3 or len(rotation) not in (3, 4):
         raise BadInput(
-            f"{len(turns)} columns of rotation and {len(places)} of position for '{body}'",
+            f"{len(rotation)} columns of rotation and {len(position)} of position for '{body}'",
             where=path,
             expected="four of a quaternion or three angles, and three of position",
             remedy=RE_EXPORT,
         )
-    return turns, places
+    return rotation, position
 
 
 def _time_column(path: Path, layout: Layout) -> int:

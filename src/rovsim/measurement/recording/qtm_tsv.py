@@ -142,8 +142,8 @@ def _no_columns(path: Path, line: int, missing: list[str], body: str) -> BadInpu
 
 def _without_events(table: Lines) -> Lines:
     keep = [n for n, row in enumerate(table.rows) if row.split("\t", 1)[0].strip() != "EVENT"]
-    rows, places = [table.rows[n] for n in keep], [table.numbers[n] for n in keep]
-    return replace(table, rows=rows, numbers=places)
+    rows, line_numbers = [table.rows[n] for n in keep], [table.numbers[n] for n in keep]
+    return replace(table, rows=rows, numbers=line_numbers)
 
 
 def _rate(path: Path, layout: Layout) -> float | None:

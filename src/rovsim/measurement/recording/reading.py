@@ -113,15 +113,15 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
     start = float(np.floor(export.time[0]))
     if abs(start) < LATE:
         return export, commands
-    moved = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
-    export = replace(export, time=export.time - start, channels=moved)
+    shifted = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
+    export = replace(export, time=export.time - start, channels=shifted)
     return export, _shifted(commands, -start)
 
 
 def _shifted(commands: Commands, by: float) -> Commands:
     """Add `by` seconds to the times of commands."""
-    beside = {k: replace(x, time=x.time + by) for k, x in commands.auxiliary.items()}
-    return replace(commands, time=commands.time + by, auxiliary=beside)
+    auxiliary = {k: replace(x, time=x.time + by) for k, x in commands.auxiliary.items()}
+    return replace(commands, time=commands.time + by, auxiliary=auxiliary)
 
 
 def _use(export: Export, run: Run) -> tuple[Export, int]:

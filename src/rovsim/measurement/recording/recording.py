@@ -90,7 +90,7 @@ class Recording:
 
 def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
     """Arrays with run, site and commands, which every stage of processing stores."""
-    beside = commands.auxiliary
+    auxiliary = commands.auxiliary
     return {
         "run": np.array([run.id, run.control, run.split, commands.kind]),
         "tank": site.tank,
@@ -98,16 +98,16 @@ def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
         "level": np.array(site.level),
         "command_time": commands.time,
         "command_value": commands.value,
-        **{f"{BESIDE}{name}": np.stack([x.time, x.value]) for name, x in beside.items()},
+        **{f"{BESIDE}{name}": np.stack([x.time, x.value]) for name, x in auxiliary.items()},
     }
 
 
 def unlabelled(a: dict[str, Array]) -> tuple[RunInfo, Site, Commands]:
     """Put together run, site and commands from the arrays of `labels`."""
     *run, kind = (str(s) for s in a["run"])
-    beside = {
+    auxiliary = {
         name.removeprefix(BESIDE): Logged(a[name][0], a[name][1]) for name in a if BESIDE in name
     }
     value = a["command_value"]
-    commands = Commands(a["command_time"], value, kind, beside)  # type: ignore[arg-type]
+    commands = Commands(a["command_time"], value, kind, auxiliary)  # type: ignore[arg-type]
     return RunInfo(*run), Site(a["tank"], a["axes"], float(a["level"])), commands

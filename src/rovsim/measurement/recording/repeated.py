@@ -89,8 +89,8 @@ class _Seen:
 
     def steps(self) -> tuple[Array, Array]:
         """Distance (n - 1,) m and angle (n - 1,) rad from each frame to the next."""
-        moved = np.diff(self.position, axis=0), turns(self.attitude)
-        return np.linalg.norm(moved[0], axis=1), np.linalg.norm(moved[1], axis=1)
+        differences = np.diff(self.position, axis=0), turns(self.attitude)
+        return np.linalg.norm(differences[0], axis=1), np.linalg.norm(differences[1], axis=1)
 
 
 def _lines_of_a_pose(seen: _Seen) -> int:
@@ -142,8 +142,8 @@ class _Way:
         end = first + count - 1
         before, after = slice(max(first - NEARBY, 0), first), slice(end + 1, end + 1 + NEARBY)
         if count >= SEVERAL and self._moves(self.step[before][::-1]):
-            stays = end == len(self.step)
-            if stays or self._moves(self.step[end : end + NEARBY]):
+            at_end = end == len(self.step)
+            if at_end or self._moves(self.step[end : end + NEARBY]):
                 return True
         return self._jumped(before, after, first, end)
 

@@ -112,8 +112,10 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     counts["command_duplicates"] = len(time) - len(keep)
     longest = LONG_STEP * np.median(steps) if len(steps) else np.inf
     counts["command_long_steps"] = int(np.sum(steps > longest))
-    beside = {name: _in_order(logged) for name, logged in log.auxiliary.items() if len(logged.time)}
-    return Commands(log.time[keep], log.value[keep], log.kind, beside), counts
+    auxiliary = {
+        name: _in_order(logged) for name, logged in log.auxiliary.items() if len(logged.time)
+    }
+    return Commands(log.time[keep], log.value[keep], log.kind, auxiliary), counts
 
 
 def _in_order(own: Logged) -> Logged:

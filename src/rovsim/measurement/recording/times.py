@@ -21,11 +21,13 @@ def times(table: Lines, column: int) -> Array:
     if dated is None:
         _refuse_date(table, 0, column)
     time = numbers(table, [column])[:, 0] if dated is None else dated
-    bad = np.flatnonzero(~np.isfinite(time))
-    if bad.size:
-        _refuse_date(table, int(bad[0]), column)
-        cell = table.cells(int(bad[0]))[column].strip()
-        raise bad_cell(table, table.numbers[bad[0]], column, cell, "a time in s, or all as dates")
+    invalid = np.flatnonzero(~np.isfinite(time))
+    if invalid.size:
+        _refuse_date(table, int(invalid[0]), column)
+        cell = table.cells(int(invalid[0]))[column].strip()
+        raise bad_cell(
+            table, table.numbers[invalid[0]], column, cell, "a time in s, or all as dates"
+        )
     if len(time) and np.abs(time).max() > LATEST:
         raise BadInput(
             f"times up to {np.abs(time).max():.3g}: ms, us or ns since 1970?",

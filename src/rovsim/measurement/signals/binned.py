@@ -94,9 +94,9 @@ def bin_means(time: Array, nu: Array, edges: Array) -> Array:
     area = np.concatenate([np.zeros_like(nu[..., :1, :]), area], axis=-2)
     slack = 1e-9 * max(1.0, abs(time[-1]))
     inside = (edges >= time[0] - slack) & (edges <= time[-1] + slack)
-    at = np.clip(edges, time[0], time[-1])
-    i = np.clip(np.searchsorted(time, at, side="right") - 1, 0, len(time) - 2)
-    part = (at - time[i])[:, None]
+    clipped = np.clip(edges, time[0], time[-1])
+    i = np.clip(np.searchsorted(time, clipped, side="right") - 1, 0, len(time) - 2)
+    part = (clipped - time[i])[:, None]
     slope = (nu[..., i + 1, :] - nu[..., i, :]) / step[i]
     integral = area[..., i, :] + part * (nu[..., i, :] + 0.5 * part * slope)
     integral = np.where(inside[:, None], integral, np.nan)

@@ -78,12 +78,14 @@ def _choose_moving(known: Mapping[str, Channel]) -> dict[str, Channel]:
 
     The depth is left out where positions with a z are the main source and are less noisy.
     """
-    place, velocity, depth = ([k] if k in known else [] for k in ("position", "velocity", "depth"))
-    if velocity and place and _suffices(known, "position", "velocity"):
+    position, velocity, depth = (
+        [k] if k in known else [] for k in ("position", "velocity", "depth")
+    )
+    if velocity and position and _suffices(known, "position", "velocity"):
         velocity = []
-    if depth and place and not velocity and np.isfinite(known["position"].value[:, 2]).any():
+    if depth and position and not velocity and np.isfinite(known["position"].value[:, 2]).any():
         depth = depth if noise_density(known["depth"]) < noise_density(known["position"]) else []
-    return {kind: known[kind] for kind in (*velocity, *place, *depth)}
+    return {kind: known[kind] for kind in (*velocity, *position, *depth)}
 
 
 def _heads(kind: str, known: Mapping[str, Channel]) -> bool:

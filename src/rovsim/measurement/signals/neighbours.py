@@ -28,13 +28,13 @@ class Neighbours:
     @staticmethod
     def of(time: Array, step: float) -> "Neighbours":
         """Find the cubics of frames at `time` (n,) that are usually `step` s apart."""
-        ago = np.stack([time[node] - time[2:-2] for node in _NODES])
-        weights = np.ones_like(ago)
+        dt = np.stack([time[node] - time[2:-2] for node in _NODES])
+        weights = np.ones_like(dt)
         for k, j in np.argwhere(~np.eye(4, dtype=bool)):
-            weights[k] *= ago[j] / (ago[j] - ago[k])
-        apart = np.diff(np.insert(ago, 2, 0.0, axis=0), axis=0).max(axis=0)
-        weights[:, apart >= BRIDGED * step] = np.nan
-        return Neighbours(time, weights, _padded(np.abs(np.sum((weights * ago)[2:], axis=0))))
+            weights[k] *= dt[j] / (dt[j] - dt[k])
+        longest_step = np.diff(np.insert(dt, 2, 0.0, axis=0), axis=0).max(axis=0)
+        weights[:, longest_step >= BRIDGED * step] = np.nan
+        return Neighbours(time, weights, _padded(np.abs(np.sum((weights * dt)[2:], axis=0))))
 
     def beside(self, x: Array) -> Array:
         """Distance (n,) of each row of `x` (n, c) from its cubic; NaN where there is none."""

@@ -63,8 +63,8 @@ class OnClock:
     def nearest(self, instants: Array) -> Array:
         """Mask (n,) of the clock's samples that are nearest to one of the instants (k,) s."""
         mask = np.zeros(len(self.clock), bool)
-        place = np.round((instants - self.clock[0]) / self.step).astype(int)
-        mask[place[(place >= 0) & (place < len(mask))]] = True
+        index = np.round((instants - self.clock[0]) / self.step).astype(int)
+        mask[index[(index >= 0) & (index < len(mask))]] = True
         return mask
 
     def sum_up(self, time: Array, rate: Array) -> Array:
@@ -83,12 +83,12 @@ class OnClock:
         The first of them is `start` (4,).
         """
         edges, rate = instants_between(channel.time), np.nan_to_num(channel.value)
-        turns = rotations.exp(rate * np.diff(edges)[:, None])
+        increments = rotations.exp(rate * np.diff(edges)[:, None])
         q = np.empty((len(edges), 4))
         q[0] = [1.0, 0.0, 0.0, 0.0]
-        for k, turn in enumerate(turns):
-            q[k + 1] = rotations.multiply(q[k], turn)
-        interval = np.clip(np.searchsorted(edges, self.clock, "right") - 1, 0, len(turns) - 1)
+        for k, dq in enumerate(increments):
+            q[k + 1] = rotations.multiply(q[k], dq)
+        interval = np.clip(np.searchsorted(edges, self.clock, "right") - 1, 0, len(increments) - 1)
         remainder = rotations.exp(rate[interval] * (self.clock - edges[interval])[:, None])
         attitude = rotations.multiply(q[interval], remainder)
         return rotations.multiply(

@@ -62,9 +62,9 @@ class VelocityGate(Section):
         """
         if step < SLOW:
             return ~self._chained(time, position, attitude, step)
-        frames, before = np.arange(len(time)), -1
-        while len(frames) != before:
-            before = len(frames)
+        frames, count = np.arange(len(time)), -1
+        while len(frames) != count:
+            count = len(frames)
             jumps = self._there_and_back(time[frames], position[frames], attitude[frames], step)
             frames = frames[~jumps]
             # only without jumps: one that is within reach of one side alone would break the chain
@@ -86,11 +86,14 @@ class VelocityGate(Section):
         """Mask (n,) of single frames of a slow camera that are far from their neighbours' cubic."""
         if len(time) < 5:
             return np.zeros(len(time), bool)
-        beside = Neighbours.of(time, step)
-        off, turned = beside.beside(position), beside.beside(rotations.continuous(attitude))
-        turned = 4.0 * np.arcsin(np.clip(turned / 2.0, 0.0, 1.0))
-        return find_far(off, self.max_speed * beside.stop + self.tolerance) | find_far(
-            turned, self.max_rate * beside.stop + self.angle_tolerance
+        neighbours = Neighbours.of(time, step)
+        distance, angle = (
+            neighbours.beside(position),
+            neighbours.beside(rotations.continuous(attitude)),
+        )
+        angle = 4.0 * np.arcsin(np.clip(angle / 2.0, 0.0, 1.0))
+        return find_far(distance, self.max_speed * neighbours.stop + self.tolerance) | find_far(
+            angle, self.max_rate * neighbours.stop + self.angle_tolerance
         )
 
 
@@ -130,9 +133,9 @@ class Hampel(Section):
         width = min(2 * self.half_window + 1, n)
         start = np.clip(np.arange(n) - width // 2, 0, n - width)
         nearby = start[:, None] + np.arange(width)
-        window, ago = x[nearby], (time[nearby] - time[:, None])[..., None]
-        slope = np.median(np.diff(window, axis=1) / np.diff(ago, axis=1), axis=1)
-        window = window - slope[:, None] * ago
+        window, dt = x[nearby], (time[nearby] - time[:, None])[..., None]
+        slope = np.median(np.diff(window, axis=1) / np.diff(dt, axis=1), axis=1)
+        window = window - slope[:, None] * dt
         middle = np.median(window, axis=1)
         spread = STD_PER_MAD * np.median(np.linalg.norm(window - middle[:, None], axis=2), axis=1)
         return np.linalg.norm(x - middle, axis=1) > self.threshold * np.maximum(spread, noise)
@@ -232,7 +235,7 @@ def _longest_chain(
         Indices of the stretches in the chain, in order.
     """
     size = (ends - starts + 1).astype(float)
-    best, before = size.copy(), np.full(len(size), -1)
+    best, previous = size.copy(), np.full(len(size), -1)
     best[1:] -= CUT_END
     for j in range(1, len(size)):
         i = np.arange(max(0, j - LOOK_BACK), j)
@@ -248,9 +251,9 @@ def _longest_chain(
         score = np.where(reachable, best[i] - DETOUR * (i < j - 1), -np.inf)
         k = int(np.argmax(score))
         if size[j] + score[k] > best[j]:
-            best[j], before[j] = size[j] + score[k], i[k]
+            best[j], previous[j] = size[j] + score[k], i[k]
     cut_short = CUT_END * (np.arange(len(size)) < len(size) - 1)
     chain = [int(np.argmax(best - cut_short))]
-    while before[chain[-1]] >= 0:
-        chain.append(int(before[chain[-1]]))
+    while previous[chain[-1]] >= 0:
+        chain.append(int(previous[chain[-1]]))
     return chain[::-1]

@@ -47,8 +47,8 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
         )
     clock = _make_clock(channels, settings, recording.run.id)
     at = OnClock(clock, settings.max_gap)
-    turned = _turn(at, channels.turning)
-    moved = _move(at, channels.moving, turned.value, recording)
+    attitude = _turn(at, channels.turning)
+    position = _move(at, channels.moving, attitude.value, recording)
     rate = 1.0 / at.step
     usable = np.logical_and.reduce([at.bridged(channel) for channel in channels.read.values()])
     usable = without_short(usable, round(settings.min_segment * rate))
@@ -56,10 +56,10 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
         recording.run,
         recording.site,
         clock,
-        np.hstack([moved.value, turned.value]),
+        np.hstack([position.value, attitude.value]),
         usable,
         recording.commands,
-        _describe(at, channels, turned, moved),
+        _describe(at, channels, attitude, position),
     )
 
 
@@ -102,17 +102,17 @@ class _Tracked:
 
 def _turn(at: OnClock, turning: Mapping[str, Channel]) -> _Tracked:
     """Take the attitude from rates, whose drift direct attitudes correct, or from these alone."""
-    beside = {kind: channel for kind, channel in turning.items() if kind != "rates"}
-    direct = _read_attitude(at, beside)
+    direct_channels = {kind: channel for kind, channel in turning.items() if kind != "rates"}
+    direct = _read_attitude(at, direct_channels)
     if "rates" not in turning:
         return direct
     rates = turning["rates"]
     q, measured = at.turn_up(rates, direct.value[0]), np.isfinite(rates.value).any(axis=0)
-    for channel in beside.values():
-        reference = _read_attitude(OnClock(channel.time, at.max_gap), beside).value
+    for channel in direct_channels.values():
+        reference = _read_attitude(OnClock(channel.time, at.max_gap), direct_channels).value
         summed = between(channel.time, at.clock, rotations.continuous(q))
-        apart = rotations.log(rotations.multiply(rotations.conjugate(summed), reference))
-        drift = np.where(direct.known, at.drift(apart, rates, channel), 0.0)
+        error = rotations.log(rotations.multiply(rotations.conjugate(summed), reference))
+        drift = np.where(direct.known, at.drift(error, rates, channel), 0.0)
         q = rotations.multiply(q, rotations.exp(drift))
     return _Tracked(_continuous(q), measured | direct.known, measured)
 
@@ -150,11 +150,11 @@ def _move(
     if "velocity" in moving:
         position, summed = _sum_velocities(at, moving["velocity"], attitude, recording)
     if "position" in moving:
-        place = moving["position"]
-        direct = at.values(place)
+        channel = moving["position"]
+        direct = at.values(channel)
         if summed.any():
-            total = [np.interp(place.time, at.clock, column) for column in position.T]
-            drift = at.drift(place.value - np.stack(total, axis=1), moving["velocity"], place)
+            total = [np.interp(channel.time, at.clock, column) for column in position.T]
+            drift = at.drift(channel.value - np.stack(total, axis=1), moving["velocity"], channel)
             direct = np.where(summed, position + drift, direct)
         position = np.where(np.isnan(direct), position, direct)
     if "depth" in moving:
@@ -177,12 +177,12 @@ def _sum_velocities(
     """
     measured_axes = np.isfinite(channel.value).any(axis=0)
     q = between(channel.time, at.clock, attitude)
-    v, place = np.nan_to_num(channel.value), np.array(recording.sensors.velocity_at)
-    if place.any() and len(at.clock) > 1:
+    v, lever = np.nan_to_num(channel.value), np.array(recording.sensors.velocity_at)
+    if lever.any() and len(at.clock) > 1:
         q_dot = np.gradient(attitude, at.clock, axis=0)
         turning = rotations.body_rates(attitude, q_dot)
         spin = np.stack([np.interp(channel.time, at.clock, rate) for rate in turning.T], axis=1)
-        v = v - np.cross(spin, place)
+        v = v - np.cross(spin, lever)
     measured = np.array([measured_axes[:2].all(), measured_axes[:2].all(), measured_axes[2]])
     return np.where(measured, at.sum_up(channel.time, rotations.rotate(q, v)), np.nan), measured
 
@@ -201,10 +201,14 @@ def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tra
     """Say which components were measured, and at which samples of the clock they were read."""
     flat = moved.known[:2].all()
     axes = np.array([flat, flat, moved.known[2], *turned.known])
-    place = [kind for kind in chosen.moving if kind != "depth"][:1]
-    height = ["depth"] if "depth" in chosen.moving else place
+    horizontal = [kind for kind in chosen.moving if kind != "depth"][:1]
+    vertical = ["depth"] if "depth" in chosen.moving else horizontal
     samples = np.zeros((len(at.clock), 6), bool)
-    for columns, kinds in (([0, 1], place), ([2], height), ([3, 4, 5], list(chosen.turning)[:1])):
+    for columns, kinds in (
+        ([0, 1], horizontal),
+        ([2], vertical),
+        ([3, 4, 5], list(chosen.turning)[:1]),
+    ):
         for kind in kinds:
             samples[:, columns] = at.nearest(_read_at(kind, chosen.all[kind]))[:, None]
     slowest = min(channel.rate or 0.0 for channel in chosen.read.values())

@@ -103,18 +103,18 @@ def _index(raw: bytes) -> _Index:
     """Find all messages in a log, and skip what is damaged."""
     formats = {FORMAT: Format("FMT", 89, None, {})}
     places: dict[int, list[int]] = defaultdict(list)
-    at = end = 0  # where to look, and where the last message ended
+    offset = end = 0  # where to look, and where the last message ended
     skipped = 0
-    while (at := raw.find(HEAD, at)) >= 0 and at + 2 < len(raw):
-        form = formats.get(raw[at + 2])
-        if form is None or at + form.length > len(raw):
-            at += 1
+    while (offset := raw.find(HEAD, offset)) >= 0 and offset + 2 < len(raw):
+        form = formats.get(raw[offset + 2])
+        if form is None or offset + form.length > len(raw):
+            offset += 1
             continue
-        if raw[at + 2] == FORMAT:
-            _learn(raw[at + 3 : at + 89], formats)
-        places[raw[at + 2]].append(at)
-        skipped += at - end
-        at = end = at + form.length
+        if raw[offset + 2] == FORMAT:
+            _learn(raw[offset + 3 : offset + 89], formats)
+        places[raw[offset + 2]].append(offset)
+        skipped += offset - end
+        offset = end = offset + form.length
     return _Index(formats, places, skipped)
 
 

@@ -137,9 +137,9 @@ def _known(log: ArduPilotLog, time: Array) -> Array:
         return np.zeros(len(time), bool)
     status = _in_order(log.series[source[0]])
     flags = np.nan_to_num(status.of([source[1]])[:, 0]).astype(np.int64)
-    good = (flags & POSITION_KNOWN != 0) & (flags & POSITION_ASSUMED == 0)
+    position_known = (flags & POSITION_KNOWN != 0) & (flags & POSITION_ASSUMED == 0)
     latest = np.searchsorted(status.time, time, side="right") - 1
-    return np.where(latest >= 0, good[np.maximum(latest, 0)], False)
+    return np.where(latest >= 0, position_known[np.maximum(latest, 0)], False)
 
 
 def _in_order(series: Series) -> Series:

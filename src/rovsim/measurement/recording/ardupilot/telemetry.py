@@ -51,28 +51,28 @@ def read_telemetry(path: Path) -> ArduPilotLog:
 def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]:
     """Yield whole messages with these type numbers; damaged bytes are skipped."""
     decoder = dialect.MAVLink(None)
-    at = 0
-    while at + 8 + 6 < len(raw):
-        length = _length(raw, at + 8)
-        packet = raw[at + 8 : at + 8 + length]
+    offset = 0
+    while offset + 8 + 6 < len(raw):
+        length = _length(raw, offset + 8)
+        packet = raw[offset + 8 : offset + 8 + length]
         if not length or len(packet) < length:
-            marker = MARKER.search(raw, at + 9)
+            marker = MARKER.search(raw, offset + 9)
             if marker is None:
                 return
-            at = marker.start() - 8
+            offset = marker.start() - 8
             continue
         if _number(packet) not in numbers:
             # an unwanted packet is taken for a whole one if another packet follows it
-            following = at + 16 + length
-            at += 8 + length if following >= len(raw) or raw[following] in MARKERS else 1
+            following = offset + 16 + length
+            offset += 8 + length if following >= len(raw) or raw[following] in MARKERS else 1
             continue
         try:
             message = decoder.decode(bytearray(packet))
         except dialect.MAVError:
-            at += 1
+            offset += 1
             continue
-        yield struct.unpack_from(">Q", raw, at)[0] * 1e-6, message
-        at += 8 + length
+        yield struct.unpack_from(">Q", raw, offset)[0] * 1e-6, message
+        offset += 8 + length
 
 
 def _length(raw: bytes, at: int) -> int:
@@ -126,12 +126,12 @@ def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
     if not valid.any():
         return float("nan"), ()
     boot, received = boot[valid], received[valid]
-    back = np.diff(boot)
-    late = received - boot
-    if len(back) and (back.min() < -REBOOT or np.ptp(np.percentile(late, [5, 95])) > REBOOT):
+    steps = np.diff(boot)
+    delay = received - boot
+    if len(steps) and (steps.min() < -REBOOT or np.ptp(np.percentile(delay, [5, 95])) > REBOOT):
         note = "The vehicle's clock does not go on (a reboot?): the times of reception hold."
         return float("nan"), (note,)
-    return float(np.median(late)), ()
+    return float(np.median(delay)), ()
 
 
 def _series(messages: list[Received], offset: float) -> Series:

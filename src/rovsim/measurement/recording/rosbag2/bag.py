@@ -120,8 +120,8 @@ def opened(path: Path, by: str) -> Iterator[Bag]:
     require("recordings", by=by)
     from rosbags.rosbag2 import Reader
 
-    place = _storage(path)
-    with read_by("rosbags", path, WHOLE, REPAIR), Reader(place) as reader:
+    storage = _storage(path)
+    with read_by("rosbags", path, WHOLE, REPAIR), Reader(storage) as reader:
         yield Bag(path, reader)
 
 

@@ -44,11 +44,11 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     with opened(path, by="commands.format: rosbag2") as bag:
         topic = log.topic or _only_topic(bag)
         kind, sample = bag.first(topic, "commands.topic")
-        gets = [_getter(kind, sample, log, k, f"{path}, {topic}") for k in range(len(log.names))]
+        getters = [_getter(kind, sample, log, k, f"{path}, {topic}") for k in range(len(log.names))]
         samples = bag.read(
             topic,
             "commands.topic",
-            lambda message: [_number(get, message) for get in gets],
+            lambda message: [_number(getter, message) for getter in getters],
             "numbers in these fields",
         )
 
@@ -131,8 +131,8 @@ def _walk(name: str) -> Get:
     steps = re.findall(r"(\w+)|\[(\d+)\]", name)
 
     def get(message: Any) -> float:
-        for field, place in steps:
-            message = message[int(place)] if place else getattr(message, field)
+        for field, index in steps:
+            message = message[int(index)] if index else getattr(message, field)
         return float(message)
 
     return get

@@ -30,8 +30,8 @@ class Reading:
 
 def pose(message: Any) -> list[float]:
     """Position and quaternion (x, y, z, qw, qx, qy, qz) of a pose, odometry or transform."""
-    place, turn = _pose(message)
-    return [*_vector(place), turn.w, turn.x, turn.y, turn.z]
+    position, q = _pose(message)
+    return [*_vector(position), q.w, q.x, q.y, q.z]
 
 
 def readings(mocap: Mocap) -> dict[str, Reading]:
@@ -87,9 +87,9 @@ def _inertial(message: Any) -> list[float]:
 
     A covariance that starts with -1 says that there is no estimate (sensor_msgs/Imu).
     """
-    turn = message.orientation
+    q = message.orientation
     parts = {
-        "orientation": [turn.w, *_vector(turn)],
+        "orientation": [q.w, *_vector(q)],
         "angular_velocity": _vector(message.angular_velocity),
         "linear_acceleration": _vector(message.linear_acceleration),
     }
@@ -114,8 +114,8 @@ def _depth_by(mocap: Mocap) -> Numbers:
         for name in ("depth", "data"):
             if hasattr(message, name):
                 return [getattr(message, name)]
-        place = message.point if hasattr(message, "point") else _pose(message)[0]
-        return [down * place.z]
+        point = message.point if hasattr(message, "point") else _pose(message)[0]
+        return [down * point.z]
 
     return numbers
 

@@ -65,8 +65,8 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
     position = samples.value[:, :3]
     attitude, valid = unit_quaternions(samples.value[:, 3:])
     valid &= finite_rows(position)
-    place = f"{bag.path}, topic {topic}"
-    doubts = check_unit_length(samples.value[:, 3:], lambda row: f"{place}, message {row + 1}")
+    source = f"{bag.path}, topic {topic}"
+    doubts = check_unit_length(samples.value[:, 3:], lambda row: f"{source}, message {row + 1}")
     notes = (*samples.notes, *notes, *doubts)
     return Export(samples.time, position, attitude, valid, channels=channels, notes=notes)
 
@@ -74,8 +74,8 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
 def _channels(found: Samples, reading: Reading) -> dict[str, Channel]:
     values = {kind: found.value[:, columns] for kind, columns in reading.channels.items()}
     if "attitude" in values:
-        turns, good = unit_quaternions(values["attitude"])
-        values["attitude"] = np.where(good[:, None], turns, np.nan)
+        attitude, valid = unit_quaternions(values["attitude"])
+        values["attitude"] = np.where(valid[:, None], attitude, np.nan)
     return {kind: measured(found.time, value) for kind, value in values.items()}
 
 

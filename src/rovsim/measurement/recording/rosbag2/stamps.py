@@ -32,15 +32,15 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
     if not stamps.all():
         notes = () if not stamps.any() else (f"{topic}: stamps are missing; the bag's times hold.",)
         return bag, notes
-    late = (arrived - stamps) * NANO
-    low, middle, high = np.percentile(late, [5.0, 50.0, 95.0])
+    delay = (arrived - stamps) * NANO
+    low, median, high = np.percentile(delay, [5.0, 50.0, 95.0])
     if high - low > STEADY or (len(stamps) > 1 and not stamps[-1] > stamps[0]):
         return bag, (f"{topic}: stamps do not go with the bag's clock; the bag's times hold.",)
-    if abs(middle) <= SAME_CLOCK:
+    if abs(median) <= SAME_CLOCK:
         return stamps * NANO, ()
-    shifted = (stamps - stamps[0]) * NANO + (stamps[0] * NANO + middle)
-    off = minus(f"{-middle:+.3f}")
-    note = f"{topic}: its stamps are {off} s from the bag's clock and were shifted to it."
+    shifted = (stamps - stamps[0]) * NANO + (stamps[0] * NANO + median)
+    offset = minus(f"{-median:+.3f}")
+    note = f"{topic}: its stamps are {offset} s from the bag's clock and were shifted to it."
     return shifted, (note,)
 
 
