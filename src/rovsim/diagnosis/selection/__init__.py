@@ -4,6 +4,7 @@ proposals           what each candidate explains to first order, and what chance
 workspace           the runs, the candidates, one noise for all, and what was fitted already
 promising           which candidates are worth a fit
 pruning             removes free parameters that are not worth their penalty
+imitation           removes what undetermined values of another effect make unnecessary
 thresholds          finds values of thresholds by trying them, as derivatives do not lead there
 search_result       where a search ended: the accepted effects and their rivals
 steady_current      chooses between a steady current and one that wanders

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from rovsim.diagnosis.selection.imitation import drop_imitations
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
     PROMISING_SHARE,
@@ -183,7 +184,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
         workspace, current = _add_and_swap(workspace, loose, seed)
     workspace = workspace.relinearise_if_changed(current)
     current, _ = try_swaps(workspace, current, 1)
-    current = change_mode(workspace, current)
+    current = drop_imitations(workspace, change_mode(workspace, current))
     verdict = judge_beside_file(workspace, prefer_file(workspace, current))
     current = free_shape(workspace, fix_gain(workspace, verdict.fit))
     workspace, current, wandering = challenge_steady(workspace, current)
