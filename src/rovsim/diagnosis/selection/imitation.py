@@ -57,5 +57,5 @@ def _begin_anew(workspace: SearchWorkspace, term: Term, names: Sequence[str]) ->
 def _most_correlated(covariance: Array, with_any: Sequence[int], others: Array) -> int:
     """Which of some parameters is most correlated with any of others, by their numbers."""
     std = np.sqrt(np.diag(covariance))
-    correlation = np.abs(covariance / np.outer(std, std))[np.ix_(with_any, others)]
+    correlation = np.abs(covariance / np.outer(std, std))[np.ix_(np.asarray(with_any), others)]
     return int(others[np.argmax(np.max(correlation, axis=0))])
