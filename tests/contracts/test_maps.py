@@ -48,7 +48,7 @@ def test_a_map_shows_every_module(package):
 
 
 def test_the_steps_of_a_diagnosis_are_where_its_docstring_says():
-    source = (SOURCE / "diagnosis" / "procedure.py").read_text(encoding="utf-8")
+    source = (SOURCE / "diagnosis" / "train_diagnosis.py").read_text(encoding="utf-8")
     told = ast.get_docstring(ast.parse(source)) or ""
     places = re.findall(r"^[a-z ]+? {2,}([a-z_/]+) {2,}\S", told, re.MULTILINE)[1:]
     assert len(places) > 10

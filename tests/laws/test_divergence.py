@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis import explanation
-from rovsim.diagnosis.procedure import diagnose_train_runs
+from rovsim.diagnosis import validated_search
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.estimation.observer.divergence import ModelLost, require_finite
 
@@ -45,7 +45,7 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
     def lose_once(e):
         require_finite(next(lost, e))
 
-    monkeypatch.setattr(explanation, "require_finite", lose_once)
+    monkeypatch.setattr(validated_search, "require_finite", lose_once)
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
     found = diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
     assert found.fit is not None

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.pose_filter import PoseFilter
@@ -69,6 +69,8 @@ def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypat
         highest=1.51,
         frame=0.01,
     )
-    monkeypatch.setattr("rovsim.diagnosis.explanation.find_smoothing", lambda base, runs: wrong)
+    monkeypatch.setattr(
+        "rovsim.diagnosis.validated_search.find_smoothing", lambda base, runs: wrong
+    )
     found = diagnose_train_runs(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
     assert found.verdict == "adequate"

@@ -9,10 +9,10 @@ import pytest
 from flown import observed
 from rovsim.benchmarks.blind.laws import carried
 from rovsim.core.odds import lr_statistic_of
-from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.base import Parameter, Wrench

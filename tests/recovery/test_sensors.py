@@ -10,7 +10,7 @@ from rovsim.application.settings import select
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.core.schema import checked
-from rovsim.diagnosis.of_campaign import diagnose_campaign
+from rovsim.diagnosis.campaign_diagnosis import diagnose_campaign
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.recording import read_run

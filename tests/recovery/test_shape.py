@@ -3,8 +3,8 @@
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.procedure import diagnose_train_runs
 from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 

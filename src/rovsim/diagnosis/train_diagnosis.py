@@ -1,18 +1,69 @@
-"""The diagnosis of the train runs of a campaign: all that was found on them."""
+"""Diagnose the train runs of a campaign: which effects a model lacks, and what is left.
 
-from dataclasses import dataclass
+step           where                                   what
+filter bank    estimation/observer/filter_bank         the base runs along the train runs, corrected
+camera         estimation/observer/camera              does software smooth what the cameras report?
+sensitivities  estimation/sensitivities                how candidates would change the innovations
+search         diagnosis/selection/forward_selection   add, refit, swap, prune; against chance
+held out       diagnosis/selection/cross_validation    on blocks that an addition was not fitted to
+few blocks     diagnosis/selection/cluster_robust      must not make it sure, without velocities
+validation     diagnosis/selection/holdout_validation  replays of stretches that were kept apart
+structure      diagnosis/structure/residual_structure  what is left, and no candidate explains
+unnoticed      diagnosis/selection/forward_selection   then also those that nobody would notice
+masked laws    diagnosis/equations/masked              do names stand in for a law like them?
+joint fit      diagnosis/selection/joint_fit           all that could be wrong together; it competes
+wandering      estimation/observer/drifting_current    if it is a matter of place: anew, without
+replay fit     estimation/replay_fit                   values that replay best, with structure left
+whole file     diagnosis/uncertainty/file_values       all of a file that is off, where none is left
+common scale   diagnosis/uncertainty/common_scale      does a factor of all forces stay open?
+equation       diagnosis/equations/proposal            a law for what is left
+disturbance    diagnosis/equations/disturbance         the force in time, where there is no law
+test runs      diagnosis/campaign_diagnosis            opened once, for the errors that are reported
+"""
+
+from dataclasses import dataclass, replace
 from typing import Sequence
 
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from rovsim.diagnosis.answer import SettledAnswer, finish, polish_selection
 from rovsim.diagnosis.checks.commanded import list_not_commanded
-from rovsim.diagnosis.equations.disturbance import ForceInTime
-from rovsim.diagnosis.equations.proposal import ProposedLaw
-from rovsim.diagnosis.selection.ranking import Ranked, Selected
+from rovsim.diagnosis.checks.observability import list_not_observable
+from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
+from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
+from rovsim.diagnosis.selection.ranking import (
+    Named,
+    Ranked,
+    Selected,
+    doubt_lead,
+    doubt_names,
+    doubt_small,
+    find_stand_ins,
+    name_drift,
+    name_smoothing,
+    name_terms,
+    rank_alone,
+    rank_selected,
+)
 from rovsim.diagnosis.selection.search_result import Rival
+from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
+from rovsim.diagnosis.validated_search import (
+    DiagnosisProblem,
+    Stages,
+    ValidatedSearch,
+    search_and_validate,
+)
+from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
+from rovsim.dynamics.uncertainty import correlate
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.usable_runs import UsableRuns
+from rovsim.estimation.observer.divergence import ModelLost
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.usable_runs import UsableRuns, select_usable
 from rovsim.results.diagnosis import Verdict
 from rovsim.results.fitted import Correlation
 
@@ -85,3 +136,109 @@ class TrainDiagnosis:
         for s in self.selected:
             models.append((models[-1] + s.term.effect).called(f"+{s.term.id}"))
         return models
+
+
+def diagnose_train_runs(
+    base: Model,
+    train: Sequence[ObservedRun],
+    settings: SearchSettings,
+    *,
+    catalogue: Catalogue,
+    seed: int = 0,
+    stage: Stages = lambda name: None,
+) -> TrainDiagnosis:
+    """Find what a model lacks on the train runs of a campaign.
+
+    A run in which the model diverges whatever the filter's corrections is only used up to there.
+
+    Args:
+        base: the model that is diagnosed.
+        train: the train runs.
+        settings: how the search decides.
+        catalogue: the effects that may be missing.
+        seed: of the draws that tell what chance explains.
+        stage: is told the name of each step as it begins.
+    """
+    one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
+    # models may diverge during a search: they are refused for numbers that are not finite
+    with one_thread, np.errstate(over="ignore", invalid="ignore"):
+        usable = select_usable(train)
+        while usable.enough:
+            try:
+                problem = DiagnosisProblem(base, usable, settings, catalogue, seed)
+                return _summarise(search_and_validate(problem, stage))
+            except ModelLost as diverged:
+                runs, lost_from = diverged.leave_out(usable.runs)
+                usable = select_usable(runs, {**usable.lost, **lost_from})
+        return TrainDiagnosis(base, usable)
+
+
+def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
+    """All that is reported of a validated search.
+
+    These are the accepted effects with how sure they are, and a law or a force in time for what
+    no effect describes.
+    """
+    problem, smoothing = validated.problem, validated.smoothing
+    base, usable = problem.base, problem.usable
+    answer, wide_fit, scale = finish(validated.answer, usable.runs)
+    camera = [name_smoothing(smoothing)] if smoothing else []
+    law = _propose(answer, validated, camera) if answer.leaves_physics else None
+    rivals = answer.selection.named_rivals
+    terms = name_terms(wide_fit, rivals)
+    effects = [*camera, *(doubt_lead(terms) if camera else terms)]
+    stand_ins = find_stand_ins(effects, law.beside) if law else set()
+    effects = doubt_names(effects, stand_ins)
+    proposed = law if law and law.complete else None
+    if answer.fit.noise.drift:
+        drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
+        if drift.sure:
+            effects.append(name_drift(drift, answer.leaves_physics))
+    selected = rank_selected(base, effects, usable.runs)
+    if answer.structures and not proposed:
+        selected = doubt_small(selected, answer.structures[0].share)
+    start = validated.start
+    return TrainDiagnosis(
+        base,
+        usable,
+        answer.fit,
+        _correlate(wide_fit),
+        selected,
+        ranking=rank_alone(start.workspace, start.base_fit, answer.fit),
+        rivals=rivals,
+        structures=answer.structures,
+        refused=answer.refused or not answer.fit.is_finite,
+        scale=scale,
+        not_observable=list_not_observable(answer.selection, problem.catalogue, base.vehicle),
+        proposed=proposed,
+        stand_ins=tuple(sorted(stand_ins)),
+        disturbance=None if proposed else _trace(answer),
+    )
+
+
+def _correlate(fit: Fit) -> Correlation:
+    """Correlation of the fitted values; empty where the fit has no finite covariance."""
+    if not np.isfinite(fit.covariance).all():
+        return Correlation()
+    return correlate(fit.covariance, fit.hypothesis.parameter_names)
+
+
+def _propose(
+    answer: SettledAnswer, validated: ValidatedSearch, camera: Sequence[Named]
+) -> ProposedLaw | None:
+    """A law for what the accepted effects leave; None where none holds."""
+    base, runs, holdout = validated.problem.base, validated.problem.usable.runs, validated.holdout
+
+    def polish(with_law: Fit) -> tuple[Fit, FilterBank]:
+        return polish_selection(replace(answer.selection, best=with_law), runs)
+
+    model = answer.fit.hypothesis.model
+    catalogued = Catalogued(model, answer.replayed if holdout.runs else model)
+    return propose_law(answer.selection, catalogued, base, holdout, runs, polish, camera)
+
+
+def _trace(answer: SettledAnswer) -> ForceInTime | None:
+    """The force in time that is left; None without a structure, or where the model diverges."""
+    if not answer.structures or not answer.fit.is_finite:
+        return None
+    return trace_force(answer.fit, answer.bank, answer.structures)

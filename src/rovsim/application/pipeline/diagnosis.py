@@ -5,7 +5,7 @@ from typing import Callable, Mapping
 
 from rovsim.application.pipeline.models import require_physics
 from rovsim.core.progress import staged
-from rovsim.diagnosis.of_campaign import STAGES, Diagnosed, diagnose_campaign
+from rovsim.diagnosis.campaign_diagnosis import STAGES, CampaignDiagnosis, diagnose_campaign
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -20,7 +20,7 @@ def diagnose(
     catalogue: Catalogue,
     recordings: Mapping[str, str],
     failing: Callable[[ErrorConditions], None] = lambda where: None,
-) -> Diagnosed:
+) -> CampaignDiagnosis:
     """Diagnose a model of physics on the train runs, and measure the improvement on the test runs.
 
     Args:

@@ -13,7 +13,8 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import describe_model
 from rovsim.measurement.campaign import Campaign
 
-CODE, PLAN = "rovsim.diagnosis.of_campaign", "rovsim.design.plan"  # with all that they import
+# with all that they import
+CODE, PLAN = "rovsim.diagnosis.campaign_diagnosis", "rovsim.design.plan"
 
 
 def kept_folder(out: str | None, campaign: Campaign) -> Path:

@@ -12,10 +12,9 @@ from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
-from rovsim.diagnosis.procedure import diagnose_train_runs
-from rovsim.diagnosis.result import CampaignContext, report
+from rovsim.diagnosis.diagnosis_document import CampaignContext, assemble_diagnosis
 from rovsim.diagnosis.settings import DiagnosisSettings
-from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis, diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.train_runs import prepare_test, prepare_train
@@ -36,7 +35,7 @@ STAGES = {"reading": 0.0, "observing": 0.01, "searching": 0.42, "checking": 0.88
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosed:
+class CampaignDiagnosis:
     """What a diagnosis of a campaign gives.
 
     Attributes:
@@ -66,7 +65,7 @@ def diagnose_campaign(
     catalogue: Catalogue,
     stage: Callable[[str], None],
     failing: Callable[[ErrorConditions], None] = lambda where: None,
-) -> Diagnosed:
+) -> CampaignDiagnosis:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors.
 
     Args:
@@ -91,8 +90,8 @@ def diagnose_campaign(
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
     ladder, diverged_runs = _climb(diagnosis, runs, settings, catalogue)
     context = CampaignContext(shares, ladder, train.looked_at, standstills, diverged_runs)
-    document = report(diagnosis, context, catalogue)
-    return Diagnosed(
+    document = assemble_diagnosis(diagnosis, context, catalogue)
+    return CampaignDiagnosis(
         document, conditions, diagnosis.proposed.source if diagnosis.proposed else None
     )
 

@@ -1,4 +1,4 @@
-"""Explain the train runs: search and validate, again where an assumption turns out to be wrong.
+"""Search the train runs for missing effects and validate them, again where an assumption fails.
 
 Two things are assumed at first: that the cameras smooth the poses if their noise looks as if they
 did, and that the current may wander. Where an answer contradicts one of them, all is done anew
@@ -61,8 +61,8 @@ class DiagnosisProblem:
 
 
 @dataclass(frozen=True, eq=False)
-class Explanation:
-    """An answer, and how it was found.
+class ValidatedSearch:
+    """A validated answer, and how it was found.
 
     Attributes:
         problem: the problem with the assumptions that held in the end.
@@ -79,7 +79,7 @@ class Explanation:
     holdout: HoldoutValidation
 
 
-def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
+def search_and_validate(problem: DiagnosisProblem, stage: Stages) -> ValidatedSearch:
     """Search for the missing effects and validate them, until the assumptions hold.
 
     Args:
@@ -106,7 +106,7 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
     holdout = HoldoutValidation(reserved, usable.runs, selection.best.noise.drift is not None)
     answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
-        return explain(replace(problem, cameras_may_smooth=False), stage)
+        return search_and_validate(replace(problem, cameras_may_smooth=False), stage)
     stage("checking")
     if answer.leaves_physics:
         filtered = with_camera_filter(base, smoothing)
@@ -114,8 +114,8 @@ def explain(problem: DiagnosisProblem, stage: Stages) -> Explanation:
         answer = choose_answer(answer, _unmask(joint), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
-        return explain(replace(problem, usable=usable.where_no_water_wanders()), stage)
-    return Explanation(problem, answer, start, smoothing, holdout)
+        return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()), stage)
+    return ValidatedSearch(problem, answer, start, smoothing, holdout)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:

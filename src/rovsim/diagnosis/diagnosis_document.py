@@ -1,4 +1,4 @@
-"""Turn a diagnosis into the content of `diagnosis.json`."""
+"""Assemble the content of `diagnosis.json`: what was found on the train runs, and its context."""
 
 from dataclasses import dataclass
 from typing import Mapping, Sequence
@@ -66,8 +66,10 @@ class CampaignContext:
     away: Sequence[str] = ()
 
 
-def report(diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catalogue) -> Diagnosis:
-    """Put together `diagnosis.json`.
+def assemble_diagnosis(
+    diagnosis: TrainDiagnosis, context: CampaignContext, catalogue: Catalogue
+) -> Diagnosis:
+    """Assemble the content of `diagnosis.json`.
 
     It includes the model that was diagnosed, so that `rovsim add` needs no other file.
 
