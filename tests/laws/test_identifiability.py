@@ -9,14 +9,13 @@ import pytest
 
 from rovsim import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
-from rovsim.diagnosis.selection.ranking import (
-    Named,
-    Selected,
-    doubt_lead,
-    doubt_names,
-    doubt_small,
+from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
+from rovsim.diagnosis.selection.ranking import OrderedEffect
+from rovsim.diagnosis.selection.withdrawn_probability import (
     find_stand_ins,
-    name_drift,
+    without_probability_of,
+    without_probability_of_leads,
+    without_probability_of_small,
 )
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.diagnosis.uncertainty.identifiability import find_doubtful, group_joint_parameters
@@ -100,7 +99,7 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
 
 def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight():
     base = fit(alike()).hypothesis.base
-    law = Selected(Term(Law(c1=1.0), ("c1", "x")), {"c1": 0.1, "x": 0.1}, 1.0, 0.5)
+    law = OrderedEffect(Term(Law(c1=1.0), ("c1", "x")), {"c1": 0.1, "x": 0.1}, 1.0, 0.5)
     found = TrainDiagnosis(base, UsableRuns((), (), (), (), 60.0), fit(alike()), selected=(law,))
     plan = "plan a flight with `rovsim design campaign=DIR model=FILE 'know=[law.c1,law.x]'`."
     assert advise(found, [], [], built_in()) == f"To be surer of law: {plan}"
@@ -131,7 +130,7 @@ def test_a_value_that_no_vehicle_file_is_off_by_asks_for_the_units(effect, told)
         base,
         UsableRuns((), (), (), (), 60.0),
         fit(alike()),
-        selected=(Selected(term, {}, 1.0, 0.5),),
+        selected=(OrderedEffect(term, {}, 1.0, 0.5),),
     )
     advice = advise(found, [], [], built_in())
     assert advice.startswith(told)
@@ -189,9 +188,9 @@ def test_what_was_not_measured_is_what_to_record():
 def test_what_a_law_makes_unnecessary_is_not_sure():
     """A jet in one corner was a current at a probability of one; beside the jet there is none."""
     found = fit(alike())
-    drag, thrust = (Named(term, {}, 1.0) for term in found.hypothesis.terms[:2])
+    drag, thrust = (AcceptedEffect(term, {}, 1.0) for term in found.hypothesis.terms[:2])
     doubted = find_stand_ins([drag, thrust], [drag])
-    kept, idle = doubt_names([drag, thrust], doubted)
+    kept, idle = without_probability_of([drag, thrust], doubted)
     assert doubted == {thrust.term.id}
     assert (kept.probability, idle.probability) == (1.0, None)
 
@@ -203,26 +202,27 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
 def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
     """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
     drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
-    named = [Selected(drag, {}, 1.0, 0.6), Selected(gain, {}, 1.0, 0.05)]
-    assert tuple(one.probability for one in doubt_small(named, fraction)) == sure
+    named = [OrderedEffect(drag, {}, 1.0, 0.6), OrderedEffect(gain, {}, 1.0, 0.05)]
+    assert tuple(one.probability for one in without_probability_of_small(named, fraction)) == sure
 
 
 @pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])
 def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted):
     """A brush was a coupled damping of 3.6 N m s/m at a probability of one; beside it -0.4."""
     own, other = (
-        Named(Term(LinearDamping(sway=10.0 * part), ("sway",)), {}, 1.0) for part in (1.0, left)
+        AcceptedEffect(Term(LinearDamping(sway=10.0 * part), ("sway",)), {}, 1.0)
+        for part in (1.0, left)
     )
     assert find_stand_ins([own], [other]) == ({"linear_damping"} if doubted else set())
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])
 def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(delay, doubted):
-    smooths = Named(Term(PoseFilter(cutoff=6.0), ("cutoff",)), {"cutoff": 0.1}, 1.0)
-    late = Named(Term(InputDelay(delay=delay), ("delay",)), {"delay": 1e-3}, 1.0)
-    (named,) = doubt_lead([late])
+    smooths = AcceptedEffect(Term(PoseFilter(cutoff=6.0), ("cutoff",)), {"cutoff": 0.1}, 1.0)
+    late = AcceptedEffect(Term(InputDelay(delay=delay), ("delay",)), {"delay": 1e-3}, 1.0)
+    (named,) = without_probability_of_leads([late])
     assert (named.probability is None) == doubted
-    selected = [Selected(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
+    selected = [OrderedEffect(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
     found = TrainDiagnosis(
         fit(alike()).hypothesis.base,
         UsableRuns((), (), (), (), 60.0),

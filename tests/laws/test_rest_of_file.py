@@ -17,7 +17,7 @@ from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.thrusters import ThrusterGain
-from rovsim.estimation.file_effects import doubt_gain, free_terms
+from rovsim.estimation.file_effects import free_terms, penalize_gain
 from rovsim.estimation.fit import fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
@@ -152,8 +152,8 @@ def with_gain(base, gain, *names):
 
 def test_a_gain_far_from_the_file_is_doubted_beside_a_file_that_is_off(flown):
     base = flown[0]
-    assert doubt_gain(with_gain(base, 1.6, "added_mass")) == 0.0
-    near, far, fault = (doubt_gain(with_gain(base, g, *COEFFICIENTS)) for g in (1.05, 1.6, 0.1))
+    assert penalize_gain(with_gain(base, 1.6, "added_mass")) == 0.0
+    near, far, fault = (penalize_gain(with_gain(base, g, *COEFFICIENTS)) for g in (1.05, 1.6, 0.1))
     assert 0.0 < near < 1.0 < far < fault < 12.0  # a fault costs no more than one parameter does
 
 

@@ -3,7 +3,6 @@
 from typing import Sequence
 
 from rovsim.diagnosis.checks.wrong_units import list_absurd
-from rovsim.diagnosis.selection.ranking import leads
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
@@ -66,7 +65,7 @@ def advise(
         return _begin_again(diagnosis)
     parts = _doubt_units(diagnosis)
     smoothed = any(isinstance(s.term.effect, PoseFilter) for s in diagnosis.selected)
-    if smoothed and any(leads(s) for s in diagnosis.selected):
+    if smoothed and any(s.leads for s in diagnosis.selected):
         parts.append(LOOKS_AHEAD)
     if groups:
         names = " and ".join(groups[0])

@@ -14,7 +14,8 @@ from rovsim.diagnosis.equations.describe import (
     describe_values,
     rounded,
 )
-from rovsim.diagnosis.selection.ranking import Ranked, Selected, find_std
+from rovsim.diagnosis.selection.accepted_effects import find_std
+from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
@@ -142,7 +143,7 @@ def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     )
 
 
-def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
+def _fitted(one: OrderedEffect | RankedEffect, std: Mapping[str, float]) -> FittedEffect:
     """Report an effect, with standard deviations by parameter name, in their units."""
     return FittedEffect(
         effect=one.term.id,
@@ -152,7 +153,7 @@ def _fitted(one: Selected | Ranked, std: Mapping[str, float]) -> FittedEffect:
     )
 
 
-def _listed(diagnosis: TrainDiagnosis) -> list[Ranked]:
+def _listed(diagnosis: TrainDiagnosis) -> list[RankedEffect]:
     """List the first effects of the ranking, and the selected ones wherever they stand in it."""
     selected_ids = {s.term.id for s in diagnosis.selected}
     return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in selected_ids]

@@ -32,21 +32,25 @@ from rovsim.diagnosis.checks.commanded import list_not_commanded
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
-from rovsim.diagnosis.selection.ranking import (
-    Named,
-    Ranked,
-    Selected,
-    doubt_lead,
-    doubt_names,
-    doubt_small,
-    find_stand_ins,
+from rovsim.diagnosis.selection.accepted_effects import (
+    AcceptedEffect,
     name_drift,
     name_smoothing,
     name_terms,
+)
+from rovsim.diagnosis.selection.ranking import (
+    OrderedEffect,
+    RankedEffect,
+    order_accepted,
     rank_alone,
-    rank_selected,
 )
 from rovsim.diagnosis.selection.search_result import Rival
+from rovsim.diagnosis.selection.withdrawn_probability import (
+    find_stand_ins,
+    without_probability_of,
+    without_probability_of_leads,
+    without_probability_of_small,
+)
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
@@ -93,8 +97,8 @@ class TrainDiagnosis:
     usable: UsableRuns
     fit: Fit | None = None
     correlation: Correlation | None = None
-    selected: Sequence[Selected] = ()
-    ranking: Sequence[Ranked] = ()
+    selected: Sequence[OrderedEffect] = ()
+    ranking: Sequence[RankedEffect] = ()
     rivals: Sequence[Rival] = ()
     structures: Sequence[Structure] = ()
     refused: bool = False
@@ -186,17 +190,17 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     law = _propose(answer, validated, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals
     terms = name_terms(wide_fit, rivals)
-    effects = [*camera, *(doubt_lead(terms) if camera else terms)]
+    effects = [*camera, *(without_probability_of_leads(terms) if camera else terms)]
     stand_ins = find_stand_ins(effects, law.beside) if law else set()
-    effects = doubt_names(effects, stand_ins)
+    effects = without_probability_of(effects, stand_ins)
     proposed = law if law and law.complete else None
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
             effects.append(name_drift(drift, answer.leaves_physics))
-    selected = rank_selected(base, effects, usable.runs)
+    selected = order_accepted(base, effects, usable.runs)
     if answer.structures and not proposed:
-        selected = doubt_small(selected, answer.structures[0].share)
+        selected = without_probability_of_small(selected, answer.structures[0].share)
     start = validated.start
     return TrainDiagnosis(
         base,
@@ -224,7 +228,7 @@ def _correlate(fit: Fit) -> Correlation:
 
 
 def _propose(
-    answer: SettledAnswer, validated: ValidatedSearch, camera: Sequence[Named]
+    answer: SettledAnswer, validated: ValidatedSearch, camera: Sequence[AcceptedEffect]
 ) -> ProposedLaw | None:
     """A law for what the accepted effects leave; None where none holds."""
     base, runs, holdout = validated.problem.base, validated.problem.usable.runs, validated.holdout

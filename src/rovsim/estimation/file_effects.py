@@ -46,7 +46,7 @@ def mark_gain(h: Hypothesis) -> Array:
     return np.array([n == (ThrusterGain.id, *ONE_GAIN) for n in names], bool)
 
 
-def doubt_gain(h: Hypothesis) -> float:
+def penalize_gain(h: Hypothesis) -> float:
     """Penalty of a common gain of the thrusters that is far from the file's, in 2 log L.
 
     There is none where the file is not loose: the gain may be all that is wrong. Where it is loose,

@@ -10,9 +10,9 @@ from rovsim.diagnosis.equations.action import find_action, leaves_structure
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.law_search import search_laws
+from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, find_std, name_terms
 from rovsim.diagnosis.selection.cross_validation import cross_validate
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
-from rovsim.diagnosis.selection.ranking import Named, find_std, name_terms
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
@@ -64,7 +64,7 @@ class ProposedLaw:
     sizes: tuple[float, ...]
     axis: str
     rivals: tuple[tuple[str, float], ...]
-    beside: tuple[Named, ...]
+    beside: tuple[AcceptedEffect, ...]
     complete: bool = True
 
     @property
@@ -96,7 +96,7 @@ def propose_law(
     holdout: HoldoutValidation,
     runs: Sequence[ObservedRun],
     polish: Polish,
-    camera: Sequence[Named],
+    camera: Sequence[AcceptedEffect],
 ) -> ProposedLaw | None:
     """Propose a law for what the accepted effects leave; None where no law holds.
 
@@ -126,7 +126,7 @@ def propose_law(
     without_law = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, without_law, fit.hypothesis.model], runs).normalised
     error_base, error_without, error_with = (or_nan(e) for e in errors)
-    beside = (*camera, *(n for n in name_terms(fit, ()) if n.term.effect.listed))
+    beside = (*camera, *(e for e in name_terms(fit, ()) if e.term.effect.listed))
     share = (error_without - error_with) / error_base
     return ProposedLaw(
         law.form, fit, share, action.sizes, action.axis, law.rivals, beside, complete

@@ -1,20 +1,22 @@
 """Which effects of the catalogue explain what the model does not predict.
 
-proposals           what each candidate explains to first order, and what chance would explain
-workspace           the runs, the candidates, one noise for all, and what was fitted already
-promising           which candidates are worth a fit
-pruning             removes free parameters that are not worth their penalty
-imitation           removes what undetermined values of another effect make unnecessary
-thresholds          finds values of thresholds by trying them, as derivatives do not lead there
-search_result       where a search ended: the accepted effects and their rivals
-steady_current      chooses between a steady current and one that wanders
-vehicle_file        a loose vehicle file competes with effects that are rarer
-forward_selection   the search: add, refit, swap, prune
-filter_delay        tells a late command from a filter of the cameras, which delays as well
-paired_comparison   compares errors of two models window by window
-holdout_validation  removes effects with which held-out stretches are replayed worse
-cross_validation    removes effects that do not help on blocks they were not fitted to
-cluster_robust      removes effects that only few blocks support, where a velocity is not measured
-joint_fit           where much is missing at once: fits everything that may be wrong, then prunes
-ranking             orders the accepted effects by the error that they remove
+proposals              what each candidate explains to first order, and what chance would explain
+workspace              the runs, the candidates, one noise for all, and what was fitted already
+promising              which candidates are worth a fit
+pruning                removes free parameters that are not worth their penalty
+imitation              removes what undetermined values of another effect make unnecessary
+thresholds             finds values of thresholds by trying them, as derivatives do not lead there
+search_result          where a search ended: the accepted effects and their rivals
+steady_current         chooses between a steady current and one that wanders
+vehicle_file           a loose vehicle file competes with effects that are rarer
+forward_selection      the search: add, refit, swap, prune
+filter_delay           tells a late command from a filter of the cameras, which delays as well
+paired_comparison      compares errors of two models window by window
+holdout_validation     removes effects with which held-out stretches are replayed worse
+cross_validation       removes effects that do not help on blocks they were not fitted to
+cluster_robust         removes effects that few blocks support, where a velocity is not measured
+joint_fit              where much is missing at once: fits everything that may be wrong, then prunes
+accepted_effects       accepted effects as they are reported: how sure values and names are
+ranking                orders the accepted effects by the error they remove; ranks each alone
+withdrawn_probability  withdraws the probability of effects that may only be stand-ins
 """

@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.selection.proposals import Proposal, draw_chance_decreases, rank_proposals
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.dynamics.model import Model
-from rovsim.estimation.file_effects import doubt_gain
+from rovsim.estimation.file_effects import penalize_gain
 from rovsim.estimation.fit import Fit, fit, fit_or_give_up
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
@@ -180,7 +180,7 @@ class SearchWorkspace:
 
     def _penalty_of(self, at: Hypothesis) -> float:
         """The penalties of a hypothesis."""
-        return self.penalty * sum(t.choices for t in at.terms) + doubt_gain(at)
+        return self.penalty * sum(t.choices for t in at.terms) + penalize_gain(at)
 
     def remove_each(self, current: Fit) -> list[Removed]:
         """Without each term of the current hypothesis in turn, the others refitted to first order.
