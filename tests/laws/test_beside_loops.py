@@ -56,7 +56,7 @@ def test_noise_stays_what_it_was_where_its_filters_do_not_hold_what_was_found(tm
     assert found.is_finite
     sure = replace(FIRST_NOISE, disturbance_std=np.full(6, 1e-20), measurement_std=np.ones(6))
     workspace = first.with_noise(Hypothesis(base), sure)
-    assert not workspace.columns.beside(h).finite
+    assert not workspace.columns.sensitivities_at(h).finite
     for after in (workspace.update_after(found), workspace.relinearise_if_changed(found)):
         assert np.isfinite(after.noise.disturbance_std).all()
         assert np.isfinite(after.columns.gram(found.linearised)).all()

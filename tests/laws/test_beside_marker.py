@@ -43,7 +43,7 @@ def proposed(workspace, found):
 def test_drag_is_foreseen_beside_a_marker_that_is_not_at_co(searching):
     workspace, found = searching
     again = workspace.relinearise_if_changed(found)
-    assert again.sensitivities.beside == (MarkerOffset.id,)
+    assert again.sensitivities.added_ids == (MarkerOffset.id,)
     before, after = (abs(proposed(w, found) / DRAG["heave"] - 1.0) for w in (workspace, again))
     assert after < 0.25
     assert after < 0.5 * before

@@ -48,7 +48,7 @@ class Sensitivities:
         base: innovations (6, n) of each run, of the model that the columns were made at.
         columns: (c, 6, n) of each run.
         blocks: which columns belong to which candidate.
-        beside: ids of the effects that this model has besides those of `base_model`.
+        added_ids: ids of the effects that this model has besides those of `base_model`.
     """
 
     base_model: Model
@@ -56,7 +56,7 @@ class Sensitivities:
     base: list[Array]
     columns: list[Array]
     blocks: tuple[CandidateColumns, ...]
-    beside: tuple[str, ...] = ()
+    added_ids: tuple[str, ...] = ()
 
     @property
     def candidates(self) -> list[Candidate]:
@@ -92,7 +92,7 @@ def linearise_candidates(
     return Sensitivities(base.model, bank, absent, matrices, tuple(blocks))
 
 
-def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
+def relinearise_candidates(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
     """Make the columns of the same candidates anew, with all effects of a hypothesis in place.
 
     Those of an effect that the hypothesis has itself are made beside its other effects. Columns are
@@ -110,8 +110,8 @@ def linearise_beside(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> 
         finite = all(np.isfinite(x).all() for x in columns)
         parts.append(columns if finite else [np.zeros_like(x) for x in columns])
     matrices = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
-    base, beside = bank.innovations(at.model), tuple(term.id for term in at.terms)
-    return replace(known, bank=bank, base=base, columns=matrices, beside=beside)
+    base, added_ids = bank.innovations(at.model), tuple(term.id for term in at.terms)
+    return replace(known, bank=bank, base=base, columns=matrices, added_ids=added_ids)
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:
@@ -151,8 +151,8 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     sizes = np.array([(seen.hypothesis.x - h.x)[i] for i, h in possible.items()])[:, None, None]
     outputs = bank.evaluate([h.model for h in possible.values()])
     central = [
-        0.5 * (J[faint] + (e - beside) / sizes)
-        for J, e, beside in zip(seen.J, seen.e, outputs, strict=True)
+        0.5 * (J[faint] + (e - e_back) / sizes)
+        for J, e, e_back in zip(seen.J, seen.e, outputs, strict=True)
     ]
     scale = np.ones((len(lengths), 1, 1))
     scale[faint, 0, 0] = measure_columns(bank, central) >= SLOPE * lengths[faint]

@@ -18,7 +18,7 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.least_squares import gram, project_out
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.residual_source import Linearised
-from rovsim.estimation.sensitivities import Sensitivities, linearise_beside
+from rovsim.estimation.sensitivities import Sensitivities, relinearise_candidates
 
 # Of the square of a derivative: if one has turned by more, the accepted effects changed columns.
 # Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
@@ -47,34 +47,34 @@ class WhiteColumns:
     bank: FilterBank
     sensitivities: Sensitivities
     noise: Noise
-    _beside: dict[tuple, Sensitivities] = field(default_factory=dict)
+    _by_loops: dict[tuple, Sensitivities] = field(default_factory=dict)
     _white: dict[tuple, _White] = field(default_factory=dict)
     _grams: WeakKeyDictionary[Linearised, Array] = field(default_factory=WeakKeyDictionary)
 
     def under(self, bank: FilterBank, noise: Noise) -> "WhiteColumns":
         """The same columns under another noise, with filters that suit it."""
-        return WhiteColumns(bank, self.sensitivities, noise, self._beside)
+        return WhiteColumns(bank, self.sensitivities, noise, self._by_loops)
 
-    def beside(self, at: Hypothesis) -> Sensitivities:
+    def sensitivities_at(self, at: Hypothesis) -> Sensitivities:
         """The columns beside the loops on board that a hypothesis has; made once for such loops."""
         loops = _list_loops(at.model)
         if loops == _list_loops(self.sensitivities.base_model):
             return self.sensitivities
-        if loops not in self._beside:
-            self._beside[loops] = self._made_beside(at)
-        return self._beside[loops]
+        if loops not in self._by_loops:
+            self._by_loops[loops] = self._relinearise(at)
+        return self._by_loops[loops]
 
     def relinearised(self, at: Hypothesis) -> "WhiteColumns":
         """The columns made anew with all effects of a hypothesis in place."""
-        loops, sensitivities = _list_loops(at.model), self._made_beside(at)
+        loops, sensitivities = _list_loops(at.model), self._relinearise(at)
         if loops == _list_loops(self.sensitivities.base_model):
-            return WhiteColumns(self.bank, sensitivities, self.noise, self._beside)
-        beside = self._beside | {loops: sensitivities}
-        return WhiteColumns(self.bank, self.sensitivities, self.noise, beside)
+            return WhiteColumns(self.bank, sensitivities, self.noise, self._by_loops)
+        by_loops = self._by_loops | {loops: sensitivities}
+        return WhiteColumns(self.bank, self.sensitivities, self.noise, by_loops)
 
-    def _made_beside(self, at: Hypothesis) -> Sensitivities:
+    def _relinearise(self, at: Hypothesis) -> Sensitivities:
         bank = self.bank.redesign(at.model, self.noise)
-        return linearise_beside(bank, at, self.sensitivities)
+        return relinearise_candidates(bank, at, self.sensitivities)
 
     def have_changed(self, seen: Linearised) -> bool:
         """Whether the accepted effects have changed their own derivatives, and so perhaps others.
@@ -86,7 +86,7 @@ class WhiteColumns:
             return False
         by_name = {
             (block.candidate.effect.id, name): column
-            for block in reversed(self.beside(h).blocks)
+            for block in reversed(self.sensitivities_at(h).blocks)
             for name, column in zip(block.candidate.sloped, block.derivatives, strict=True)
         }
         names = [(term.id, name) for term in h.terms for name in term.free]
@@ -98,7 +98,7 @@ class WhiteColumns:
     def _whiten(self, at: Hypothesis) -> _White:
         loops = _list_loops(at.model)
         if loops not in self._white:
-            sensitivities = self.beside(at)
+            sensitivities = self.sensitivities_at(at)
             columns = sensitivities.bank.flatten(sensitivities.columns, self.noise)
             self._white[loops] = _White(columns, gram(columns).astype(float))
         return self._white[loops]

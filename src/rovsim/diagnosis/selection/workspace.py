@@ -85,11 +85,10 @@ class SearchWorkspace:
         Making the columns takes longest. They are only made anew when the number of accepted
         effects has doubled since. The workspace stays as it is where the model would diverge.
         """
-        h, beside = current.hypothesis, self.columns.beside(current.hypothesis).beside
-        workspace = (
-            self.relinearise_if_changed(current) if len(h.terms) >= 2 * len(beside) else self
-        )
-        sensitivities = workspace.columns.beside(h)
+        h = current.hypothesis
+        made_with = len(self.columns.sensitivities_at(h).added_ids)
+        workspace = self.relinearise_if_changed(current) if len(h.terms) >= 2 * made_with else self
+        sensitivities = workspace.columns.sensitivities_at(h)
         if not sensitivities.finite:
             return self
         return workspace.with_noise(h, fit_remaining_noise(sensitivities, h, self.noise, rounds=1))
@@ -100,11 +99,11 @@ class SearchWorkspace:
         It stays as it is where these effects hardly change the columns, or the model diverges.
         """
         at, names = current.hypothesis, {term.id for term in current.hypothesis.terms}
-        up_to_date = names == set(self.columns.beside(at).beside)
+        up_to_date = names == set(self.columns.sensitivities_at(at).added_ids)
         if up_to_date or not self.columns.have_changed(current.linearised):
             return self
         columns = self.columns.relinearised(at)
-        if not columns.beside(at).finite:
+        if not columns.sensitivities_at(at).finite:
             return self
         return replace(self, columns=columns, _proposed={}, _removed={})
 

@@ -154,7 +154,7 @@ class Hypothesis:
         )
 
     @cached_property
-    def beside(self) -> list["Hypothesis"]:
+    def perturbed(self) -> list["Hypothesis"]:
         """Hypotheses (k,) that are one of these steps away each; made once, as their models are."""
         return [self.at(self.x + step) for step in np.diag(self.steps)]
 

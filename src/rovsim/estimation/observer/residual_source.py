@@ -67,7 +67,7 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
     reused = {} if known is None else _take(at, known)
     new = [i for i in range(count) if i not in reused]
     sizes = at.steps[new][:, None, None]
-    outputs = errors([at.model, *(at.beside[i].model for i in new)])
+    outputs = errors([at.model, *(at.perturbed[i].model for i in new)])
     J = [np.empty((count, *e.shape[1:])) for e in outputs]
     for k, e in enumerate(outputs):
         J[k][new] = (e[1:] - e[0]) / sizes
