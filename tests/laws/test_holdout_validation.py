@@ -92,7 +92,7 @@ class Workspace:
     def __init__(self, finite=True):
         self.finite = finite
 
-    def fit(self, h, reach):
+    def fit(self, h, prior_std):
         return Found(h, self.finite)
 
     def drop(self, found, groups):

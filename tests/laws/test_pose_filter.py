@@ -266,7 +266,7 @@ def test_thrusters_that_lag_by_a_frame_are_the_filter(lag, likelier, absorbed):
         covariance = np.diag(np.full(len(start.x), 0.01**2))
         return Fit(Linearised(start, [], []), FIRST_NOISE, score, covariance)
 
-    def fit(start, reach=np.inf):
+    def fit(start, prior_std=np.inf):
         if "thruster_lag" in (term.id for term in start.terms):
             return found(start)  # a delay beside it has nothing to explain
         late = (Term(InputDelay(delay=lag), ("delay",)),) if start.terms else ()

@@ -44,7 +44,7 @@ class OpenScale:
 
     penalty = 10.0
 
-    def fit(self, h, reach):
+    def fit(self, h, prior_std):
         free = {term.id for term in h.terms}
         std = np.full(len(h.x), 100.0 if "thruster_gain" in free else 0.1)
         return Fit(Linearised(h, [], []), FIRST_NOISE, 0.0, np.diag(std**2))

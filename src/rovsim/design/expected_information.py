@@ -23,7 +23,7 @@ from rovsim.core.run import Commands
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.record import record
 from rovsim.design.recording_setup import RecordingSetup
-from rovsim.estimation.fit import REACH
+from rovsim.estimation.fit import PRIOR_STD
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.innovations import estimate_errors
 from rovsim.estimation.observer.kalman import AxisErrorDynamics
@@ -164,7 +164,7 @@ def _expect_log_odds(
 ) -> float:
     """The expected gain of the log odds of the true rival against the other one.
 
-    The other rival has all its parameters free, within the reach that a fit gives them.
+    The other rival has all its parameters free, under the prior that a fit gives them.
     """
     rival, information = bank.linearise(other.widest), other.widest_information
     if not rival.finite:
@@ -176,7 +176,7 @@ def _expect_log_odds(
     rows = [np.concatenate([e[None], J]) for e, J in zip(errors, rival.J, strict=True)]
     e, J = np.split(bank.flatten(rows, prior.noise), [1])
     e = e[0]
-    prior_precision = np.eye(len(J)) / REACH**2 + (0.0 if exact else information)
+    prior_precision = np.eye(len(J)) / PRIOR_STD**2 + (0.0 if exact else information)
     x = -solve(gram(J) + prior_precision, J @ e)
     residual = (e + x @ J).reshape(6, -1)
     prior_cost = float(x @ prior_precision @ x)

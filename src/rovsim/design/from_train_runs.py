@@ -14,7 +14,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.estimation.candidates import Candidate, list_candidates
-from rovsim.estimation.fit import REACH, Fit, fit, polish
+from rovsim.estimation.fit import PRIOR_STD, Fit, fit, polish
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.least_squares import gram
@@ -141,7 +141,7 @@ def _without(h: Hypothesis, *names: str) -> Hypothesis:
 def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
     bank = FilterBank.design(runs, h.model, FIRST_NOISE)
     noise, _ = bank.fit_noise(bank.innovations(h.model), FIRST_NOISE)
-    best = fit(h, bank.redesign(h.model, noise), noise, REACH)
+    best = fit(h, bank.redesign(h.model, noise), noise, PRIOR_STD)
     if not np.isfinite(best.two_log_likelihood):
         raise BadInput(
             "the train runs drive the model away from all numbers",
@@ -149,7 +149,7 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
             expected="a model that can follow the recordings",
             remedy="Diagnose the campaign first, and design with the model of `rovsim add`.",
         )
-    return polish(best, runs, REACH)
+    return polish(best, runs, PRIOR_STD)
 
 
 def _summarise(

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.design.low_frequency_disturbance import LowFrequencyDisturbance, estimate_disturbance
 from rovsim.dynamics.model import Model
-from rovsim.estimation.fit import REACH
+from rovsim.estimation.fit import PRIOR_STD
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.kalman import AxisErrorDynamics
 from rovsim.estimation.observer.least_squares import solve
@@ -48,15 +48,15 @@ class FittedHypothesis:
         """The same model, in which nothing is free."""
         return Hypothesis(self.hypothesis.model)
 
-    def covariance(self, more: Array | float = 0.0, reach: float = REACH) -> Array:
+    def covariance(self, more: Array | float = 0.0, prior_std: float = PRIOR_STD) -> Array:
         """Covariance (k, k) of the scaled parameters.
 
         Args:
             more: information (k, k) besides that of the train runs.
-            reach: standard deviation, in scales, of a parameter about which nothing is known.
+            prior_std: standard deviation, in scales, of a parameter about which nothing is known.
         """
         eye = np.eye(len(self.information))
-        return solve(self.information + more + eye / reach**2, eye)
+        return solve(self.information + more + eye / prior_std**2, eye)
 
     def std(self, more: Array | float = 0.0) -> Array:
         """Standard deviations (j,) of the parameters that are asked about, scaled.
@@ -71,7 +71,7 @@ class FittedHypothesis:
         A parameter that the runs do not tell varies by one scale, the size of a change that is
         worth looking for. A model that is impossible is replaced by the likeliest one.
         """
-        h, root = self.hypothesis, _root(self.covariance(reach=1.0))
+        h, root = self.hypothesis, _root(self.covariance(prior_std=1.0))
         models = [h.model]
         while len(models) < count:
             model = h.at(h.x + root @ random.normal(size=len(h.x))).model

@@ -199,4 +199,4 @@ def polish_selection(
     Returns:
         The fit, and the filters that it was made with.
     """
-    return polish(selection.best, runs, selection.reach)
+    return polish(selection.best, runs, selection.prior_std)

@@ -17,7 +17,7 @@ from rovsim.estimation.prior import Prior
 
 # Scales: where much is free at once, what acts only together (drag and a loop, drag and thrust)
 # stays near where it began.
-REACH = 10.0
+PRIOR_STD = 10.0
 POLISHING_ROUNDS = 2  # the noise of the first is already the right one
 # Times the reduction that its derivatives predict: so much more a fit may yet reach. Of 234 that
 # were given up and went on all the same one gained more (5, of 1), and none what it had to reach.
@@ -74,7 +74,7 @@ class Fit:
         return float(offset @ solve(V, offset))
 
 
-def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf) -> Fit:
+def fit(start: Hypothesis, bank: FilterBank, noise: Noise, prior_std: float = np.inf) -> Fit:
     """Fit the free parameters under a given noise, then the noise to what they leave.
 
     A model that diverges in spite of the filters' corrections is infinitely unlikely.
@@ -83,14 +83,16 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, reach: float = np.inf
         start: where the parameters begin.
         bank: the runs, and the filters that observe them.
         noise: under which the parameters are fitted.
-        reach: standard deviation, in scales of the parameters, of a prior about the start. It keeps
-            parameters that only act together from growing without bound together.
+        prior_std: standard deviation, in scales of the parameters, of a prior about the start. It
+            keeps parameters that only act together from growing without bound together.
     """
-    return judge(levenberg_marquardt(start, bank, noise, Prior.around(start.x, reach)), bank, noise)
+    return judge(
+        levenberg_marquardt(start, bank, noise, Prior.around(start.x, prior_std)), bank, noise
+    )
 
 
 def fit_or_give_up(
-    first: Linearised, bank: FilterBank, noise: Noise, least: float, reach: float = np.inf
+    first: Linearised, bank: FilterBank, noise: Noise, least: float, prior_std: float = np.inf
 ) -> Fit | None:
     """As `fit`, but give up as soon as `two_log_likelihood` is not expected to reach `least`.
 
@@ -99,7 +101,7 @@ def fit_or_give_up(
         bank: see `fit`.
         noise: see `fit`.
         least: what is to be reached.
-        reach: see `fit`.
+        prior_std: see `fit`.
 
     Returns:
         The fit; None where it was given up.
@@ -110,7 +112,7 @@ def fit_or_give_up(
         if two_log_likelihood + REACHABLE * predicted_reduction < least:
             raise GivenUp
 
-    prior = Prior.around(first.hypothesis.x, reach)
+    prior = Prior.around(first.hypothesis.x, prior_std)
     try:
         return judge(
             levenberg_marquardt(first.hypothesis, bank, noise, prior, first, monitor), bank, noise
@@ -120,7 +122,7 @@ def fit_or_give_up(
 
 
 def polish(
-    start: Fit, runs: Sequence[ObservedRun], reach: float = np.inf
+    start: Fit, runs: Sequence[ObservedRun], prior_std: float = np.inf
 ) -> tuple[Fit, FilterBank]:
     """Fit a hypothesis to these runs once more, under its own noise and with filters that suit it.
 
@@ -130,7 +132,7 @@ def polish(
     Args:
         start: a fit, perhaps to other runs.
         runs: to fit to.
-        reach: see `fit`.
+        prior_std: see `fit`.
 
     Returns:
         The fit, and the filters that it was made with.
@@ -138,7 +140,7 @@ def polish(
 
     def again(start: Fit) -> tuple[Fit, FilterBank]:
         bank = FilterBank.design(runs, start.hypothesis.model, start.noise)
-        return fit(start.hypothesis, bank, start.noise, reach), bank
+        return fit(start.hypothesis, bank, start.noise, prior_std), bank
 
     polished = again(start)
     for _ in range(1, POLISHING_ROUNDS):

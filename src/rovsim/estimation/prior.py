@@ -18,9 +18,9 @@ class Prior:
     faulty: Array
 
     @staticmethod
-    def around(x: Array, reach: float) -> "Prior":
+    def around(x: Array, std: float) -> "Prior":
         """The same spread about each of some values (k,)."""
-        return Prior(x, np.full(len(x), reach), np.zeros(len(x), bool))
+        return Prior(x, np.full(len(x), std), np.zeros(len(x), bool))
 
     def cost(self, x: Array) -> float:
         """Minus twice the logarithm of its density at x (k,), but for a constant."""

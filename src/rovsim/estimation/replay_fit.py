@@ -15,7 +15,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
-from rovsim.estimation.fit import REACH, Fit, judge
+from rovsim.estimation.fit import PRIOR_STD, Fit, judge
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
@@ -129,5 +129,5 @@ def fit_without(fit: Fit, runs: Sequence[ObservedRun], left_out: Sequence[Observ
 
 
 def _fit(fit: Fit, source: Replays) -> Linearised:
-    prior = Prior.around(fit.hypothesis.x, REACH)
+    prior = Prior.around(fit.hypothesis.x, PRIOR_STD)
     return levenberg_marquardt(fit.hypothesis, source, fit.noise, prior)

@@ -22,7 +22,7 @@ from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 from rovsim.estimation.file_effects import DRAG, free_terms, mark_gain
-from rovsim.estimation.fit import REACH, Fit
+from rovsim.estimation.fit import PRIOR_STD, Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 ROUNDS = 2  # the filters suit the model and the noise of the round before
@@ -54,7 +54,7 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         for term in fit.hypothesis.terms
         if best_term.id in ACTUATION and term.id in ACTUATION and term.id not in names
     )
-    return SearchResult(best_workspace, best_fit, rivals, REACH)
+    return SearchResult(best_workspace, best_fit, rivals, PRIOR_STD)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
@@ -68,10 +68,10 @@ def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesi
 
 def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
     """Fit a hypothesis, and twice again with filters and noise that suit the fit before."""
-    fit = workspace.fit(start, REACH)
+    fit = workspace.fit(start, PRIOR_STD)
     for _ in range(ROUNDS):
         workspace = workspace.update_after(fit)
-        fit = workspace.fit(fit.hypothesis, REACH)
+        fit = workspace.fit(fit.hypothesis, PRIOR_STD)
     return workspace, fit
 
 
@@ -97,7 +97,7 @@ def _do_without(workspace: SearchWorkspace, fit: Fit, weak: Array) -> Fit | None
     """The fit without the free parameters of a mask (k,); None where they are needed."""
     if not weak.any():
         return None
-    pruned = workspace.fit(drop_parameters(fit.hypothesis, weak), REACH)
+    pruned = workspace.fit(drop_parameters(fit.hypothesis, weak), PRIOR_STD)
     return pruned if workspace.score(pruned) >= workspace.score(fit) else None
 
 

@@ -63,7 +63,7 @@ def _predict_reduction(G: Array, block: CandidateColumns, penalty: float) -> Red
     if block.secant is None:
         return select_columns(H, b, penalty)
     s = 1 + block.secant
-    low, high = block.candidate.term(block.candidate.sloped).reach(TRUSTED)
+    low, high = block.candidate.term(block.candidate.sloped).step_limits(TRUSTED)
     return solve_bounded(H, b + G[index, s], 2.0 * G[0, s] + G[s, s], low, high)
 
 

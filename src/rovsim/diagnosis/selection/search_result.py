@@ -51,33 +51,38 @@ class SearchResult:
         workspace: of the search, as it was at its end.
         best: the fit with all accepted effects.
         rivals: effects that could stand in the place of accepted ones.
-        reach: how far a fit may go from its start, in scales of the parameters. There is no limit
-            where effects were accepted one by one. In a joint fit, parameters that only act
-            together are kept near their start.
+        prior_std: standard deviation, in scales of the parameters, of a prior about the start of
+            each fit. It is infinite where effects were accepted one by one. In a joint fit, the
+            prior keeps parameters that only act together near their start.
     """
 
     workspace: SearchWorkspace
     best: Fit
     rivals: tuple[Rival, ...]
-    reach: float = np.inf
+    prior_std: float = np.inf
+
+    @property
+    def is_joint(self) -> bool:
+        """Whether the effects were fitted jointly, and not accepted one by one."""
+        return bool(np.isfinite(self.prior_std))
 
     def fit(self, start: Hypothesis) -> Fit:
         """Fit another hypothesis in the same way as the accepted one."""
-        return self.workspace.fit(start, self.reach)
+        return self.workspace.fit(start, self.prior_std)
 
     def fit_unless_worse(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
         """As `fit`, but None as soon as the score surely stays far below another.
 
         See `SearchWorkspace.fit_unless_worse`.
         """
-        return self.workspace.fit_unless_worse(start, current, score, self.reach)
+        return self.workspace.fit_unless_worse(start, current, score, self.prior_std)
 
     def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
         """Remove from a fit of the selection what is not worth its penalty.
 
         A joint fit stays as it is: none of its effects is sure by itself, but all are needed.
         """
-        return prune(workspace, fit) if np.isinf(self.reach) else fit
+        return fit if self.is_joint else prune(workspace, fit)
 
     @property
     def named_rivals(self) -> list[Rival]:

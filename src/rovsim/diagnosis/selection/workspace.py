@@ -133,18 +133,18 @@ class SearchWorkspace:
         """Penalty of a free parameter, to be subtracted from a likelihood-ratio statistic."""
         return 2.0 * float(np.log(self.sensitivities.count))
 
-    def fit(self, start: Hypothesis, reach: float = np.inf) -> Fit:
+    def fit(self, start: Hypothesis, prior_std: float = np.inf) -> Fit:
         """Fit a hypothesis under the common noise; the same start is fitted only once.
 
-        `reach` limits how far the parameters go from the start, in scales (see `estimation.fit`).
+        `prior_std` is that of a prior about the start, in scales (see `estimation.fit`).
         """
-        key = start.key, reach
+        key = start.key, prior_std
         if key not in self._fitted:
-            self._fitted[key] = fit(start, self.bank, self.noise, reach)
+            self._fitted[key] = fit(start, self.bank, self.noise, prior_std)
         return self._fitted[key]
 
     def fit_unless_worse(
-        self, start: Hypothesis, current: Fit, score: float, reach: float = np.inf
+        self, start: Hypothesis, current: Fit, score: float, prior_std: float = np.inf
     ) -> Fit | None:
         """As `fit`, but None as soon as its score will surely be `HOPELESS_LR` below another.
 
@@ -153,12 +153,12 @@ class SearchWorkspace:
             current: a fit whose derivatives are taken at first, as far as they have the same
                 parameters.
             score: to compare with.
-            reach: see `fit`.
+            prior_std: see `fit`.
         """
-        key, threshold = (start.key, reach), score - HOPELESS_LR + self._penalty_of(start)
+        key, threshold = (start.key, prior_std), score - HOPELESS_LR + self._penalty_of(start)
         if key not in self._fitted and threshold < self._given_up.get(key, np.inf):
             linearised = self.bank.linearise(start, current.linearised)
-            result = fit_or_give_up(linearised, self.bank, self.noise, threshold, reach)
+            result = fit_or_give_up(linearised, self.bank, self.noise, threshold, prior_std)
             if result is None:
                 self._given_up[key] = threshold
             else:
@@ -166,7 +166,7 @@ class SearchWorkspace:
         return self._fitted.get(key)
 
     def has_fitted(self, start: Hypothesis) -> bool:
-        """Whether that start was fitted already, without a `reach`."""
+        """Whether that start was fitted already, without a prior."""
         return (start.key, np.inf) in self._fitted
 
     def score(self, fit: Fit) -> float:

@@ -65,7 +65,7 @@ class Term:
         """Whether its defaults are its absence; if not, it stays or goes as a whole."""
         return {} in self.effect.starts
 
-    def reach(self, trusted: float) -> tuple[Array, Array]:
+    def step_limits(self, trusted: float) -> tuple[Array, Array]:
         """Lowest and highest scaled step that stays in range, and within `trusted` scales."""
         scale = np.array([p.scale for p in self.parameters])
         low = np.array([p.low for p in self.parameters]) / scale - self.x
