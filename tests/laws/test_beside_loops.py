@@ -14,7 +14,7 @@ from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.effects.onboard_control import OnboardControl
 from rovsim.dynamics.effects.thrusters import PropellerTorque
 from rovsim.estimation.candidates import list_candidates
-from rovsim.estimation.fit import judge
+from rovsim.estimation.fit import fit_noise_only
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import FIRST_NOISE
@@ -52,11 +52,11 @@ def test_noise_stays_what_it_was_where_its_filters_do_not_hold_what_was_found(tm
     base = first.bank.model
     pushed = Term(QuadraticDamping(**dict.fromkeys(("surge", "sway", "heave"), -180.0)), ("heave",))
     h = Hypothesis(base, (Term(OnboardControl(**LOOP), ("gain_yaw",)), pushed))
-    found = judge(first.bank.linearise(h), first.bank, FIRST_NOISE)
+    found = fit_noise_only(first.bank.linearise(h), first.bank, FIRST_NOISE)
     assert found.is_finite
     sure = replace(FIRST_NOISE, disturbance_std=np.full(6, 1e-20), measurement_std=np.ones(6))
     workspace = first.with_noise(Hypothesis(base), sure)
-    assert not workspace.columns.sensitivities_at(h).finite
+    assert not workspace.columns.sensitivities_at(h).is_finite
     for after in (workspace.update_after(found), workspace.relinearise_if_changed(found)):
         assert np.isfinite(after.noise.disturbance_std).all()
         assert np.isfinite(after.columns.gram(found.linearised)).all()

@@ -167,9 +167,9 @@ def _expect_log_odds(
     The other rival has all its parameters free, under the prior that a fit gives them.
     """
     rival, information = bank.linearise(other.widest), other.widest_information
-    if not rival.finite:
+    if not rival.is_finite:
         rival, information = bank.linearise(other.hypothesis), other.information
-    if not rival.finite:
+    if not rival.is_finite:
         return np.inf
     errors = [a - b for a, b in zip(rival.e, true.e, strict=True)]
     errors = [*(0.0 * error for error in errors[:-1]), errors[-1]]  # the train runs count already

@@ -166,7 +166,7 @@ def _summarise(
     information = of_widest = gram(bank.flatten(found.linearised.J, found.noise))
     if widest is not None:
         linear = bank.linearise(widest)
-        if linear.finite:  # else such a model diverges, and no more than what was fitted is free
+        if linear.is_finite:  # else such a model diverges, and no more than what was fitted is free
             h, of_widest = widest, gram(bank.flatten(linear.J, found.noise))
     return FittedHypothesis(found.hypothesis, information, chosen, two_log_likelihood, h, of_widest)
 

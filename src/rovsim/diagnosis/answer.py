@@ -17,7 +17,7 @@ from rovsim.diagnosis.uncertainty.file_values import is_right_elsewhere, settle_
 from rovsim.diagnosis.uncertainty.identifiability import find_doubtful
 from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.model import Model
-from rovsim.estimation.fit import Fit, judge, polish
+from rovsim.estimation.fit import Fit, fit_noise_only, polish
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.usable_runs import UsableRuns
@@ -157,7 +157,7 @@ class FinalAnswer(NamedTuple):
     scale: CommonScale | None
 
 
-def finish(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> FinalAnswer:
+def finalise_answer(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> FinalAnswer:
     """Give an answer the values and the intervals that are reported.
 
     Where physics is left that no effect describes, a likelihood would be misled by it, so the
@@ -187,7 +187,7 @@ def _refit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
         if doubtful is None:
             break
         linearised = bank.linearise(refit.hypothesis.without(doubtful))
-        refit = fit_to_replays(judge(linearised, bank, fit.noise), bank)
+        refit = fit_to_replays(fit_noise_only(linearised, bank, fit.noise), bank)
     return refit
 
 

@@ -27,7 +27,7 @@ from typing import Sequence
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rovsim.diagnosis.answer import SettledAnswer, finish, polish_selection
+from rovsim.diagnosis.answer import SettledAnswer, finalise_answer, polish_selection
 from rovsim.diagnosis.checks.commanded import list_not_commanded
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
@@ -185,7 +185,7 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     """
     problem, smoothing = validated.problem, validated.smoothing
     base, usable = problem.base, problem.usable
-    answer, wide_fit, scale = finish(validated.answer, usable.runs)
+    answer, wide_fit, scale = finalise_answer(validated.answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
     law = _propose(answer, validated, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals

@@ -86,7 +86,7 @@ def fit(start: Hypothesis, bank: FilterBank, noise: Noise, prior_std: float = np
         prior_std: standard deviation, in scales of the parameters, of a prior about the start. It
             keeps parameters that only act together from growing without bound together.
     """
-    return judge(
+    return fit_noise_only(
         levenberg_marquardt(start, bank, noise, Prior.around(start.x, prior_std)), bank, noise
     )
 
@@ -114,7 +114,7 @@ def fit_or_give_up(
 
     prior = Prior.around(first.hypothesis.x, prior_std)
     try:
-        return judge(
+        return fit_noise_only(
             levenberg_marquardt(first.hypothesis, bank, noise, prior, first, monitor), bank, noise
         )
     except GivenUp:
@@ -151,7 +151,9 @@ def polish(
     return polished
 
 
-def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None) -> Fit:
+def fit_noise_only(
+    seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None
+) -> Fit:
     """Fit the noise to what a hypothesis leaves; its parameters stay as they are.
 
     Args:
@@ -160,7 +162,7 @@ def judge(seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None 
         noise: where the fit of the noise begins.
         prior: what is known of the parameters besides; it makes their covariance smaller.
     """
-    if not seen.finite:
+    if not seen.is_finite:
         unknown = np.full((len(seen.hypothesis.x), len(seen.hypothesis.x)), np.inf)
         return Fit(seen, noise, -np.inf, unknown)
     fitted_noise, two_log_likelihood = bank.fit_noise(seen.e, noise)

@@ -47,7 +47,7 @@ def levenberg_marquardt(
     """
     problem = _LeastSquares(source, noise, prior or Prior.around(start.x, np.inf))
     current, damping, rough = (first or source.linearise(start), INITIAL_DAMPING, first is not None)
-    if not len(start.x) or not current.finite:
+    if not len(start.x) or not current.is_finite:
         return current
     quadratic = problem.expand(current)
     for _ in range(MOST_ITERATIONS):
@@ -61,7 +61,7 @@ def levenberg_marquardt(
             if step.gain_ratio_near_one and not ended:
                 continue
         current, ended, rough = (source.linearise(quadratic.hypothesis), ended and not rough, False)
-        if ended or not current.finite:
+        if ended or not current.is_finite:
             return current
         quadratic = problem.expand(current)
         monitor(current, quadratic.predicted_reduction)

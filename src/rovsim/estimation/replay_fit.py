@@ -15,7 +15,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
-from rovsim.estimation.fit import PRIOR_STD, Fit, judge
+from rovsim.estimation.fit import PRIOR_STD, Fit, fit_noise_only
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
@@ -118,7 +118,7 @@ def fit_to_replays(fit: Fit, bank: FilterBank) -> Fit:
         source.number(),
     )
     fresh = bank.redesign(linearised.hypothesis.model, fit.noise)
-    observed = judge(fresh.linearise(linearised.hypothesis), fresh, fit.noise)
+    observed = fit_noise_only(fresh.linearise(linearised.hypothesis), fresh, fit.noise)
     return replace(observed, covariance=covariance)
 
 

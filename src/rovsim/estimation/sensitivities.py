@@ -69,7 +69,7 @@ class Sensitivities:
         return len(self.columns[0])
 
     @property
-    def finite(self) -> bool:
+    def is_finite(self) -> bool:
         """Whether the model that the columns were made at did not diverge."""
         return all(np.isfinite(x).all() for x in self.base)
 
@@ -145,7 +145,7 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
         i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()
     }
     possible = {i: h for i, h in stepped_back.items() if h is not None}
-    if not possible or not seen.finite:
+    if not possible or not seen.is_finite:
         return seen.J
     faint = list(possible)
     sizes = np.array([(seen.hypothesis.x - h.x)[i] for i, h in possible.items()])[:, None, None]

@@ -89,7 +89,7 @@ class SearchWorkspace:
         made_with = len(self.columns.sensitivities_at(h).added_ids)
         workspace = self.relinearise_if_changed(current) if len(h.terms) >= 2 * made_with else self
         sensitivities = workspace.columns.sensitivities_at(h)
-        if not sensitivities.finite:
+        if not sensitivities.is_finite:
             return self
         return workspace.with_noise(h, fit_remaining_noise(sensitivities, h, self.noise, rounds=1))
 
@@ -103,7 +103,7 @@ class SearchWorkspace:
         if up_to_date or not self.columns.have_changed(current.linearised):
             return self
         columns = self.columns.relinearised(at)
-        if not columns.sensitivities_at(at).finite:
+        if not columns.sensitivities_at(at).is_finite:
             return self
         return replace(self, columns=columns, _proposed={}, _removed={})
 
@@ -213,7 +213,7 @@ class SearchWorkspace:
 
     def _step(self, seen: Linearised) -> Hypothesis:
         """The hypothesis at the values for which a Gauss-Newton step predicts the least errors."""
-        if not seen.finite:
+        if not seen.is_finite:
             return seen.hypothesis
         step = newton_step(gram(self.bank.flatten(seen.rows, self.noise)))
         return seen.hypothesis.at(seen.hypothesis.x + step)

@@ -34,7 +34,7 @@ from rovsim.diagnosis.structure.residual import FALSE_ALARM
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale, describe_scale
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 from rovsim.estimation.file_effects import mark_gain, share_of_file
-from rovsim.estimation.fit import Fit, judge
+from rovsim.estimation.fit import Fit, fit_noise_only
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.least_squares import solve
@@ -98,7 +98,7 @@ def settle_whole_file(
             break
         ids.add(candidates[int(np.argmin(errors_extended))])
         dropped = undetermined | ~np.isin(owner, list(ids))
-    final = judge(bank.linearise(_leave_out(whole, dropped)), bank, whole.noise)
+    final = fit_noise_only(bank.linearise(_leave_out(whole, dropped)), bank, whole.noise)
     final = replace(final, covariance=whole.covariance[np.ix_(~dropped, ~dropped)])
     gain = _share_gains(h)
     variance = float(gain @ whole.covariance @ gain)

@@ -45,7 +45,7 @@ def free_nuisance(
     """
     bank = FilterBank.design(runs, fit.hypothesis.model, fit.noise)
     linearised = bank.linearise(freed)
-    if not linearised.finite:
+    if not linearised.is_finite:
         return None
     names, selected_names = freed.parameter_names, fit.hypothesis.parameter_names
     s = [names.index(name) for name in selected_names]

@@ -31,7 +31,7 @@ class Linearised:
     J: list[Array]
 
     @property
-    def finite(self) -> bool:
+    def is_finite(self) -> bool:
         """Whether no error and no derivative diverged on any run."""
         return all(np.isfinite(x).all() for x in (*self.e, *self.J))
 

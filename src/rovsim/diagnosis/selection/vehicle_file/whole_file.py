@@ -17,7 +17,7 @@ from rovsim.estimation.file_effects import (
     mark_gain,
     spread_of_file,
 )
-from rovsim.estimation.fit import Fit, judge
+from rovsim.estimation.fit import Fit, fit_noise_only
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
@@ -32,7 +32,7 @@ def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit 
     hypothesis = free_rest(selected)
     prior = know_file(selected, hypothesis)
     linearised = levenberg_marquardt(hypothesis, bank, noise, prior)
-    return judge(linearised, bank, noise, prior) if linearised.finite else None
+    return fit_noise_only(linearised, bank, noise, prior) if linearised.is_finite else None
 
 
 def measure_misfit(whole: Fit, selected: Hypothesis) -> float:
