@@ -33,7 +33,7 @@ def workspace_of_torque(tmp_path, hidden):
     listed = list_candidates(runs, built_in(), base.vehicle)
     torque = [c for c in listed if c.effect is PropellerTorque]
     known = linearise_candidates(bank, Hypothesis(base), torque)
-    return SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    return SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
 
 
 def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
@@ -41,7 +41,7 @@ def test_the_torque_of_propellers_is_foreseen_beside_a_loop_about_yaw(tmp_path):
     first = workspace_of_torque(tmp_path, hidden)
     loop = Hypothesis(first.bank.model, (Term(OnboardControl(**LOOP), ()),))
     workspace = first.with_noise(loop, FIRST_NOISE)
-    (proposal,) = workspace.propose(workspace.fit(loop))
+    (proposal,) = workspace.first_order.propose(workspace.fit(loop))
     assert proposal.term.effect["ratio"] == pytest.approx(RATIO, rel=0.1)
     assert proposal.net_decrease > 0.0
 

@@ -30,13 +30,13 @@ def searching(tmp_path_factory):
     listed = list_candidates(runs, built_in(), base.vehicle)
     drag = [c for c in listed if c.effect in (QuadraticDamping, MarkerOffset)]
     known = linearise_candidates(bank, Hypothesis(base), drag)
-    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    workspace = SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     return workspace, workspace.fit(Hypothesis(base, (Term(MarkerOffset(), ("x",)),)))
 
 
 def proposed(workspace, found):
     """The quadratic drag in heave that a workspace proposes, to first order."""
-    each = {p.term.id: p.term.effect for p in workspace.propose(found)}
+    each = {p.term.id: p.term.effect for p in workspace.first_order.propose(found)}
     return each[QuadraticDamping.id]["heave"]
 
 

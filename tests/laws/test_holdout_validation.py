@@ -90,7 +90,7 @@ class Workspace:
     """Fits nothing: hypotheses as they are, and no filter holds any but those it is given."""
 
     def __init__(self, finite=True):
-        self.finite = finite
+        self.finite, self.first_order = finite, self
 
     def fit(self, h, prior_std):
         return Found(h, self.finite)

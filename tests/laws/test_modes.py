@@ -31,7 +31,7 @@ def test_a_slow_hold_of_angles_with_drag_gives_way_to_a_hold_of_rates(tmp_path):
         c for c in list_candidates(runs, built_in(), base.vehicle) if c.effect is OnboardControl
     ]
     known = linearise_candidates(bank, Hypothesis(base), loops)
-    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    workspace = SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     angles = Term(OnboardControl(**(LOOPS | SLOW), attitude=1.0), tuple(LOOPS))
     drag = Term(LinearDamping(roll=0.95, pitch=0.9), ("roll", "pitch"))
     found = change_mode(workspace, workspace.fit(Hypothesis(base, (angles, drag))))

@@ -35,7 +35,7 @@ def test_behind_loops_about_all_angles_the_torque_of_propellers_cannot_be_seen(t
     listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in TRIED]
     known = linearise_candidates(bank, Hypothesis(base), some)
-    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    workspace = SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     loops = Term(OnboardControl(**LOOPS), tuple(LOOPS))
     with_loops, without = (
         list_not_observable(

@@ -38,7 +38,7 @@ class Workspace:
         self.readings, self.all = readings, columns
         self.by_name = dict(zip(names, columns, strict=True))
         self.penalty = 2.0 * np.log(len(columns))
-        self.columns = SimpleNamespace(gram=self.gram)
+        self.columns, self.first_order = SimpleNamespace(gram=self.gram), self
         blocks = [CandidateColumns(one, None, own) for one, own in owned]
         self.sensitivities = SimpleNamespace(base_model=BASE, blocks=blocks)
 

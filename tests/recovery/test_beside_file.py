@@ -47,7 +47,7 @@ def workspace(tmp_path_factory):
     listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in (*FILE_EFFECT_IDS, Payload.id)]
     known = linearise_candidates(bank, Hypothesis(base), some)
-    return SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    return SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
 
 
 def test_a_payload_does_not_stand_for_a_scale(workspace):

@@ -125,7 +125,7 @@ def look_for_current(bank, base, noise):
         c for c in list_candidates(bank.runs, built_in(), base.vehicle) if c.effect is Current
     ]
     known = linearise_candidates(bank, Hypothesis(base), listed)
-    return SearchWorkspace(WhiteColumns(bank, known, noise), SearchSettings())
+    return SearchWorkspace.begin(WhiteColumns(bank, known, noise), SearchSettings())
 
 
 def wander(bank, base, noise, rate):

@@ -72,7 +72,7 @@ def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):
     listed = list_candidates(runs, built_in(), base.vehicle)
     some = [c for c in listed if c.effect.id in ("added_mass", "linear_damping")]
     known = linearise_candidates(bank, Hypothesis(base), some)
-    workspace = SearchWorkspace(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
+    workspace = SearchWorkspace.begin(WhiteColumns(bank, known, FIRST_NOISE), SearchSettings())
     selection = fit_jointly(workspace, base, AXES)
     found, bank = selection.best, selection.workspace.bank
     terms = {t.id: t.effect for t in found.hypothesis.terms}

@@ -8,8 +8,7 @@ import numpy as np
 from rovsim.core.errors import BadInput, nearest
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.settings import Question
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.selection.first_order import FirstOrder
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
@@ -213,5 +212,5 @@ def _propose(
     """The start and free parameters of an effect that promise most, and the penalty of each."""
     rest_fit, bank = _fit(h, runs)
     linearised = linearise_candidates(bank, rest_fit.hypothesis, own)
-    workspace = SearchWorkspace(WhiteColumns(bank, linearised, rest_fit.noise), SearchSettings())
-    return workspace.propose(rest_fit)[0].term, workspace.penalty
+    first_order = FirstOrder(WhiteColumns(bank, linearised, rest_fit.noise))
+    return first_order.propose(rest_fit)[0].term, first_order.penalty

@@ -175,5 +175,5 @@ def _observe(
         if not noise.drift or bank.paths:
             break
         bank = bank.redesign(base, noise)  # forces differ where the water moves
-    workspace = SearchWorkspace(WhiteColumns(bank, sensitivities, noise), problem.settings)
+    workspace = SearchWorkspace.begin(WhiteColumns(bank, sensitivities, noise), problem.settings)
     return workspace.with_noise(Hypothesis(base), noise)

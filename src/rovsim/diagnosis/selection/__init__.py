@@ -1,6 +1,8 @@
 """Which effects of the catalogue explain what the model does not predict.
 
 proposals              what each candidate explains to first order, and what chance would explain
+first_order            judges additions and removals to first order
+fit_cache              fits under one noise, each made once
 workspace              the runs, the candidates, one noise for all, and what was fitted already
 promising              which candidates are worth a fit
 pruning                removes free parameters that are not worth their penalty

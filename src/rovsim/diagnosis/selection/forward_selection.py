@@ -96,7 +96,7 @@ def try_swaps(
         The likeliest fit, and the effects that could stand in the place of each of its terms.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
-    removals = workspace.remove_each(current)
+    removals = workspace.first_order.remove_each(current)
     for term, removed in zip(current.hypothesis.terms, removals, strict=True):
         for p in find_swaps(workspace, term, removed, trials):
             trial = None

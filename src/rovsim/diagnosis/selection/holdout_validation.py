@@ -192,7 +192,7 @@ class HoldoutValidation:
             The hypotheses without each group, and the errors (1 + g, w) in each of w windows, of
             which the first row is that of the fit itself.
         """
-        h, reduced = fit.hypothesis, selection.workspace.drop(fit, groups)
+        h, reduced = fit.hypothesis, selection.workspace.first_order.drop(fit, groups)
         errors = self._errors([h.model, *(trial.model for trial in reduced)])
         for k, trial in enumerate(reduced):
             if ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:

@@ -2,8 +2,9 @@
 
 from typing import Sequence
 
+from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.proposals import Proposal
-from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Term
 
@@ -19,7 +20,7 @@ WORTH_TRYING_SHARE = 0.2
 
 def list_promising(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
     """Proposals that are predicted to lower the sum of squares by more than their penalty."""
-    return [p for p in workspace.propose(current) if p.net_decrease > 0.0]
+    return [p for p in workspace.first_order.propose(current) if p.net_decrease > 0.0]
 
 
 def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:

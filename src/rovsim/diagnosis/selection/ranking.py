@@ -75,9 +75,10 @@ def rank_alone(workspace: SearchWorkspace, base_fit: Fit, fit: Fit) -> list[Rank
         base_fit: the base without any effect.
         fit: of the base with all accepted effects.
     """
-    ids, proposals = ({term.id for term in fit.hypothesis.terms}, workspace.propose(base_fit))
+    ids = {term.id for term in fit.hypothesis.terms}
+    proposals = workspace.first_order.propose(base_fit)
     starts = [(p, base_fit.hypothesis.with_term(p.term)) for p in proposals]
-    fits = [workspace.fit(h) for p, h in starts if p.term.id in ids or workspace.has_fitted(h)]
+    fits = [workspace.fit(h) for p, h in starts if p.term.id in ids or workspace.fits.has_fitted(h)]
     fits.sort(key=workspace.score, reverse=True)
     terms = [f.hypothesis.terms[0] for f in fits]
     terms += [p.term for p in proposals if p.term.id not in {term.id for term in terms}]

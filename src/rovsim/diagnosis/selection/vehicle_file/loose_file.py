@@ -107,7 +107,7 @@ class LooseFile:
 
     def measure_loss(self, fit: Fit, term: Term) -> float:
         """By how much the sum of squares grows without one term of a fit, beside a loose file."""
-        gram = self.workspace.gram_without(fit, term)
+        gram = self.workspace.first_order.gram_without(fit, term)
         return self._cost_at(gram) - self.measure_cost(fit)
 
     def find_limit(self, term: Term) -> float:

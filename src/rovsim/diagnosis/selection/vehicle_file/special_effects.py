@@ -10,12 +10,13 @@ from typing import Iterator, NamedTuple
 
 import numpy as np
 
+from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.promising import find_swaps
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, measure_misfit
-from rovsim.diagnosis.selection.workspace import Removed, SearchWorkspace
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.estimation.file_effects import FILE_EFFECT_IDS, has_loose_file
 from rovsim.estimation.fit import Fit
@@ -54,7 +55,7 @@ def judge_beside_file(
     if np.isinf(current_misfit):
         return Judged(current)
     file, rivals = LooseFile(workspace), []
-    removals = workspace.remove_each(current)
+    removals = workspace.first_order.remove_each(current)
     for term, removed in zip(current.hypothesis.terms, removals, strict=True):
         limit = file.find_limit(term)
         for alternative in _list_alternatives(file, term, removed):

@@ -20,7 +20,7 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
         return current
     for term in terms:
         if file.explains(current, term.id):
-            without_term = workspace.fit(workspace.drop(current, [(term,)])[0])
+            without_term = workspace.fit(workspace.first_order.drop(current, [(term,)])[0])
             trial = prune(workspace, add_file_effects(workspace, without_term))
             if _is_as_good(file, trial, current, term):
                 return prefer_file(workspace, trial)
@@ -46,7 +46,7 @@ def suspect_loose_file(workspace: SearchWorkspace, current: Fit) -> Fit:
         return current
     file, reduced = LooseFile(workspace), current
     while explained := _find_explained(file, reduced):
-        reduced = workspace.fit(workspace.drop(reduced, [(explained,)])[0])
+        reduced = workspace.fit(workspace.first_order.drop(reduced, [(explained,)])[0])
     if (
         workspace.score(reduced) + file.measure_doubt(reduced)
         < workspace.score(current) + MIN_LR_APART
