@@ -32,7 +32,7 @@ def search_for_loops(base, runs, truth):
     listed = list_candidates(bank.runs, built_in(), base.vehicle)
     loops_and_drag = [c for c in listed if c.effect in (OnboardControl, LinearDamping)]
     columns = linearise_candidates(bank, Hypothesis(base), loops_and_drag)
-    return SearchWorkspace(WhiteColumns(bank, columns, noise), SearchSettings())
+    return SearchWorkspace.begin(WhiteColumns(bank, columns, noise), SearchSettings())
 
 
 @pytest.mark.parametrize("surge", [0.0, 20.0], ids=["a loop", "a loop, and drag elsewhere"])

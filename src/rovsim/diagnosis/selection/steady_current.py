@@ -56,7 +56,7 @@ def challenge_steady(
     steady = _steady_of(current)
     if steady is None or workspace.noise.drift or not workspace.bank.looks_for_drift:
         return workspace, current, []
-    (start,) = workspace.drop(current, [[steady]])
+    (start,) = workspace.first_order.drop(current, [[steady]])
     still = workspace.fit(start)
     if not still.is_finite:
         return workspace, current, []
