@@ -2,13 +2,13 @@
 
 from rovsim.application.pipeline.drawing import draw_study
 from rovsim.application.snakemake_job import job
-from rovsim.reporting.html.report import CONTENTS
+from rovsim.reporting.report_data import STUDY_RESULTS
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         draw_study(
             figure=rule.params.figure,
-            contents=rule.contents("growth", *CONTENTS),
+            contents=rule.contents(*STUDY_RESULTS),
             quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
             out=rule.output("png"),
         )

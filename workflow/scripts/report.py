@@ -2,13 +2,13 @@
 
 from rovsim.application.pipeline.presentation import write_report
 from rovsim.application.snakemake_job import job
-from rovsim.reporting.html.report import CONTENTS
+from rovsim.reporting.report_data import STUDY_RESULTS
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         write_report(
             campaign=rule.params.campaign,
-            contents=rule.contents(*CONTENTS),
+            contents=rule.contents(*STUDY_RESULTS),
             quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
             figures=rule.paths("figures"),
             provenance=rule.params.provenance,

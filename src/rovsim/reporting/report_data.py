@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping, TypeVar
+from types import NoneType
+from typing import TYPE_CHECKING, Any, Mapping, get_args, get_type_hints
 
 import numpy as np
 from numpy import ndarray as Array
@@ -28,8 +29,6 @@ from rovsim.simulation.prediction import Band, Replay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-R = TypeVar("R", bound=Result)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,26 +71,20 @@ class ReportData:
         """Read results from files.
 
         Args:
-            results: files by the name of an attribute of this class.
+            results: files by the name of an attribute of this class, one of STUDY_RESULTS.
             quality: quality reports by run.
 
         Raises:
             BadInput: a file is missing or damaged.
         """
 
-        def read(name: str, kind: type[R]) -> R | None:
-            return kind.read(results[name]) if name in results else None
-
+        known: dict[str, Any] = {
+            name: kind.read(results[name])
+            for name, kind in STUDY_RESULTS.items()
+            if name in results
+        }
         return ReportData(
-            quality={run: Quality.read(path) for run, path in quality.items()},
-            comparison=read("comparison", Comparison),
-            growth=read("growth", Growth),
-            ladder=read("ladder", Ladder),
-            timing=read("timing", Timing),
-            where=read("where", ErrorConditions),
-            diagnosis=read("diagnosis", Diagnosis),
-            published_errors=read("published_errors", PublishedErrors),
-            pitfalls=read("pitfalls", Pitfalls),
+            quality={run: Quality.read(path) for run, path in quality.items()}, **known
         )
 
     @property
@@ -125,6 +118,20 @@ class ReportData:
         content = RunData(self, run) if run else self
         takes = kind(figure).takes
         return {name: getattr(content, name) for name in takes if hasattr(content, name)}
+
+
+def _find_results() -> dict[str, type[Result]]:
+    """Find the attributes of ReportData that are declared as one result or None."""
+    declared = {name: get_args(hint) for name, hint in get_type_hints(ReportData).items()}
+    return {
+        name: kinds[0]
+        for name, kinds in declared.items()
+        if NoneType in kinds and issubclass(kinds[0], Result)
+    }
+
+
+# The results that files of a study hold, by the name that ReportData and the workflow give them.
+STUDY_RESULTS: Mapping[str, type[Result]] = _find_results()
 
 
 @dataclass(frozen=True, eq=False)

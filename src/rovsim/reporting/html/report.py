@@ -32,8 +32,6 @@ from rovsim.results.ladder import Ladder
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import RATES
 
-# The results of a study that the report reads, as ReportData and the workflow name them.
-CONTENTS = ("comparison", "ladder", "timing", "where", "diagnosis", "published_errors", "pitfalls")
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
     (HORIZON, "velocity_rmse"),
