@@ -13,6 +13,7 @@ envelope                   the limits of a flight, and by how much paths leave t
 record                     a predicted path as the observer would see it
 expected_information       what a flight would tell beside the train runs: its utility
 search                     searches for the flight of the largest utility
+safe_flights               flights that stay safe in more scenarios, and what they tell
 adequacy                   warns where the model is too poor for a flight, or where none is found
 plan                       plans a flight: all of this in order
 instructions               a flight in words for a pilot

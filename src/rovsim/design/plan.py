@@ -9,7 +9,6 @@ from numpy import ndarray as Array
 from threadpoolctl import threadpool_limits
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Site
 from rovsim.design.adequacy import (
     explain_infeasible,
     require_information,
@@ -18,11 +17,11 @@ from rovsim.design.adequacy import (
 )
 from rovsim.design.authority import Authority
 from rovsim.design.envelope import Envelope
-from rovsim.design.expected_information import ExpectedInformation, expect_information
 from rovsim.design.from_train_runs import fit_prior
 from rovsim.design.pilot import ModelPilot
 from rovsim.design.prior_information import PriorInformation
 from rovsim.design.recording_setup import RecordingSetup, describe_setup
+from rovsim.design.safe_flights import FinalCheck, SafeFlight
 from rovsim.design.scenarios import Scenarios, draw_scenarios
 from rovsim.design.search import (
     CandidateFlight,
@@ -50,33 +49,19 @@ Stage = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """The planned flight, what it is expected to tell, and the usual manoeuvres beside it.
+    """The planned flight, and the usual manoeuvres beside it.
 
     Attributes:
-        flight: the flight of the largest utility.
-        expected: the information expected of it.
-        baselines: the usual manoeuvres by name, each with its information; None for one that leaves
-            the limits at every amplitude.
-        prior: what the train runs tell.
-        paths: states (s, k+1, 13) of the flight in s scenarios, the likeliest first.
-        step: time between two states of a path, s.
-        envelope: the limits of the flight.
-        start: where it begins (3,), m NED.
-        axes: (j,) that its inputs move, 0 to 5.
-        site: walls, and the axes of the recordings.
+        best: the flight of the largest utility.
+        baselines: the usual manoeuvres by name; None for one that leaves the limits at every
+            amplitude.
+        problem: what flights were made with and judged by.
         warnings: sentences on what speaks against the flight.
     """
 
-    flight: CandidateFlight
-    expected: ExpectedInformation
-    baselines: Mapping[str, tuple[CandidateFlight, ExpectedInformation] | None]
-    prior: PriorInformation
-    paths: Array
-    step: float
-    envelope: Envelope
-    start: Array
-    axes: Array
-    site: Site
+    best: SafeFlight
+    baselines: Mapping[str, SafeFlight | None]
+    problem: DesignProblem
     warnings: tuple[str, ...]
 
 
@@ -184,78 +169,19 @@ def _choose(
     Raises:
         BadInput: no flight stays within the limits, or the best one tells nothing.
     """
-    prior, setup = problem.prior, problem.setup
-    scenarios = _draw(prior, CHECKED, setup, random)
+    prior = problem.prior
+    scenarios = _draw(prior, CHECKED, problem.setup, random)
     some = [rival.draw(AVERAGED, random) for rival in prior.rivals]
-    best = {name: _first_safe(problem, flights, scenarios) for name, flights in baselines.items()}
-    rated = {name: (c, _average(problem, c, some)) for name, c in best.items() if c}
-    candidates = (c for some in in_parts(found) for c in problem.evaluate_numbers(some))
-    feasible = (c for c in candidates if c.expected)
-    safe = (c for c in feasible if _paths(problem, c, scenarios) is not None)
-    finalists = [(c, _average(problem, c, some)) for c in list(islice(safe, FINALISTS))]
-    rated_flights = [*finalists, *rated.values()]
-    if not rated_flights:
+    check = FinalCheck(problem, scenarios, some)
+    usual = {name: next(check.find_safe(flights), None) for name, flights in baselines.items()}
+    designed = (flight for part in in_parts(found) for flight in problem.evaluate_numbers(part))
+    finalists = [
+        *islice(check.find_safe(designed), FINALISTS),
+        *(flight for flight in usual.values() if flight),
+    ]
+    if not finalists:
         raise explain_infeasible(problem, question)
-    flight, expected = max(rated_flights, key=lambda c: c[1].utility)
-    require_information(expected, prior)
-    paths = _paths(problem, flight, scenarios)
-    assert paths is not None
-    start, envelope = problem.pilot.start, problem.envelope
-    warnings = *warn_of_misfit(prior, question), *warn_of_walls(paths, start, envelope)
-    return Plan(
-        flight,
-        expected,
-        {name: rated.get(name) for name in baselines},
-        prior,
-        paths,
-        setup.step,
-        envelope,
-        start,
-        problem.axes,
-        setup.site,
-        warnings,
-    )
-
-
-def _first_safe(
-    problem: DesignProblem, tried: Sequence[CandidateFlight], scenarios: Scenarios
-) -> CandidateFlight | None:
-    """The first flight that stays within the limits in all scenarios; None where none does."""
-    feasible = (flight for flight in tried if flight.expected)
-    return next(
-        (flight for flight in feasible if _paths(problem, flight, scenarios) is not None), None
-    )
-
-
-def _paths(problem: DesignProblem, one: CandidateFlight, scenarios: Scenarios) -> Array | None:
-    """Paths (s, k+1, 13) of a flight in all scenarios; None where one leaves the limits."""
-    start = problem.pilot.starts(np.array([one.heading]))[0]
-    paths = scenarios.predict(problem.setup.drives(one.commands), start)
-    return paths if problem.envelope.holds(paths) else None
-
-
-def _average(
-    problem: DesignProblem, one: CandidateFlight, some: Sequence[Sequence[Model]]
-) -> ExpectedInformation:
-    """The information expected of a flight: medians over `some` possible models of each rival."""
-    prior, setup = problem.prior, problem.setup
-    start, information = problem.pilot.starts(np.array([one.heading]))[0], []
-    drives = setup.drives(one.commands)
-    for models in zip(*some, strict=True):
-        undisturbed = Scenarios(
-            models,
-            np.zeros((len(models), len(setup.edges) - 1, 6)),
-            np.zeros((len(models), 3)),
-            np.zeros(len(models)),
-            setup,
-        )
-        paths = undisturbed.predict(drives, start)
-        information.append(expect_information(paths, one.commands, prior, setup, exact=True))
-    return ExpectedInformation(
-        tuple(
-            np.median([info.std_ratio[k] for info in information], axis=0) for k in range(len(some))
-        ),
-        tuple(np.median([info.std[k] for info in information], axis=0) for k in range(len(some))),
-        np.median([info.log_odds_gain for info in information], axis=0),
-        prior.likely,
-    )
+    best = max(finalists, key=lambda safe: safe.expected.utility)
+    require_information(best.expected, prior)
+    walls = warn_of_walls(best.paths, problem.pilot.start, problem.envelope)
+    return Plan(best, usual, problem, (*warn_of_misfit(prior, question), *walls))

@@ -11,7 +11,7 @@ from rovsim.design.expected_information import NEGLIGIBLE, ExpectedInformation
 from rovsim.design.instructions import instruct
 from rovsim.design.plan import Plan
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
-from rovsim.design.search import CandidateFlight
+from rovsim.design.safe_flights import SafeFlight
 from rovsim.design.settings import Question
 from rovsim.results.base import or_none
 from rovsim.results.experiment import (
@@ -34,20 +34,22 @@ def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment
         question: what was asked.
         site: whose axes the start is given in.
     """
-    start = describe_start(plan.start, plan.flight.heading, site)
+    problem, best = plan.problem, plan.best
+    start = describe_start(problem.pilot.start, best.flight.heading, site)
     return Experiment(
         seconds=question.seconds,
         model=model,
         between=question.between,
         know=question.know,
         start=start,
-        manoeuvre=plan.flight.name,
-        expects=_expect(plan.prior, plan.expected),
+        manoeuvre=best.flight.name,
+        expects=_expect(problem.prior, best.expected),
         baselines={
-            name: _compare(plan.prior, plan.expected, b) for name, b in plan.baselines.items()
+            name: _compare(problem.prior, best.expected, usual)
+            for name, usual in plan.baselines.items()
         },
-        keeps=_keep(plan, site),
-        instructions=tuple(instruct(plan.flight, plan.axes, start, question.design.limits)),
+        keeps=_keep(best.paths, site),
+        instructions=tuple(instruct(best.flight, problem.axes, start, question.design.limits)),
         warnings=plan.warnings,
     )
 
@@ -102,23 +104,24 @@ def _round(value: float) -> float:
 def _compare(
     prior: PriorInformation,
     designed: ExpectedInformation,
-    baseline: tuple[CandidateFlight, ExpectedInformation] | None,
+    usual: SafeFlight | None,
 ) -> UsualManoeuvre:
-    if baseline is None:
+    if usual is None:
         return UsualManoeuvre(amplitude=None, designed_is_better=None)
-    flight, expected = baseline
-    expectation = _expect(prior, expected)
+    expectation = _expect(prior, usual.expected)
     return UsualManoeuvre(
         odds=expectation.odds,
         std=expectation.std,
-        amplitude=flight.amplitude,
-        designed_is_better=or_none(_round(designed.utility / max(expected.utility, NEGLIGIBLE))),
+        amplitude=usual.flight.amplitude,
+        designed_is_better=or_none(
+            _round(designed.utility / max(usual.expected.utility, NEGLIGIBLE))
+        ),
     )
 
 
-def _keep(plan: Plan, site: Site) -> Keeps:
-    speed, rate, tilt = find_extremes(plan.paths)
-    tank, position = site.tank, plan.paths[:, :, :3]
+def _keep(paths: Array, site: Site) -> Keeps:
+    speed, rate, tilt = find_extremes(paths)
+    tank, position = site.tank, paths[:, :, :3]
     margin = np.minimum(position - tank[:, 0], tank[:, 1] - position)
     walled = np.isfinite(margin).any() and not np.isnan(margin).all()
     return Keeps(

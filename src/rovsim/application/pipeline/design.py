@@ -78,7 +78,7 @@ def design(
     experiment = report(flight_plan, model.name, question, site)
     warnings = warn_of_wider(model, {n: std.now for n, std in experiment.expects.std.items()})
     experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *warnings)})
-    commands = flight_plan.flight.commands
+    commands = flight_plan.best.flight.commands
     return Designed(
         experiment, format_commands(commands, log), _picture(flight_plan, commands, log)
     )
@@ -124,8 +124,8 @@ def _refuse(question: Question) -> None:
 
 def _picture(found: Plan, commands: Commands, log: CommandLog) -> PlannedFlight:
     return PlannedFlight(
-        found.paths[:, :, :3],
-        found.site.tank,
+        found.best.paths[:, :, :3],
+        found.problem.setup.site.tank,
         commands.time,
         as_logged(commands, log),
         tuple(log.names),

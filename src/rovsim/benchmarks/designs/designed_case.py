@@ -41,13 +41,15 @@ class DesignedCase:
     @cached_property
     def experiment(self) -> Experiment:
         """What `rovsim design` would write of the plan."""
-        return report(self.plan, "nominal", self.question, self.plan.site)
+        return report(self.plan, "nominal", self.question, self.plan.problem.setup.site)
 
     @cached_property
     def best_usual(self) -> CandidateFlight | None:
         """The usual manoeuvre that would tell most; None where none stays within the limits."""
         baselines = [baseline for baseline in self.plan.baselines.values() if baseline]
-        return max(baselines, key=lambda baseline: baseline[1].utility)[0] if baselines else None
+        if not baselines:
+            return None
+        return max(baselines, key=lambda baseline: baseline.expected.utility).flight
 
 
 def design_case(case: str, seeds: Range, folder: Path) -> DesignedCase:

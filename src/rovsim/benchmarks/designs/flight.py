@@ -31,7 +31,7 @@ def fly(case: DesignedCase, name: str, tried: CandidateFlight) -> Outcome:
         make_campaign(tank, campaign_folder, built_in())
     except LeftTank as error:
         return ThroughWall(left=error.found)
-    return _reached(case.plan.prior, _fit(case, campaign_folder))
+    return _reached(case.plan.problem.prior, _fit(case, campaign_folder))
 
 
 def _write_log(case: DesignedCase, tried: CandidateFlight, sent: Path) -> None:
@@ -39,7 +39,8 @@ def _write_log(case: DesignedCase, tried: CandidateFlight, sent: Path) -> None:
     log = case.data.campaign.commands
     assert log is not None
     write_text(sent, format_commands(tried.commands, log))
-    start = describe_start(case.plan.start, tried.heading, case.plan.site)
+    problem = case.plan.problem
+    start = describe_start(problem.pilot.start, tried.heading, problem.setup.site)
     case.experiment.model_copy(update={"start": start}).write(sent.with_suffix(".json"))
 
 

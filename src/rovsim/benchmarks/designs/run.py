@@ -11,7 +11,7 @@ from rovsim.results.design_benchmark import FlownCase, HiddenEffect, Outcome
 def run_case(case: str, seeds: Range, folder: Path) -> FlownCase:
     """Hide, plan, fly, fit: what was promised, and what came of it; its files go to `folder`."""
     designed = design_case(case, seeds, folder)
-    result = _describe(case, designed, fly(designed, "designed", designed.plan.flight))
+    result = _describe(case, designed, fly(designed, "designed", designed.plan.best.flight))
     if designed.best_usual is None:
         return result
     return result.model_copy(update={"usual": fly(designed, "usual", designed.best_usual)})
@@ -26,7 +26,7 @@ def _describe(case: str, designed: DesignedCase, outcome: Outcome) -> FlownCase:
         case=case,
         seconds=designed.seconds,
         cpu_seconds=designed.cpu_seconds,
-        manoeuvre=designed.plan.flight.name,
+        manoeuvre=designed.plan.best.flight.name,
         hidden=tuple(hidden),
         promised=experiment.expects,
         best_usual=best.name if best else None,
