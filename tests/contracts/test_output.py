@@ -4,7 +4,7 @@ import pytest
 
 from rovsim.apps.cli.main import main
 from rovsim.core.columns import fold
-from rovsim.core.progress import counted, heard_by, reported, staged, step
+from rovsim.core.progress import begin_stage, counted, heard_by, reported, staged, step
 
 
 @pytest.mark.parametrize("flag", ["--quiet", "-q", "output=quiet"])
@@ -49,12 +49,15 @@ def test_a_stage_goes_on_with_its_steps_and_never_back():
             stage(name)
             for _ in range(50):
                 step()
+        begin_stage("checking")  # of whatever bar there is
+    assert told[-1][0] == "diagnosing: checking"
     shares = [share for _, share in told if share is not None]
     assert shares == sorted(shares)
     assert len(shares) > 60
     assert 0.3 < max(s for what, s in told if s and what.endswith("observing") and s < 0.5) < 0.5
     assert shares[-1] < 1.0
-    step()  # nobody looks
+    begin_stage("observing")  # nobody looks
+    step()
 
 
 def test_a_diagnosis_tells_of_its_steps_and_of_every_figure(tmp_path, monkeypatch):

@@ -72,7 +72,7 @@ def test_flights_fly_side_by_side_and_are_judged_when_asked_for(monkeypatch):
     assert problem.pilot.flown == 1
 
 
-def test_a_plan_has_no_threads_for_small_matrices():
+def test_a_plan_has_no_threads_for_small_matrices(monkeypatch):
     """On a busy machine they wait for one another: half of the time was theirs."""
 
     class Seen(Exception):
@@ -81,8 +81,9 @@ def test_a_plan_has_no_threads_for_small_matrices():
     def look(stage):
         raise Seen([one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"])
 
+    monkeypatch.setattr("rovsim.design.plan.begin_stage", look)
     with pytest.raises(Seen) as found:
-        plan(None, None, None, None, None, look)
+        plan(None, None, None, None, None)
     assert set(found.value.args[0]) == {1}
 
 

@@ -99,6 +99,12 @@ def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], N
             _bar.reset(token)
 
 
+def begin_stage(name: str) -> None:
+    """Report that a stage of long work begins; does nothing outside of `staged`."""
+    if bar := _bar.get():
+        bar.begin(name)
+
+
 def step() -> None:
     """Report that one of the many steps of a stage is done; does nothing outside of `staged`."""
     if bar := _bar.get():

@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass
 from itertools import islice
-from typing import Callable, Mapping, Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 from threadpoolctl import threadpool_limits
 
 from rovsim.core.errors import BadInput
+from rovsim.core.progress import begin_stage
 from rovsim.design.adequacy import (
     explain_infeasible,
     require_information,
@@ -44,8 +45,6 @@ FINALISTS = 4  # safe flights, the best first, whose information is averaged ove
 # Share of the time that is over when a stage begins: means over the development seeds.
 STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
 
-Stage = Callable[[str], None]
-
 
 @dataclass(frozen=True, eq=False)
 class Plan:
@@ -72,9 +71,8 @@ def plan(
     question: Question,
     columns: Sequence[int] | None,
     catalogue: Catalogue,
-    stage: Stage,
 ) -> Plan:
-    """Find the flight of the largest utility.
+    """Find the flight of the largest utility; report each of the STAGES as it begins.
 
     Args:
         model: the best model so far.
@@ -82,13 +80,12 @@ def plan(
         question: what is asked, and the settings of the search.
         columns: the axes (0 to 5) of a command log per axis; None for a log of thrusters.
         catalogue: all effects.
-        stage: is told the name of each step as it begins.
 
     Raises:
         BadInput: the train runs or the vehicle allow no plan, no flight stays within the limits,
             or none tells anything about the question.
     """
-    stage("learning")
+    begin_stage("learning")
     train = prepare_train(
         runs, question.replay, catalogue, model.body.free, question.most_seconds
     ).runs
@@ -104,11 +101,11 @@ def plan(
     prior = fit_prior(model, usable.runs, question, catalogue)
     random = np.random.default_rng(question.seed)
     problem = _pose_problem(prior, setup, question, random)
-    stage("usual manoeuvres")
+    begin_stage("usual manoeuvres")
     baselines = evaluate_baselines(problem, question.seed)
-    stage("searching")
+    begin_stage("searching")
     flights = search(problem, question.design, question.seed)
-    stage("checking")
+    begin_stage("checking")
     return _choose(problem, baselines, flights, question, random)
 
 

@@ -70,10 +70,9 @@ def design(
             expected="a campaign that logs commands: they are what a flight is made of",
             remedy="Record a run with commands first, however short.",
         )
-    with staged("designing", STAGES) as stage:
-        flight_plan = plan(
-            model, data.runs, question, log.axis_numbers if log.per_axis else None, catalogue, stage
-        )
+    columns = log.axis_numbers if log.per_axis else None
+    with staged("designing", STAGES):
+        flight_plan = plan(model, data.runs, question, columns, catalogue)
     site = next(iter(data.motions.values())).site
     experiment = report(flight_plan, model.name, question, site)
     warnings = warn_of_wider(model, {n: std.now for n, std in experiment.expects.std.items()})

@@ -59,9 +59,7 @@ def design_case(case: str, seeds: Range, folder: Path) -> DesignedCase:
     make_campaign(tank, folder / "before", built_in())
     data = measure_recorded(folder / "before", settings)
     began, began_cpu = time.perf_counter(), time.process_time()
-    flight_plan = plan(
-        nominal(data.vehicle), data.runs, question, None, built_in(), lambda name: None
-    )
+    flight_plan = plan(nominal(data.vehicle), data.runs, question, None, built_in())
     seconds, cpu = time.perf_counter() - began, time.process_time() - began_cpu
     return DesignedCase(folder, tank, settings, data, question, flight_plan, seconds, cpu)
 
