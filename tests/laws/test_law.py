@@ -15,7 +15,7 @@ from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
 from rovsim.diagnosis.equations.products.targets import TARGETS
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
 from rovsim.diagnosis.equations.products.wording import write_equation
-from rovsim.dynamics.effects.law import Law
+from rovsim.dynamics.effects.law import COEFFICIENTS, Law, Product
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.simulation.batch import Batch
@@ -48,11 +48,9 @@ def law_of(terms, c=(2.0, -3.0, 0.5)):
     values = {f"linear{i}": body.linear[i] for i in range(3)}
     values |= {f"quadratic{i}": body.quadratic[i] for i in range(3)}
     values |= dict(zip(("x", "y", "z"), PLACE[:3] * SIGNS, strict=True)) | {"width": PLACE[3]}
-    for k, term in enumerate(terms, start=1):
-        values |= {f"c{k}": c[k - 1], f"size{k}": 0.7, f"on{k}": float(term.on)}
-        values |= {f"factor{k}{j}": float(f) for j, f in enumerate(term.factors, start=1)}
-    free = (*(f"c{k}" for k in range(1, len(terms) + 1)), *list_moved(terms))
-    return Term(Law(**values), free)
+    products = [Product(c[k], 0.7, term.on, term.factors) for k, term in enumerate(terms)]
+    free = (*COEFFICIENTS[: len(terms)], *list_moved(terms))
+    return Term(Law.of(products, **values), free)
 
 
 def at(state):
@@ -120,6 +118,15 @@ def test_units_make_newtons():
     assert TARGETS[10].unit_of((29,)) == "m/s"
     assert TARGETS[0].unit_of((12,)) == "N"
     assert len(VARIABLES) == len(tabulate(states(), PLACE))
+
+
+def test_a_law_lists_its_terms_and_is_made_of_them_again():
+    law = Law.of([Product(2.0, 0.7, 1, (0, 0, 1)), Product(0.0, 0.5, 11, ())], x=3.0)
+    assert law.given() | {"c2": law["c2"]} == {
+        **{"c1": 2.0, "size1": 0.7, "on1": 1.0, "factor11": 0.0, "factor12": 0.0, "factor13": 1.0},
+        **{"c2": 0.0, "size2": 0.5, "on2": 11.0, "x": 3.0},
+    }
+    np.testing.assert_array_equal(Law.of(law.terms, **law.others).values, law.values)
 
 
 def test_a_term_is_dropped_and_the_others_stay():

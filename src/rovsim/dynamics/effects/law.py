@@ -5,7 +5,9 @@ these are among the effect's parameters (`law_codes`). A test compares this kern
 file that is written for a law.
 """
 
+from dataclasses import dataclass
 from math import exp, sqrt, tanh
+from typing import Sequence
 
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.effects.law_codes import (
@@ -29,6 +31,7 @@ from rovsim.dynamics.engine.vectors import into_body
 
 TERMS, FACTORS = 3, 3
 STRIDE = 3 + FACTORS  # parameters of a term
+COEFFICIENTS = tuple(f"c{k}" for k in range(1, TERMS + 1))  # parameters that are fitted, by term
 SMOOTH = 0.02  # m/s, rad/s: width of the sign of a velocity, within its noise
 TILT = 0.05  # 3 degrees: width of the sign of the NED z axis in body axes
 STILL = 0.02  # m/s: below, a direction of motion fades
@@ -114,11 +117,34 @@ def drag_change(linear, quadratic, v, water):
     return (linear + quadratic * abs(v)) * v - (linear + quadratic * abs(w)) * w
 
 
+@dataclass(frozen=True)
+class Product:
+    """One term of a law, with its values.
+
+    Attributes:
+        coefficient: fitted; of the order of what the term makes.
+        size: fixed, by which the coefficient is multiplied.
+        on: code (`law_codes`) of what the term acts on.
+        factors: codes of its factors, up to three.
+    """
+
+    coefficient: float
+    size: float
+    on: int
+    factors: tuple[int, ...]
+
+
+def _name(k: int) -> tuple[str, ...]:
+    """Names of the parameters of term k, in their order; the fitted coefficient is the first."""
+    factors = (f"factor{k}{j}" for j in range(1, FACTORS + 1))
+    return COEFFICIENTS[k - 1], f"size{k}", f"on{k}", *factors
+
+
 def _term(k: int) -> tuple[Parameter, ...]:
     """Parameters of term k: fitted coefficient; fixed size, what it acts on, and factors."""
-    fixed = (f"size{k}", f"on{k}", *(f"factor{k}{j}" for j in range(1, FACTORS + 1)))
+    coefficient, *fixed = _name(k)
     return (
-        Parameter(f"c{k}", "1", f"c_{k}", scale=1.0),
+        Parameter(coefficient, "1", f"c_{k}", scale=1.0),
         *(
             Parameter(name, "1", name, default=float(NONE), scale=1.0, fitted=False)
             for name in fixed
@@ -145,6 +171,36 @@ class Law(Wrench):
         *(Parameter(f"linear{i}", "N s/m", "d", scale=1.0, fitted=False) for i in range(3)),
         *(Parameter(f"quadratic{i}", "N s2/m2", "d", scale=1.0, fitted=False) for i in range(3)),
     )
+
+    @staticmethod
+    def of(terms: Sequence[Product], **others: float) -> "Law":
+        """Make the law of up to three terms.
+
+        Args:
+            terms: in the order of their parameters.
+            others: values of the other parameters: place, width and drag.
+        """
+        values = dict(others)
+        for k, term in enumerate(terms, start=1):
+            numbers = (term.coefficient, term.size, float(term.on), *map(float, term.factors))
+            values |= dict(zip(_name(k), numbers, strict=False))
+        return Law(**values)
+
+    @property
+    def terms(self) -> tuple[Product, ...]:
+        """The terms, in the order of their parameters."""
+        rows = self.values[: TERMS * STRIDE].reshape(TERMS, STRIDE)
+        return tuple(
+            Product(float(c), float(size), int(on), tuple(int(f) for f in factors if f != NONE))
+            for c, size, on, *factors in rows
+            if on != NONE
+        )
+
+    @property
+    def others(self) -> dict[str, float]:
+        """Values of the other parameters that differ from their default, by name."""
+        names = [p.name for p in self.parameters[TERMS * STRIDE :]]
+        return {name: value for name, value in self.given().items() if name in names}
 
     @staticmethod
     def wrench(at, p):

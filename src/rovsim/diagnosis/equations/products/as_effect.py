@@ -6,7 +6,7 @@ equation times the RMS of the term, so that it is of the order of the force.
 """
 
 from dataclasses import dataclass, replace
-from typing import Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -15,8 +15,8 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
-from rovsim.dynamics.effects.law import FACTORS, Law
-from rovsim.dynamics.effects.law_codes import DEEP, EAST, NEAR, NONE, NORTH, SWIRL
+from rovsim.dynamics.effects.law import COEFFICIENTS, Law, Product
+from rovsim.dynamics.effects.law_codes import DEEP, EAST, NEAR, NORTH, SWIRL
 from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 
@@ -52,6 +52,12 @@ class Surroundings:
         }
 
 
+def effect_of(law: Term) -> Law:
+    """The effect that a law of products is."""
+    assert isinstance(law.effect, Law)
+    return law.effect
+
+
 def place_of(law: Term, site: Site) -> Array:
     """Place (3,) in NED and width of a law, m, as one array (4,)."""
     return np.append(
@@ -81,18 +87,13 @@ def add_term(
         term, or else at the `middle` of the columns.
     """
     without_law, law = split_law(h)
-    terms = (*known, more)
-    values = dict(law.effect.given()) if law else {}
-    k, i = len(terms), columns.terms.index(more)
+    before = effect_of(law) if law else Law()
+    terms, values = (*known, more), before.others
+    i = columns.terms.index(more)
     power = columns.gram[1 + i, 1 + i]
     coefficient = columns.gram[0, 1 + i] / power if power > 0.0 else 0.0
-    values |= {
-        f"c{k}": float(coefficient),
-        f"size{k}": float(1.0 / columns.size[i]),
-        f"on{k}": float(more.on),
-    }
-    codes = (*more.factors, *[NONE] * (FACTORS - len(more.factors)))
-    values |= {f"factor{k}{j}": float(code) for j, code in enumerate(codes, start=1)}
+    size = 1.0 / columns.size[i]
+    added = Product(float(coefficient), float(size), more.on, more.factors)
     place = columns.middle.copy()
     if more.place is not None:
         place[:2] = more.place
@@ -104,9 +105,7 @@ def add_term(
             values[n] = float(np.clip(p * sign, *bounds[n]))
     if "width" in free_places and "width" not in old:
         values["width"] = float(place[3])
-    free = (*(f"c{j}" for j in range(1, k + 1)), *free_places)
-    law_term = Term(Law(**values), free, {n: bounds[n] for n in free_places if n in bounds})
-    return replace(without_law, terms=(*without_law.terms, law_term))
+    return _with_law(without_law, Law.of((*before.terms, added), **values), free_places, bounds)
 
 
 def follow_drag(h: Hypothesis) -> Hypothesis:
@@ -124,7 +123,7 @@ def follow_drag(h: Hypothesis) -> Hypothesis:
 
 
 def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
-    """Remove a term from the law of a hypothesis, and renumber the others.
+    """Remove a term from the law of a hypothesis.
 
     Args:
         h: a hypothesis with a law.
@@ -132,19 +131,19 @@ def drop_term(h: Hypothesis, terms: Sequence[LawTerm], gone: int) -> Hypothesis:
         gone: index of the term that is removed.
     """
     without_law, law = split_law(h)[0], get_law(h)
-    remaining = [k for k in range(len(terms)) if k != gone]
-    prefixes = ("c", "size", "on")
-    values = {
-        n: v for n, v in law.effect.given().items() if not n.startswith((*prefixes, "factor"))
-    }
-    for new, old in enumerate(remaining, start=1):
-        values |= {f"{name}{new}": law.effect[f"{name}{old + 1}"] for name in prefixes}
-        for j in range(1, FACTORS + 1):
-            values[f"factor{new}{j}"] = law.effect[f"factor{old + 1}{j}"]
-    free_places = list_moved([terms[k] for k in remaining])
-    free = (*(f"c{j}" for j in range(1, len(remaining) + 1)), *free_places)
-    bounds = {n: b for n, b in law.bounds.items() if n in free_places}
-    return replace(without_law, terms=(*without_law.terms, Term(Law(**values), free, bounds)))
+    before = effect_of(law)
+    fewer = Law.of((*before.terms[:gone], *before.terms[gone + 1 :]), **before.others)
+    moved = list_moved((*terms[:gone], *terms[gone + 1 :]))
+    return _with_law(without_law, fewer, moved, law.bounds)
+
+
+def _with_law(
+    h: Hypothesis, law: Law, moved: Sequence[str], bounds: Mapping[str, Bounds]
+) -> Hypothesis:
+    """Add a law, of which all coefficients are free, and the coordinates that are `moved`."""
+    free = (*COEFFICIENTS[: len(law.terms)], *moved)
+    term = Term(law, free, {n: b for n, b in bounds.items() if n in moved})
+    return replace(h, terms=(*h.terms, term))
 
 
 def list_moved(terms: Sequence[LawTerm]) -> tuple[str, ...]:

@@ -6,7 +6,12 @@ from typing import Mapping, Sequence
 
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, stated
-from rovsim.diagnosis.equations.products.as_effect import drop_term, follow_drag, list_moved
+from rovsim.diagnosis.equations.products.as_effect import (
+    drop_term,
+    effect_of,
+    follow_drag,
+    list_moved,
+)
 from rovsim.diagnosis.equations.products.kernel_lines import write_body
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import TARGETS
@@ -17,6 +22,7 @@ from rovsim.diagnosis.equations.products.wording import (
     write_equation,
 )
 from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.law import COEFFICIENTS
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 PLACES = {  # unit, symbol and scale of a place's numbers
@@ -60,14 +66,14 @@ class Products(Form):
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """List the coefficients in the units of their terms, then the place and its width."""
         numbers = []
-        pairs = zip(name_terms(self.terms), self.terms, strict=True)
-        for k, (name, term) in enumerate(pairs, start=1):
-            size = law.effect[f"size{k}"]
-            value = law.effect[f"c{k}"] * size
+        terms = zip(name_terms(self.terms), self.terms, effect_of(law).terms, strict=True)
+        for k, (name, term, fitted) in enumerate(terms):
+            value = fitted.coefficient * fitted.size
+            value_std = std[COEFFICIENTS[k]] * fitted.size
             scale = float(f"{max(abs(value), 1e-6):.1g}")
             unit = TARGETS[term.on].unit_of(term.factors)
-            symbol = f"c_{k}" if len(self.terms) > 1 else "c"
-            numbers.append(Number(name, unit, symbol, value, std[f"c{k}"] * size, scale))
+            symbol = f"c_{k + 1}" if len(self.terms) > 1 else "c"
+            numbers.append(Number(name, unit, symbol, value, value_std, scale))
         parameters = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
             unit, symbol, scale = PLACES[name]
@@ -81,8 +87,8 @@ class Products(Form):
 
     def divide(self, law: Term) -> list[Effect]:
         """Return each term by itself: the law with the other coefficients set to zero."""
-        count = range(1, len(self.terms) + 1)
-        return [law.effect.with_values({f"c{j}": 0.0 for j in count if j != k}) for k in count]
+        names = COEFFICIENTS[: len(self.terms)]
+        return [law.effect.with_values({n: 0.0 for n in names if n != name}) for name in names]
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """Write an effect whose kernel states the law as plain arithmetic."""
