@@ -2,7 +2,7 @@
 
 import pytest
 
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 
 REPORTING = "rovsim.reporting"
 
@@ -17,5 +17,5 @@ def few(data) -> list[str]:
 def draw_few(patch: pytest.MonkeyPatch) -> None:
     """Let `compare` and `diagnose` draw one figure of each kind, in this process."""
     patch.setattr(f"{REPORTING}.report_data.ReportData.figures", property(few))
-    patch.setattr(f"{REPORTING}.html.folder.list_run_figures", lambda: [kind("velocities")])
+    patch.setattr(f"{REPORTING}.html.folder.list_run_figures", lambda: [find_figure("velocities")])
     patch.setattr("rovsim.core.second_process.usable_cores", lambda: 1)

@@ -11,8 +11,8 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.reporting.catalogue.entries import PAGE, PICTURES, entry, page
-from rovsim.reporting.catalogue.flight import fly, found, seen, settings
-from rovsim.reporting.figures.signature import signature, write
+from rovsim.reporting.catalogue.flight import find_condition, fly, seen, settings
+from rovsim.reporting.figures.signature import draw_signature, write
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
 
@@ -36,7 +36,7 @@ def conditions():
 def test_it_declares_a_signature_that_can_be_drawn(cls, conditions):
     assert cls.signature.axis in AXES
     assert cls(**cls.signature.values).given()
-    found(cls.signature.condition, conditions)
+    find_condition(cls.signature.condition, conditions)
 
 
 @EVERY
@@ -61,13 +61,13 @@ def test_the_page_does_not_depend_on_the_order_of_imports():
 
 def test_a_condition_that_does_not_exist_is_refused(conditions):
     with pytest.raises(BadInput, match="Did you mean 'surge thrust'"):
-        found("surge trust", conditions)
+        find_condition("surge trust", conditions)
 
 
 def test_a_picture_is_the_same_every_time(tmp_path):
     cls = built_in()["thruster_gain"]
     for name in ("one", "two"):
-        write(signature(seen(cls.signature, short(cls), built_in())), tmp_path / name)
+        write(draw_signature(seen(cls.signature, short(cls), built_in())), tmp_path / name)
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 

@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 
 from rovsim.core.errors import BadInput
 from rovsim.reporting.charts import chart_conditions, chart_ladder, find_varying_shares
-from rovsim.reporting.figures import SECTIONS, kind, kinds, read_kind, refuse_unknown
+from rovsim.reporting.figures import SECTIONS, find_figure, list_figures, read_kind, refuse_unknown
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
@@ -30,12 +30,12 @@ from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import Timing
 from synthetic_study import study
 
-EVERY = pytest.mark.parametrize("name", sorted(kinds()))
+EVERY = pytest.mark.parametrize("name", sorted(list_figures()))
 
 
 def drawn(name, content):
     """The figure, from the parts of a study that its `draw` asks for."""
-    wanted = kind(name)
+    wanted = find_figure(name)
     return wanted.draw(**{key: value for key, value in content.items() if key in wanted.takes})
 
 
@@ -65,7 +65,7 @@ def test_it_is_drawn_the_same_every_time_and_changes_nothing(name, tmp_path):
 
 @EVERY
 def test_it_says_where_it_belongs_and_what_it_shows(name):
-    found = kind(name)
+    found = find_figure(name)
     assert found.section in SECTIONS
     assert found.caption.endswith(".")
     assert (found in list_study_figures()) != (found in list_run_figures())
@@ -75,7 +75,7 @@ def test_it_says_where_it_belongs_and_what_it_shows(name):
 
 @EVERY
 def test_what_is_read_of_it_is_what_it_declares(name):
-    found, module = kind(name), sys.modules[kind(name).draw.__module__]
+    found, module = find_figure(name), sys.modules[find_figure(name).draw.__module__]
     assert (found.section, found.caption) == (module.SECTION, module.CAPTION)
     assert found.place == getattr(module, "PLACE", 1)
     parameters = inspect.signature(found.draw).parameters.values()
@@ -114,13 +114,12 @@ def test_a_mistake_in_a_new_one_names_its_file(change, tmp_path):
     with pytest.raises(BadInput, match=f"new.py.*{MISTAKES[change]}"):
         read_kind(path)
     with pytest.raises(BadInput, match=r"ladder.py: 'draw' asks for latter\. Expected .*ladder"):
-        refuse_unknown(replace(kind("ladder"), needs=("latter",)), ["ladder"])
+        refuse_unknown(replace(find_figure("ladder"), needs=("latter",)), ["ladder"])
 
 
 def test_a_list_of_them_takes_no_matplotlib():
-    look = (
-        "import sys, rovsim.reporting.figures as f; f.kinds(); print('matplotlib' in sys.modules)"
-    )
+    read = "import sys, rovsim.reporting.figures as f; f.list_figures()"
+    look = f"{read}; print('matplotlib' in sys.modules)"
     assert subprocess.check_output([sys.executable, "-c", look], text=True).split() == ["False"]
 
 
@@ -285,7 +284,7 @@ def test_a_model_alone_is_not_divided_by_itself():
     comparison = study()["comparison"]
     alone = comparison.model_copy(update={"models": {"nominal": comparison.models["nominal"]}})
     labels = [
-        [axes.get_ylabel() for axes in kind("error_by_axis").draw(comparison=one).axes]
+        [axes.get_ylabel() for axes in find_figure("error_by_axis").draw(comparison=one).axes]
         for one in (alone, comparison)
     ]
     assert [len(one) for one in labels] == [4, 8]
@@ -387,7 +386,7 @@ def test_the_published_figure_shows_what_is_in_every_fold_and_stands_on_effects(
 
 def test_an_unknown_figure_names_the_nearest():
     with pytest.raises(BadInput, match="Did you mean 'ladder'"):
-        kind("lader")
+        find_figure("lader")
 
 
 def test_lines_reach_from_the_lowest_to_the_highest_run():

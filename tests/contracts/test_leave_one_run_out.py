@@ -20,7 +20,7 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 from rovsim.simulation.settings import SimulationSettings
 from said import unfolded
 
@@ -75,7 +75,7 @@ def test_every_run_is_held_out_once_and_learners_have_runs_to_learn_from(folder)
         "effects+knn_6dof",
     ]
     assert found.published == folder / "published.csv"
-    assert kind("against_published") in found.figures
+    assert find_figure("against_published") in found.figures
 
 
 def test_a_run_held_out_is_not_learned_from(folder, monkeypatch):
@@ -96,7 +96,7 @@ def test_a_run_held_out_is_not_learned_from(folder, monkeypatch):
 def test_a_study_without_folds_has_none(folder):
     found = LeaveOneRunOut(Study({"campaign": str(folder)}))
     assert (found.runs, found.published, found.targets) == ([], None, [])
-    assert kind("against_published") not in found.figures
+    assert find_figure("against_published") not in found.figures
 
 
 def test_what_folds_lack_is_said(folder):

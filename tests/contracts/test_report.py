@@ -12,7 +12,7 @@ import pytest
 
 from rovsim import AXES
 from rovsim.dynamics.catalogue import built_in
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.formula import mathml
 from rovsim.reporting.html import report
@@ -46,7 +46,7 @@ def content():
 @pytest.fixture(scope="module")
 def html(content, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    save(kind("ladder").draw(ladder=content["ladder"]), folder, "ladder")
+    save(find_figure("ladder").draw(ladder=content["ladder"]), folder, "ladder")
     picture = Picture.read(folder / "ladder.png", "ladder")
     known = {k: content[k] for k in ("comparison", "ladder", "timing", "quality", "where")}
     data = ReportData(**known, diagnosis=_rude(content["diagnosis"]))

@@ -10,7 +10,7 @@ from pandas import DataFrame
 from rovsim.apps import workbench
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.pooled import pool
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
@@ -141,7 +141,7 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
         assert ERROR_MEANING in " ".join(said.split())
     assert ladder.columns[0].heading == ERROR
     assert f"the {ERROR} falls from" in told
-    assert ERROR in kind("ladder").caption
+    assert ERROR in find_figure("ladder").caption
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from numpy import ndarray as Array
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
-from rovsim.reporting.figures import FigureKind, kind, kinds, refuse_unknown
+from rovsim.reporting.figures import FigureKind, find_figure, list_figures, refuse_unknown
 from rovsim.reporting.wording import title
 from rovsim.results.bands import Bands
 from rovsim.results.base import Result
@@ -107,7 +107,7 @@ class ReportData:
         Raises:
             BadInput: there is no such figure.
         """
-        return kind(figure).draw(**self.select(figure, run))
+        return find_figure(figure).draw(**self.select(figure, run))
 
     def select(self, figure: str, run: str = "") -> dict[str, Any]:
         """Return the arguments of a figure's `draw` from the results, or from one run.
@@ -116,7 +116,7 @@ class ReportData:
             BadInput: there is no such figure.
         """
         content = RunData(self, run) if run else self
-        takes = kind(figure).takes
+        takes = find_figure(figure).takes
         return {name: getattr(content, name) for name in takes if hasattr(content, name)}
 
 
@@ -223,12 +223,12 @@ REPLAYED = {
 
 def list_study_figures() -> list[FigureKind]:
     """List the figures that are drawn once."""
-    return [figure for figure in kinds().values() if not _is_of_run(figure)]
+    return [figure for figure in list_figures().values() if not _is_of_run(figure)]
 
 
 def list_run_figures() -> list[FigureKind]:
     """List the figures that are drawn for each run."""
-    return [figure for figure in kinds().values() if _is_of_run(figure)]
+    return [figure for figure in list_figures().values() if _is_of_run(figure)]
 
 
 def _is_of_run(figure: FigureKind) -> bool:
@@ -243,7 +243,7 @@ def describe(figure: str, run: str, data: ReportData | None = None) -> str:
     """Say in a few words what a figure of one run shows; empty for a figure of all runs."""
     if not run:
         return ""
-    needs = kind(figure).needs
+    needs = find_figure(figure).needs
     words = [f"run {run}", *dict.fromkeys(REPLAYED[name] for name in needs if name in REPLAYED)]
     if "budget" in needs and data and (budget := data.budgets.get(run)):
         words.append(f"model {title(budget.model)}")

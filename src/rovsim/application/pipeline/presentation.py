@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.reporting.figures import kinds
+from rovsim.reporting.figures import list_figures
 from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.report_data import ReportData, describe
@@ -49,5 +49,5 @@ def write_report(
 
 def _read_picture(path: Path) -> Picture:
     """Read a figure's file, which is named after the figure, or `figure-run`."""
-    name, _, run = (path.stem, "", "") if path.stem in kinds() else path.stem.partition("-")
+    name, _, run = (path.stem, "", "") if path.stem in list_figures() else path.stem.partition("-")
     return Picture.read(path, name, describe(name, run), run)

@@ -15,7 +15,7 @@ from rovsim.apps.notebook import html
 from rovsim.core.horizons import HORIZON
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.report_data import ReportData, list_run_figures
 from rovsim.reporting.tables import Table, tabulate_errors, tabulate_ladder
@@ -51,7 +51,7 @@ class Figures:
         Raises:
             BadInput: there is no such figure.
         """
-        if kind(name) in list_run_figures():
+        if find_figure(name) in list_run_figures():
             run = run or next(iter(self.data.motions))
         return html.displayed(self.data.draw(name, run))
 
@@ -64,7 +64,7 @@ class Figures:
         return save(self.figure(name, run), Path(folder), f"{name}-{run}" if run else name)
 
     def _picture(self, name: str) -> str:
-        return html.picture(self.figure(name), kind(name).caption)
+        return html.picture(self.figure(name), find_figure(name).caption)
 
 
 @dataclass(frozen=True, eq=False)

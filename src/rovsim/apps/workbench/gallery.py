@@ -84,8 +84,8 @@ def _about(signature: Signature) -> str:
 
 def _draw(cls: type[Effect], path: Path, catalogue: Catalogue) -> None:
     from rovsim.reporting.catalogue.flight import seen, settings
-    from rovsim.reporting.figures.signature import signature, write
+    from rovsim.reporting.figures.signature import draw_signature, write
 
     assert cls.signature is not None
     example = seen(cls.signature, settings(cls, cls.signature), catalogue)
-    write(signature(example), path)
+    write(draw_signature(example), path)

@@ -160,10 +160,10 @@ def _take(bench: Workbench, failure: Failure) -> None:
 
 def draw_disturbance(force: Disturbance, path: Path) -> None:
     """Draw the report's figure of the disturbance into a file."""
-    from rovsim.reporting.figures import kind
+    from rovsim.reporting.figures import find_figure
     from rovsim.reporting.figures.style import save
 
-    save(kind("disturbance").draw(disturbance=force), path.parent, path.stem)
+    save(find_figure("disturbance").draw(disturbance=force), path.parent, path.stem)
 
 
 def _ranking(found: Diagnosis) -> None:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from scipy.stats import binom, binomtest
 
 from rovsim.benchmarks.blind.calibration import EXPECTED
-from rovsim.reporting.figures.legends import note, nothing
+from rovsim.reporting.figures.legends import explain_empty, note
 from rovsim.reporting.figures.style import save, sheet, styled
 from rovsim.results.blind_benchmark import BlindSummary, Calibration, Ranks
 
@@ -115,5 +115,5 @@ def draw_reliability(found: Calibration) -> Figure:
     axes.set_ylim(0.0, 1.05)
     axes.legend(loc="lower right")
     if not found.probability:
-        nothing(axes, "no name had a probability")
+        explain_empty(axes, "no name had a probability")
     return figure

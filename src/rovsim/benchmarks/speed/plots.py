@@ -4,7 +4,7 @@ from typing import Mapping, Sequence
 
 from matplotlib.figure import Figure
 
-from rovsim.reporting.figures.legends import legend, plain_log
+from rovsim.reporting.figures.legends import add_legend, set_log_scale
 from rovsim.reporting.figures.palette import (
     BLACK,
     BLUE,
@@ -51,7 +51,7 @@ def draw_sizes(bench: Bench) -> Figure:
                     label=label,
                 )
         axes.axhline(1000.0, color="#444444", linestyle="--", linewidth=0.8)
-        plain_log(axes, "xy")
+        set_log_scale(axes, "xy")
         axes.set(xlabel="points", ylabel="one prediction (µs)")
         axes.set_title(title)
         axes.legend(fontsize=6.5, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
@@ -84,10 +84,10 @@ def draw_accuracy(bench: Bench) -> Figure:
                 label=f"{name.replace('_', ' ')}{', fades' if fades else ''}",
             )
         axes.axhline(1.0, color="#444444", linewidth=0.8, linestyle=":")
-        plain_log(axes)
+        set_log_scale(axes)
         axes.set(xlabel="one prediction (µs)", title=where)
     panels[0].set_ylabel("share of the residual left")
-    legend(figure, panels[0].get_legend_handles_labels()[0])
+    add_legend(figure, panels[0].get_legend_handles_labels()[0])
     return figure
 
 

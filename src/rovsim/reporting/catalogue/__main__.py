@@ -8,7 +8,7 @@ from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.catalogue.entries import PAGE, PICTURES, page
 from rovsim.reporting.catalogue.flight import seen, settings
-from rovsim.reporting.figures.signature import signature, write
+from rovsim.reporting.figures.signature import draw_signature, write
 
 
 def main(docs: Path, names: list[str]) -> None:
@@ -19,7 +19,7 @@ def main(docs: Path, names: list[str]) -> None:
             progress(k, len(effects))
             if cls.signature:
                 look = seen(cls.signature, settings(cls, cls.signature), built_in())
-                write(signature(look), docs / PICTURES / f"{name}.png")
+                write(draw_signature(look), docs / PICTURES / f"{name}.png")
         progress(len(effects), len(effects))
     write_text(docs / PAGE, page(built_in()))
 

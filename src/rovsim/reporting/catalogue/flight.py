@@ -83,7 +83,7 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
         for model in (nominal(truth.vehicle), truth)
     )
     k = AXES.index(signature.axis)
-    condition, values = found(signature.condition, missing)
+    condition, values = find_condition(signature.condition, missing)
     error, added = missing.error[:, k], missing.error[:, k] - remaining.error[:, k]
     stretch = number_stretches(missing, error)
     cut = cut_bins(condition, values, stretch)
@@ -91,7 +91,7 @@ def seen(signature: Signature, tank: TankSettings, catalogue: Catalogue) -> Seen
     return Seen(signature, missed, effect, values, missing.time, error, added)
 
 
-def found(name: str, missing: Blocks) -> tuple[Condition, Array]:
+def find_condition(name: str, missing: Blocks) -> tuple[Condition, Array]:
     """Return the condition of this name, and its values (n,) at n blocks.
 
     Raises:

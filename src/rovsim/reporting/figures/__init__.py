@@ -58,7 +58,7 @@ class FigureKind:
 
 
 @cache
-def kinds() -> dict[str, FigureKind]:
+def list_figures() -> dict[str, FigureKind]:
     """Return every figure in this folder by name, in the order of the report.
 
     Raises:
@@ -69,13 +69,13 @@ def kinds() -> dict[str, FigureKind]:
     return {figure.name: figure for figure in figures}
 
 
-def kind(name: str) -> FigureKind:
+def find_figure(name: str) -> FigureKind:
     """Return the figure called `name`.
 
     Raises:
         BadInput: there is no such figure.
     """
-    figures = kinds()
+    figures = list_figures()
     if name not in figures:
         raise unlisted(name, figures, found=f"there is no figure '{name}'", where="figures")
     return figures[name]

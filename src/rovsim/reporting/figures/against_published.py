@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from rovsim.core.model_names import EFFECTS
 from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
-from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short, title
@@ -37,9 +37,9 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
     figure = sheet(60 + 60 * len(COUNTED))
     for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
         cells = [cell for cell in published_errors.cells if cell.metric == metric]
-        _panel(axes, cells, style)
+        _draw_panel(axes, cells, style)
         axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
-    legend(
+    add_legend(
         figure, [Line2D([], [], label=title(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
     beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.cells for n in names)
@@ -58,9 +58,9 @@ def _shown(published_errors: PublishedErrors) -> list[str]:
     return [n for n in complete if n not in stacked]
 
 
-def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]) -> None:
+def _draw_panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]) -> None:
     if not cells:
-        nothing(axes, "nothing to compare with")
+        explain_empty(axes, "nothing to compare with")
         return
     runs = list(dict.fromkeys(cell.run for cell in cells))
     places = np.array([k + runs.index(cell.run) for k, cell in enumerate(cells)])
@@ -68,7 +68,7 @@ def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]
     for k, name in enumerate(style):
         axes.plot(places, np.minimum(ratios[:, k], HIGHEST), **_look(k, style[name]))
     axes.axhline(1.0, color="#444444", linewidth=0.8)
-    _vertical(axes, float(np.nanmin(ratios, initial=LOWEST)))
+    _set_vertical(axes, float(np.nanmin(ratios, initial=LOWEST)))
     axes.set_xticks(places, [_label(cell) for cell in cells], rotation=90)
     axes.tick_params(axis="x", length=0)
     for run in runs:
@@ -84,7 +84,7 @@ def _panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, Look]
         )
 
 
-def _vertical(axes: Axes, lowest: float) -> None:
+def _set_vertical(axes: Axes, lowest: float) -> None:
     axes.set_yscale("log")
     axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
     axes.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])

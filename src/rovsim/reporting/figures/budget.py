@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim.core.axes import FORCE, FORCE_UNITS
-from rovsim.reporting.figures.legends import legend, lines, note
+from rovsim.reporting.figures.legends import add_legend, lines, note
 from rovsim.reporting.figures.palette import (
     BLACK,
     BLUE,
@@ -64,7 +64,7 @@ def draw(*, budget: ForceBudget) -> Figure:
     for axis in axes:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     omitted = [n for n in parts if n not in names]
-    legend(figure, lines(style))
+    add_legend(figure, lines(style))
     note(
         figure,
         [

@@ -11,7 +11,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.core.axes import DENSITY_UNITS, FORCE_UNITS
-from rovsim.reporting.figures.legends import note, nothing, plain_log
+from rovsim.reporting.figures.legends import explain_empty, note, set_log_scale
 from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short
@@ -37,7 +37,7 @@ def draw(*, disturbance: Disturbance | None) -> Figure:
     force = disturbance
     if force is None or not force.runs:
         figure = sheet(50)
-        nothing(figure.subplots(), "no disturbance was found")
+        explain_empty(figure.subplots(), "no disturbance was found")
         return figure
     axis = max(force.axes, key=lambda name: or_nan(force.rms[name]))
     figure, panels, below = _lay_out(force)
@@ -87,7 +87,7 @@ def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> Non
     styles = looks([f"effects-{AXES[i]}" for i in family])
     for i, look in zip(family, styles.values(), strict=True):
         axes.plot(frequency[1:], density[1:, i], label=AXES[i], **look.line())
-    plain_log(axes, "xy")
+    set_log_scale(axes, "xy")
     most = max(float(np.max(density[1:, family])), TINY)
     axes.set_ylim(DECADES * most, 3.0 * most)
     axes.legend(loc="lower left")

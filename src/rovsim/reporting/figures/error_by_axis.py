@@ -10,7 +10,7 @@ from pandas import DataFrame
 from rovsim import AXES
 from rovsim.core.axes import ACCELERATION_UNITS, VELOCITY_UNITS
 from rovsim.core.horizons import HORIZON
-from rovsim.reporting.figures.legends import legend, note, nothing, patches
+from rovsim.reporting.figures.legends import add_legend, explain_empty, note, patches
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.pooled import (
     between_runs,
@@ -51,21 +51,21 @@ def draw(*, comparison: Comparison, horizon: str = HORIZON, split: str = "test")
         errors = pool(comparison, quantity, horizon, split)
         ratios, ends = relate(errors), between_runs(comparison, quantity, horizon, split)
         for half, axes in zip(HALVES, rows[step * k], strict=True):
-            _bars(axes, errors[list(AXES[half])], style)
-            _whiskers(axes, *(end[list(AXES[half])] for end in ends))
+            _draw_bars(axes, errors[list(AXES[half])], style)
+            _draw_whiskers(axes, *(end[list(AXES[half])] for end in ends))
             axes.set_ylabel(f"{label} ({units[half][0]})")
         for half, axes in zip(HALVES, rows[step * k + 1], strict=True) if several else ():
-            _bars(axes, ratios[list(AXES[half])], style)
-            _against_nominal(axes, ratios[list(AXES[half])])
+            _draw_bars(axes, ratios[list(AXES[half])], style)
+            _compare_with_nominal(axes, ratios[list(AXES[half])])
         remarks.append(name_gaps(errors))
     figure.align_ylabels(list(rows[:, 0]))
     figure.align_ylabels(list(rows[:, 1]))
-    legend(figure, patches(style))
+    add_legend(figure, patches(style))
     note(figure, [f"Runs of the {split} split, {name_horizon(horizon)}.", *dict.fromkeys(remarks)])
     return figure
 
 
-def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
+def _draw_bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
     names = list(errors.columns)
     width = 0.8 / max(len(errors), 1)
     for k, (name, row) in enumerate(zip(errors.index, errors.to_numpy(), strict=True)):
@@ -86,11 +86,11 @@ def _bars(axes: Axes, errors: DataFrame, style: Mapping[str, Look]) -> None:
     axes.set_xlim(-0.5, len(names) - 0.5)
     axes.set_ylim(bottom=0)  # as high as the bars
     if errors.isna().all(axis=None):
-        nothing(axes, "no values")
+        explain_empty(axes, "no values")
         axes.set_ylim(0, 1)
 
 
-def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
+def _draw_whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
     """Draw lines from the lowest to the highest run over the bars."""
     width = 0.8 / max(len(low), 1)
     for k, (least, most) in enumerate(zip(low.to_numpy(), high.to_numpy(), strict=True)):
@@ -100,7 +100,7 @@ def _whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
     axes.set_ylim(0, max(axes.get_ylim()[1], ROOM * highest))
 
 
-def _against_nominal(axes: Axes, ratios: DataFrame) -> None:
+def _compare_with_nominal(axes: Axes, ratios: DataFrame) -> None:
     axes.set_ylabel("error / nominal (–)")
     axes.axhline(1.0, color="#444444", linewidth=0.8)
     top = float(np.nanmax(ratios.to_numpy(), initial=1.0))

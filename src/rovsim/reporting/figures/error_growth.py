@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from rovsim import AXES
 from rovsim.core.axes import VELOCITY_UNITS
-from rovsim.reporting.figures.legends import legend, lines, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import listed, title
@@ -36,12 +36,12 @@ def draw(*, growth: Growth) -> Figure:
         axes.set_ylim(bottom=0)
         axes.set_xlim(left=0)
         if not axes.lines:
-            nothing(axes, "no values")
+            explain_empty(axes, "no values")
         if axis in ("surge", "roll"):
             axes.set_ylabel(f"velocity RMSE ({unit})")
     for axes in panels[1]:
         axes.set_xlabel("time since start (s)")
     missing = [title(name) for name in growth.models if name not in plotted]
-    legend(figure, lines(style))
+    add_legend(figure, lines(style))
     note(figure, [f"No values: {listed(missing)}." if missing else ""])
     return figure

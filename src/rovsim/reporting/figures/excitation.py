@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rovsim import AXES
-from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import VERMILION, Style
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import short, significant
@@ -34,8 +34,8 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
         remarks.append(f"The {len(runs)} runs of {len(quality)} with most that was not seen.")
     for row, run in enumerate(runs):
         y = len(runs) - 1 - row
-        _excitation(cells, y, quality[run].excitation)
-        _seen(timeline, y, quality[run])
+        _draw_excitation(cells, y, quality[run].excitation)
+        _draw_seen(timeline, y, quality[run])
         if quality[run].unusable:
             remarks.append(f"{short(run)} is not used: {quality[run].unusable}.")
     for axes in (cells, timeline):
@@ -51,10 +51,10 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
     timeline.set_xlabel("time (s)")
     timeline.set_title("seen by the motion capture")
     if not runs:
-        nothing(cells, "no runs")
+        explain_empty(cells, "no runs")
     labels = ((EXCITED, "excited"), (STILL, "not excited"), (SEEN, "seen"), (GAP, "gap"))
     edge: Style = {"edgecolor": "#888888", "linewidth": 0.5}
-    legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
+    add_legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
     note(figure, remarks)
     return figure
 
@@ -66,7 +66,7 @@ def _choose(quality: Mapping[str, Quality]) -> list[str]:
     return [runs[k] for k in sorted(np.argsort(lacking, kind="stable")[:MOST].tolist())]
 
 
-def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
+def _draw_excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:
     """Draw a cell for each axis of a run, with a dash where nothing was measured."""
     for k, axis in enumerate(AXES):
         entry = excitation.get(axis)
@@ -76,7 +76,7 @@ def _excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> N
         axes.text(k, y, text, ha="center", va="center", fontsize=8)
 
 
-def _seen(axes: Axes, y: float, report: Quality) -> None:
+def _draw_seen(axes: Axes, y: float, report: Quality) -> None:
     whole = ((0.0, report.duration_s),)
     used = [(begin, end - begin) for begin, end in report.used or whole]
     axes.barh(y, report.duration_s, 0.5, facecolor=STILL, edgecolor=SEEN, linewidth=0.5)

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rovsim.reporting.figures.legends import legend, nothing, plain_log
+from rovsim.reporting.figures.legends import add_legend, explain_empty, set_log_scale
 from rovsim.reporting.figures.palette import BLUE, VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
@@ -27,29 +27,29 @@ def draw(*, timing: Timing) -> Figure:
     names = list(timing.inference)
     figure = sheet(34 + 11 * max(len(names), 2))
     axes = figure.subplots()
-    plain_log(axes)
+    set_log_scale(axes)
     for row, timings in enumerate(timing.inference.values()):
         for way, (color, shift) in WAYS.items():
-            _line(axes, len(names) - 1 - row + shift, getattr(timings, way), color)
+            _draw_line(axes, len(names) - 1 - row + shift, getattr(timings, way), color)
     axes.set_yticks(range(len(names)), [title(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
     axes.set_xlabel("time of one prediction (µs)")
     axes.grid(False, axis="y")
-    _deadlines(axes, timing.inference)
+    _draw_deadlines(axes, timing.inference)
     if not names:
-        nothing(axes, "no predictor was timed")
-    legend(figure, _entries())
+        explain_empty(axes, "no predictor was timed")
+    add_legend(figure, _entries())
     return figure
 
 
-def _line(axes: Axes, y: float, stats: Latency, color: str) -> None:
+def _draw_line(axes: Axes, y: float, stats: Latency, color: str) -> None:
     values = {key: getattr(stats, key) for key in MARKERS}
     axes.plot(list(values.values()), [y] * 3, color=color, linewidth=1.2)
     for key, (marker, _) in MARKERS.items():
         axes.plot(values[key], y, marker, color=color, markersize=5 if marker != "|" else 8)
 
 
-def _deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
+def _draw_deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     times = [
         getattr(stats, key)
         for timings in inference.values()

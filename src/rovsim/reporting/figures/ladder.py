@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
-from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import ERROR, LADDER, STEP, significant
@@ -32,7 +32,7 @@ def draw(*, ladder: Ladder) -> Figure:
     for row, bar in enumerate(bars):
         y = len(bars) - 1 - row
         axes.barh(y, np.nan_to_num(bar.value), 0.66, **bar.look.bar())
-        _value(axes, y, bar.value, chart.end)
+        _write_value(axes, y, bar.value, chart.end)
     axes.set_yticks(range(len(bars)), [bar.label for bar in reversed(bars)])
     axes.set_ylim(-0.6, max(len(bars), 1) - 0.4)
     axes.set_xlim(0, chart.end)
@@ -40,17 +40,17 @@ def draw(*, ladder: Ladder) -> Figure:
     axes.grid(False, axis="y")
     axes.set_xlabel(f"{ERROR} (velocity RMSE / standard deviation)")
     if not bars:
-        nothing(axes, "no steps")
+        explain_empty(axes, "no steps")
     if np.isfinite(floor):
         look = FAMILIES[NOISE_FLOOR]
         axes.axvline(floor, **look.line())
         label = f"noise floor, {significant(floor)}"
-        legend(figure, [Line2D([], [], label=label, **look.line())])
+        add_legend(figure, [Line2D([], [], label=label, **look.line())])
     note(figure, _remarks(ladder, chart.beyond))
     return figure
 
 
-def _value(axes: Axes, y: int, value: float, top: float) -> None:
+def _write_value(axes: Axes, y: int, value: float, top: float) -> None:
     """Write the number of one step behind its bar, or on a bar that is cut."""
     beyond = value > top
     text = significant(value) if np.isfinite(value) else "no value"

@@ -34,7 +34,7 @@ def areas(looks: dict[str, Look]) -> list[Artist]:
     return [Patch(label=name, **look.area()) for name, look in looks.items()]
 
 
-def legend(figure: Figure, handles: Sequence[Any]) -> None:
+def add_legend(figure: Figure, handles: Sequence[Any]) -> None:
     """Put a legend above all axes, in as few rows as fit the page."""
     if not handles:
         return
@@ -73,12 +73,12 @@ def note(figure: Figure, remarks: Iterable[str]) -> None:
         figure.supxlabel(wrapped, fontsize=FONT_SIZE - 1, color="#444444")
 
 
-def nothing(axes: Axes, text: str) -> None:
+def explain_empty(axes: Axes, text: str) -> None:
     """Say in an empty panel why it is empty."""
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color="#666666")
 
 
-def plain_log(axes: Axes, names: str = "x") -> None:
+def set_log_scale(axes: Axes, names: str = "x") -> None:
     """Make axes (x, y or xy) logarithmic and label them with plain numbers: 0.1, 1, 10."""
     axes.set(**{f"{name}scale": "log" for name in names})
     for name in names:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.reporting.figures.legends import nothing
+from rovsim.reporting.figures.legends import explain_empty
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.series import broken, limits
 from rovsim.reporting.figures.style import sheet
@@ -105,5 +105,5 @@ def shade(axes: list[Axes], time: Array, band: Array, look: Look) -> None:
 def _scale(axis: Axes, curves: Sequence[Array]) -> None:
     first, *others = curves
     if not any(np.isfinite(values).any() for values in curves):
-        nothing(axis, "no values")
+        explain_empty(axis, "no values")
     axis.set_ylim(*limits(first, others))

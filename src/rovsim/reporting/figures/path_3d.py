@@ -9,7 +9,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.reporting.figures.legends import legend, lines, note
+from rovsim.reporting.figures.legends import add_legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.series import broken, masked
 from rovsim.reporting.figures.style import sheet, styled
@@ -64,11 +64,11 @@ def draw(
         paths[name] = visible
         axes.plot(*broken(time, visible)[1].T, label=title(name), **style[name].line())
     for name in reversed(paths):  # the measured ends lie on top
-        _ends(axes, paths[name], style[name].color)
+        _draw_ends(axes, paths[name], style[name].color)
     if tank is not None and np.isfinite(tank).all():
-        _box(axes, low, high)
-    _frame(axes, low, high)
-    legend(figure, [*lines(style), *_end_entries()])
+        _draw_box(axes, low, high)
+    _set_frame(axes, low, high)
+    add_legend(figure, [*lines(style), *_end_entries()])
     note(figure, [f"Partly beyond the view: {listed(map(title, leaving))}." if leaving else ""])
     return figure
 
@@ -88,7 +88,7 @@ def _inside(path: Array, low: Array, high: Array) -> Array:
     return np.where(outside, np.nan, path)
 
 
-def _ends(axes: Axes3D, path: Array, color: str) -> None:
+def _draw_ends(axes: Axes3D, path: Array, color: str) -> None:
     points = path[np.isfinite(path).all(axis=1)]
     for point, marker in ((points[:1], "o"), (points[-1:], "s")):
         axes.plot(
@@ -101,7 +101,7 @@ def _ends(axes: Axes3D, path: Array, color: str) -> None:
         )
 
 
-def _box(axes: Axes3D, low: Array, high: Array) -> None:
+def _draw_box(axes: Axes3D, low: Array, high: Array) -> None:
     corners = low + CORNERS * (high - low)
     for a in range(8):
         for b in range(a + 1, 8):
@@ -109,7 +109,7 @@ def _box(axes: Axes3D, low: Array, high: Array) -> None:
                 axes.plot(*corners[[a, b]].T, color="#999999", linewidth=0.6)
 
 
-def _frame(axes: Any, low: Array, high: Array) -> None:
+def _set_frame(axes: Any, low: Array, high: Array) -> None:
     long = (high - low) / (high - low).max()
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import HALF_TURN_X
-from rovsim.reporting.figures.legends import legend
+from rovsim.reporting.figures.legends import add_legend
 from rovsim.reporting.figures.palette import (
     BLACK,
     BLUE,
@@ -61,8 +61,8 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     figure = sheet(120)
     grid: Any = figure.add_gridspec(2, 2, height_ratios=(1.0, 1.1))
     paths, tank = planned_flight.paths * HALF_TURN_X, planned_flight.tank * HALF_TURN_X[:, None]
-    _view(figure.add_subplot(grid[0, 0]), paths, tank, (0, 1), ("north (m)", "west (m)"))
-    _view(figure.add_subplot(grid[0, 1]), paths, tank, (0, 2), ("north (m)", "up (m)"))
+    _draw_view(figure.add_subplot(grid[0, 0]), paths, tank, (0, 1), ("north (m)", "west (m)"))
+    _draw_view(figure.add_subplot(grid[0, 1]), paths, tank, (0, 2), ("north (m)", "up (m)"))
     axes = figure.add_subplot(grid[1, :])
     steps = max(1, len(planned_flight.time) // 2000)  # more points than the paper shows
     looks = list(product(DASHES, COLORS))
@@ -82,7 +82,7 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     axes.set_ylabel(f"command ({planned_flight.unit})")
     axes.margins(x=0.0)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), handlelength=2.0)
-    legend(
+    add_legend(
         figure,
         [
             Line2D([], [], color=PATH, label="likeliest path"),
@@ -93,7 +93,7 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     return figure
 
 
-def _view(
+def _draw_view(
     axes: Axes, paths: Array, tank: Array, seen: tuple[int, int], labels: tuple[str, str]
 ) -> None:
     a, b = seen

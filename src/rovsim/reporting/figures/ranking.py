@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from rovsim.core.signs import minus
-from rovsim.reporting.figures.legends import legend, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import LEAST, short
@@ -43,7 +43,7 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
     axes = figure.subplots()
     for y, name in enumerate(names):
         color = FAMILIES["effects"].color if name in selected else OTHER
-        _row(axes, y, alone.get(name, np.nan), selected.get(name, np.nan), color)
+        _draw_row(axes, y, alone.get(name, np.nan), selected.get(name, np.nan), color)
     axes.set_yticks(range(len(names)), [short(name, 28) for name in names])
     for label in axes.get_yticklabels():
         label.set_fontweight("bold" if label.get_text() in selected else "normal")
@@ -57,8 +57,8 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
     axes.set_xlabel("share of the error removed (%)")
     if not names:
         axes.set_xticks([])
-        nothing(axes, "no effect removes 1 % by itself" if alone else "no effect was judged")
-    legend(figure, _handles(bool(selected)) if names else [])
+        explain_empty(axes, "no effect removes 1 % by itself" if alone else "no effect was judged")
+    add_legend(figure, _handles(bool(selected)) if names else [])
     note(figure, _remarks(diagnosis))
     return figure
 
@@ -71,7 +71,7 @@ def _scale(axes: Axes, shares: Sequence[float], harm: bool) -> None:
     axes.set_xticks([mark for mark in marks if 100 * LOWEST <= mark <= most])
 
 
-def _row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
+def _draw_row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
     axes.barh(y, 100 * np.nan_to_num(alone), 0.66, color=color, linewidth=0)
     clipped = float(np.clip(together, LOWEST, HIGHEST))
     if np.isfinite(together):

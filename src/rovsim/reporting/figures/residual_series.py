@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim.core.axes import ACCELERATION_UNITS
-from rovsim.reporting.figures.legends import legend, lines, note
+from rovsim.reporting.figures.legends import add_legend, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, six_panels
 from rovsim.reporting.figures.series import averaged, excerpt, masked
@@ -55,6 +55,6 @@ def draw(
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     if part.stop - part.start < len(time):
         remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
-    legend(figure, lines(style))
+    add_legend(figure, lines(style))
     note(figure, remarks)
     return figure

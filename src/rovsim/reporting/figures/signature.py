@@ -55,12 +55,12 @@ class Seen:
 
 
 @styled()
-def signature(seen: Seen) -> Figure:
+def draw_signature(seen: Seen) -> Figure:
     """Draw the error over the condition on the left, over time on the right."""
     figure = Figure(figsize=(WIDTH * MM, HEIGHT * MM), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(0.85, 1.0), sharey=not seen.signature.size)
-    _bins(left, seen)
-    _trace(right, seen)
+    _draw_bins(left, seen)
+    _draw_trace(right, seen)
     figure.legend(
         handles=[
             Line2D([], [], color=BLACK, marker="o", markersize=4, label=MISSED),
@@ -84,7 +84,7 @@ def write(figure: Figure, path: Path) -> None:
     write_bytes(path, compressed.getvalue())
 
 
-def _bins(axes: Axes, seen: Seen) -> None:
+def _draw_bins(axes: Axes, seen: Seen) -> None:
     """Draw the means (or RMS) of bins, with those of the effect; dots are single blocks."""
     size, binning = seen.signature.size, seen.missed.binning
     convert = np.degrees if binning.condition.unit == "rad" else np.asarray
@@ -107,7 +107,7 @@ def _height(table: BinnedErrors, size: bool) -> Array:
     return table.rms if size else table.mean
 
 
-def _trace(axes: Axes, seen: Seen) -> None:
+def _draw_trace(axes: Axes, seen: Seen) -> None:
     """Draw error and effect over time: an excerpt with most motion, or the whole run.
 
     The whole run is drawn where time itself is the condition.

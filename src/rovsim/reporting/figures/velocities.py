@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
 from rovsim.core.axes import VELOCITY, VELOCITY_UNITS
-from rovsim.reporting.figures.legends import areas, legend, lines, note
+from rovsim.reporting.figures.legends import add_legend, areas, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, shade, six_panels
 from rovsim.reporting.figures.series import excerpt, masked
@@ -57,6 +57,6 @@ def draw(
     if part.stop - part.start < len(time):
         remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
     shades = {f"{LEVEL:.0%} band of {title(name)}": style[name] for name in bands}
-    legend(figure, [*lines(style), *areas(shades)])
+    add_legend(figure, [*lines(style), *areas(shades)])
     note(figure, remarks)
     return figure

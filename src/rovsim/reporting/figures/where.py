@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from rovsim import AXES
 from rovsim.core.axes import ACCELERATION_UNITS
 from rovsim.reporting.charts import BinCurve, chart_bins, find_varying_shares
-from rovsim.reporting.figures.legends import legend, lines, note, nothing
+from rovsim.reporting.figures.legends import add_legend, explain_empty, lines, note
 from rovsim.reporting.figures.palette import Look, looks
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
@@ -38,7 +38,7 @@ def draw(*, where: ErrorConditions) -> Figure:
         names = strongest(list(tables.values()))
         significant = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
         for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
-            _panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
+            _draw_panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             panel.set_title(
                 _title(name, list(tables.values())),
                 fontsize=7.5,
@@ -47,7 +47,7 @@ def draw(*, where: ErrorConditions) -> Figure:
         panels[0].set_ylabel(f"{axis}\n({ACCELERATION_UNITS[AXES.index(axis)]})")
         panels[0].locator_params(axis="y", nbins=4)
     figure.align_ylabels(list(rows[:, 0]))
-    legend(figure, lines(style))
+    add_legend(figure, lines(style))
     note(figure, _remarks(models))
     return figure
 
@@ -72,23 +72,25 @@ def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:
     return f"{label} ({chart_bins(matching[0][name]).unit})\n{shares} %"
 
 
-def _panel(axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]) -> None:
+def _draw_panel(
+    axes: Axes, tables: Mapping[str, ConditionTable], style: Mapping[str, Look]
+) -> None:
     axes.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     if not tables:
-        nothing(axes, "no values")
+        explain_empty(axes, "no values")
         axes.set_xticks([])
         return
-    _counts(axes, list(tables.values())[-1])
+    _draw_counts(axes, list(tables.values())[-1])
     curves = {name: chart_bins(table) for name, table in tables.items()}
     for order, (name, curve) in enumerate(curves.items()):
-        _curve(axes, curve, style[name], 2 + order)
+        _draw_curve(axes, curve, style[name], 2 + order)
     axes.locator_params(axis="x", nbins=5)
     centers = np.concatenate([curve.center[curve.seen] for curve in curves.values()])
     room = 0.08 * max(float(np.ptp(centers)), 1e-9)
     axes.set_xlim(float(centers.min()) - room, float(centers.max()) + room)
 
 
-def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
+def _draw_curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
     x, mean, judged = curve.center, curve.mean, curve.judged
     axes.plot(x[judged], mean[judged], zorder=order, **look.line())
     for part, face in ((judged, look.color), (curve.seen & ~judged, "white")):
@@ -105,7 +107,7 @@ def _curve(axes: Axes, curve: BinCurve, look: Look, order: int) -> None:
         )
 
 
-def _counts(axes: Axes, table: ConditionTable) -> None:
+def _draw_counts(axes: Axes, table: ConditionTable) -> None:
     """Draw the number of blocks in each bin as grey bars along the lower edge."""
     count, edges = np.array(table.blocks, float), chart_bins(table).edges
     share = 0.25 * count / max(count.max(), 1.0)

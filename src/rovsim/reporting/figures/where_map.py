@@ -4,7 +4,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from rovsim.reporting.charts import chart_conditions
-from rovsim.reporting.figures.legends import note, nothing
+from rovsim.reporting.figures.legends import explain_empty, note
 from rovsim.reporting.figures.palette import VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
@@ -30,12 +30,12 @@ def draw(*, where: ErrorConditions) -> Figure:
     axes = figure.subplots()
     axes.grid(False)
     if model is None or chart is None or not rows:
-        nothing(axes, "nothing was searched")
+        explain_empty(axes, "nothing was searched")
         return figure
     axes.imshow(chart.share, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
     for y, row in enumerate(rows):
         for x, axis in enumerate(chart.axes):
-            _cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.found)
+            _draw_cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.found)
     axes.set_xticks(range(len(chart.axes)), chart.axes)
     axes.xaxis.tick_top()
     axes.set_yticks(range(len(rows)), rows)
@@ -45,7 +45,7 @@ def draw(*, where: ErrorConditions) -> Figure:
     return figure
 
 
-def _cell(axes, x: int, y: int, share: float, found: bool) -> None:
+def _draw_cell(axes, x: int, y: int, share: float, found: bool) -> None:
     text = f"{100 * share:.0f}" if round(100 * share) >= 1 else "·"
     color = "white" if share > 0.6 else "#222222"
     axes.text(x, y, text, ha="center", va="center", fontsize=7.5, color=color)

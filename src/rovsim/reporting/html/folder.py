@@ -6,7 +6,7 @@ from typing import Any, Iterable, Mapping
 
 from rovsim.core.progress import counted
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Drawn, Picture, Wanted
@@ -87,7 +87,7 @@ def draw_selected(
         about: what it shows, see `Picture`.
         content: arguments of its `draw`, as `ReportData.select` returns them.
     """
-    plot = kind(figure).draw(**content)
+    plot = find_figure(figure).draw(**content)
     paths = save(plot, out / "figures", f"{figure}-{run}" if run else figure)
     png = next(path for path in paths if path.suffix == ".png")
     return Drawn((figure, run), Picture.read(png, figure, about, run), paths)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.reporting.figures import kind
+from rovsim.reporting.figures import find_figure
 
 Wanted = tuple[str, str]  # figure and run; no run for a figure that is drawn once
 
@@ -57,7 +57,7 @@ class Picture:
     @property
     def caption(self) -> str:
         """The caption of the figure, with the run that it shows."""
-        text = kind(self.name).caption
+        text = find_figure(self.name).caption
         return f"{self.about[0].upper()}{self.about[1:]}. {text}" if self.about else text
 
 

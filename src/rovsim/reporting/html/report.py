@@ -12,7 +12,7 @@ from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.making import tell_making
 from rovsim.dynamics.effects.base import Effect
-from rovsim.reporting.figures import SECTIONS, kind
+from rovsim.reporting.figures import SECTIONS, find_figure
 from rovsim.reporting.formula import mathml
 from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.report_data import ReportData
@@ -79,10 +79,10 @@ def render(report: Report) -> str:
             doubts=doubt_sentences(data.quality),
             summary=summarize(data),
             where=data.where.models if data.where else {},
-            errors=_errors(data.comparison) if data.comparison else [],
+            errors=_tabulate_errors(data.comparison) if data.comparison else [],
             ladder=tabulate_ladder(data.ladder) if data.ladder else None,
             step_by_step=report.data.ladder is not None,
-            published=_published(data.published_errors) if data.published_errors else None,
+            published=_tabulate_published(data.published_errors) if data.published_errors else None,
             pitfalls=tell_pitfalls(data.pitfalls) if data.pitfalls else [],
             models=_explained(data),
             timing=data.timing.inference if data.timing else {},
@@ -155,7 +155,7 @@ def _text(value: object) -> str:
     return "none" if value is None or value == {} else str(value)
 
 
-def _errors(comparison: Comparison) -> list[Table]:
+def _tabulate_errors(comparison: Comparison) -> list[Table]:
     return [tabulate_errors(comparison, h, "test", quantity) for h, quantity in COMPARED]
 
 
@@ -167,7 +167,7 @@ def _explained(data: ReportData) -> dict[str, str]:
     return {name: text for name, text in meanings.items() if text}
 
 
-def _published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
+def _tabulate_published(published_errors: PublishedErrors) -> tuple[Table, list[str]]:
     return tabulate_published_errors(published_errors), tell_standings(published_errors)
 
 
@@ -186,5 +186,5 @@ def _by_section(pictures: Sequence[Picture]) -> dict[str, dict[str, list[Picture
     """Sort pictures by section and run; those of all runs (run "") come first."""
     sections: dict[str, dict[str, list[Picture]]] = {section: {"": []} for section in SECTIONS}
     for picture in pictures:
-        sections[kind(picture.name).section].setdefault(picture.run, []).append(picture)
+        sections[find_figure(picture.name).section].setdefault(picture.run, []).append(picture)
     return sections

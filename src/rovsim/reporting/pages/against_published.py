@@ -13,13 +13,13 @@ SIMULATOR = f"{PUBLISHED}zero_shot"  # the authors' simulator without a residual
 def write_markdown(published_errors: PublishedErrors) -> list[str]:
     """Return the paragraphs of Markdown on `published_errors.json`."""
     lacking = published_errors.without_published
-    parts = [*tell_standings(published_errors), _standings(published_errors)]
+    parts = [*tell_standings(published_errors), _tabulate_standings(published_errors)]
     parts += _on_one_baseline(published_errors)
     parts += [part for metric in METRICS for part in _cells(published_errors, metric)]
     return parts + ([f"Nothing is published for {', '.join(lacking)}."] if lacking else [])
 
 
-def _standings(published_errors: PublishedErrors) -> str:
+def _tabulate_standings(published_errors: PublishedErrors) -> str:
     head = [
         "model",
         "below the mark",

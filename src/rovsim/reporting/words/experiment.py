@@ -20,9 +20,9 @@ def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
         thrusters: names of the thrusters in the vehicle file.
     """
     lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
-    lines += [_odds(name, item) for name, item in found.expects.odds.items()]
+    lines += [_tell_odds(name, item) for name, item in found.expects.odds.items()]
     names = with_thruster_names(list(found.expects.std), thrusters)
-    lines += map(_std, names, found.expects.std.values())
+    lines += map(_tell_std, names, found.expects.std.values())
     if found.expects.std:
         lines += ["", "± is the 95 % interval."]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
@@ -38,7 +38,7 @@ def tell_share(usual: UsualManoeuvre) -> str:
     return f"tells {significant(1.0 / usual.designed_is_better)} of it"
 
 
-def _odds(name: str, one: RivalOdds) -> str:
+def _tell_odds(name: str, one: RivalOdds) -> str:
     return f"  {name}, if true: odds {size_of_odds(one.now)} now, {size_of_odds(one.then)} then"
 
 
@@ -49,7 +49,7 @@ def size_of_odds(odds: float) -> str:
     return significant(odds) if odds > 1.0 / SURE else "under one in a million"
 
 
-def _std(name: str, one: Surer) -> str:
+def _tell_std(name: str, one: Surer) -> str:
     """Say how sure a parameter is now and after the flight: ± is its 95 % interval."""
     now, then = (
         f"± {significant(Z_95 * or_nan(x), 2)} {unit(one.unit)}".strip()

@@ -31,11 +31,11 @@ def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
     return [
         f"{name[0].upper()}{name[1:]}: {mistake}. {measure[0].upper()}{measure[1:]}: {costs}."
         for name, (mistake, measure) in PITFALLS.items()
-        if (costs := _costs(pitfalls.runs, name))
+        if (costs := _tell_costs(pitfalls.runs, name))
     ]
 
 
-def _costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
+def _tell_costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
     return ", ".join(
         f"{known(costs[name].right)} becomes {known(costs[name].wrong)} ({run})"
         for run, costs in runs.items()

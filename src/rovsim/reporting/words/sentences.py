@@ -154,7 +154,7 @@ def residual_sentences(errors: DataFrame, steps: Mapping[str, float]) -> list[st
         _best_sentence(title(best), learned[best], len(learned), measure),
         *_effects_alone(ratios, learned[best]),
         *_per_axis(relate(errors).reindex([best]).loc[best]),
-        *_others(learned, best),
+        *_tell_others(learned, best),
         *_without_value([title(name) for name in residuals if name not in learned]),
     ]
 
@@ -232,7 +232,7 @@ def _per_axis(row: Series) -> list[str]:
     return [f"Axis by axis its velocity RMSE is {'; '.join(parts)}."]
 
 
-def _others(learned: Mapping[str, float], best: str) -> list[str]:
+def _tell_others(learned: Mapping[str, float], best: str) -> list[str]:
     failing = [
         f"{title(name)} (+{_percent(r - 1)})" if r > 1 + EQUAL else f"{title(name)} (no change)"
         for name, r in learned.items()

@@ -11,10 +11,10 @@ def timing_sentences(timing: Timing) -> list[str]:
     exported = {name: times.exported for name, times in timing.inference.items()}
     library = {name: times.library for name, times in timing.inference.items()}
     return [
-        *_range("exported predictors", exported),
-        *_deadlines("exported predictors", exported),
+        *_tell_range("exported predictors", exported),
+        *_tell_deadlines("exported predictors", exported),
         *_against(exported, library),
-        *_deadlines("library calls", library),
+        *_tell_deadlines("library calls", library),
     ]
 
 
@@ -23,7 +23,7 @@ def fastest_loop(stats: Latency) -> int:
     return max((rate for rate in RATES if stats.misses[str(rate)] == 0), default=0)
 
 
-def _range(what: str, entries: Mapping[str, Latency]) -> list[str]:
+def _tell_range(what: str, entries: Mapping[str, Latency]) -> list[str]:
     medians = [stats.median_us for stats in entries.values()]
     if not medians:
         return []
@@ -32,7 +32,7 @@ def _range(what: str, entries: Mapping[str, Latency]) -> list[str]:
     return [f"One prediction by the {what} takes {span} (median)."]
 
 
-def _deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
+def _tell_deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
     loops = {name: fastest_loop(stats) for name, stats in entries.items()}
     if not loops:
         return []

@@ -50,12 +50,12 @@ def tell_comparison(
         coverage: how much of the test runs lies inside the bands; None if unknown.
         away: models that diverge on the test runs.
     """
-    table = _errors(errors) if tested else ["", *fold(NO_TEST)]
+    table = _tell_errors(errors) if tested else ["", *fold(NO_TEST)]
     if tested and away:
         table += ["", *fold(NO_ERROR.format(listed([title(name) for name in away])))]
     sentences = band_sentences(coverage) if coverage else []
     bands = [line for sentence in sentences for line in ("", *fold(sentence))]
-    return "\n".join([*table, *bands, *_findings(where)])
+    return "\n".join([*table, *bands, *_tell_findings(where)])
 
 
 def tell_residual(without: float | None, corrected: float | None) -> str:
@@ -74,7 +74,7 @@ def tell_residual(without: float | None, corrected: float | None) -> str:
     return "\n".join(["", "", *fold(text)])
 
 
-def _errors(errors: Mapping[str, float | None]) -> list[str]:
+def _tell_errors(errors: Mapping[str, float | None]) -> list[str]:
     lines = ["", *fold(MEANING), ""]
     width = max((len(title(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
@@ -100,7 +100,7 @@ def tell_doubts(quality: Mapping[str, Quality]) -> str:
     return "\n".join([*lines, f"  … and {hidden} more in the report"] if hidden > 0 else lines)
 
 
-def _findings(where: ErrorConditions) -> list[str]:
+def _tell_findings(where: ErrorConditions) -> list[str]:
     if not where.models:
         return []
     name, model = list(where.models.items())[-1]
@@ -118,9 +118,9 @@ def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> s
     lines = ["", *fold(f"{verdict.sentence} (verdict: {verdict.name})")]
     lines += [""] if verdict.missing else []
     for fitted, words in zip(found.selected, verdict.missing, strict=True):
-        lines += _effect(fitted.error_reduction or 0.0, words)
+        lines += _tell_effect(fitted.error_reduction or 0.0, words)
     lines += ["", *fold(verdict.key)] if verdict.key else []
-    lines += _ranking(found.ranking)
+    lines += _tell_ranking(found.ranking)
     steps = [f"Next: {verdict.next}"] if verdict.next else []
     for remark in (*verdict.sentences, *steps):
         lines += ["", *fold(remark)]
@@ -136,13 +136,13 @@ def tell_roles(quality: Mapping[str, Quality]) -> str:
     return "\n".join(["", "", *lines])
 
 
-def _effect(share: float, words: Missing) -> list[str]:
+def _tell_effect(share: float, words: Missing) -> list[str]:
     reduction, _, sureness = words.worth.partition(", ")
     values = [f"      {value}" for value in words.parameters]
     return [f"  {words.effect:<22}{_bar(share)} {reduction}", f"      {sureness}", *values]
 
 
-def _ranking(ranking: Sequence[FittedEffect]) -> list[str]:
+def _tell_ranking(ranking: Sequence[FittedEffect]) -> list[str]:
     helping = [(r.error_reduction or 0.0, r.effect) for r in ranking]
     top = sorted((pair for pair in helping if pair[0] >= LEAST), reverse=True)[:RANKED]
     if not top:
