@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Collection, Container, NamedTuple, Sequence
 
 from rovsim.core.errors import BadInput, unlisted
-from rovsim.core.schema import checked
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import EffectEntry, build_effects
 from rovsim.dynamics.effects.base import Effect
@@ -64,7 +63,7 @@ def add_effects(
     _check_names(names, by_name, source)
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
-    entries = list_entries([by_name[name] for name in names], source)
+    entries = [EffectEntry.of(by_name[name], source) for name in names]
     on_vehicle = catalogue.on(vehicle)
     new_effects = build_effects(entries, on_vehicle)
     _refuse_again(new_effects, base, to)
@@ -131,20 +130,7 @@ def add_uncertainty(
     posterior, diagnosed = diagnosis.posterior, sorted(item.effect for item in diagnosis.selected)
     if posterior is None or sorted(names) != diagnosed or not was_diagnosed(base, diagnosis):
         return model
-    alternatives = [
-        {
-            "probability": item.probability,
-            "effects": [entry.plain() for entry in list_entries(item.effects, source)],
-            "correlation": item.correlation,
-        }
-        for item in posterior.instead
-    ]
-    content = {
-        "noise": diagnosis.noise,
-        "correlation": posterior.correlation,
-        "instead": alternatives,
-    }
-    entry = checked(UncertaintyEntry, content, source)
+    entry = UncertaintyEntry.of(posterior, diagnosis.noise, source)
     return with_uncertainty(model, entry, catalogue, source)
 
 
@@ -154,21 +140,6 @@ def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedE
     if law is None or law.effect not in known:
         return diagnosis.selected
     return *law.beside, FittedEffect(effect=law.effect, parameters=law.parameters)
-
-
-def list_entries(fitted: Sequence[FittedEffect], source: Path) -> list[EffectEntry]:
-    """Convert fitted effects of a diagnosis into entries of a model file."""
-    return [
-        checked(
-            EffectEntry,
-            {
-                "effect": e.effect,
-                "parameters": {k: v.model_dump() for k, v in e.parameters.items()},
-            },
-            source,
-        )
-        for e in fitted
-    ]
 
 
 def extend(base: Model, effects: Sequence[Effect]) -> Model:

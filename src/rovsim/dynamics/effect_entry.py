@@ -1,14 +1,16 @@
 """An effect as it stands in files: its id, and parameters with standard deviations and units."""
 
 from math import inf
+from pathlib import Path
 from typing import Annotated, Any, Iterable
 
 from pydantic import BeforeValidator, Field
 
 from rovsim.core.errors import BadInput
-from rovsim.core.schema import Number, Section
+from rovsim.core.schema import Number, Section, checked
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
+from rovsim.results.fitted import FittedEffect
 
 # Larger than anything that was ever fitted: a replay with values drawn from it would diverge.
 VAGUEST = 1e12  # a standard deviation
@@ -34,6 +36,19 @@ class EffectEntry(Section):
     parameters: dict[str, Annotated[Value, BeforeValidator(_with_key)]] = Field(
         default_factory=dict
     )
+
+    @staticmethod
+    def of(fitted: FittedEffect, source: Path) -> "EffectEntry":
+        """The entry of an effect as it was fitted.
+
+        Args:
+            fitted: the effect.
+            source: the file that it is from, for messages.
+
+        Raises:
+            BadInput: a parameter has no value, or a number that no model file may hold.
+        """
+        return checked(EffectEntry, fitted.model_dump(include={"effect", "parameters"}), source)
 
     @property
     def values(self) -> dict[str, float]:

@@ -18,7 +18,7 @@ from rovsim.dynamics.learned.residual import StoredResidual, read_residual
 from rovsim.dynamics.model import Model, built_in_model
 from rovsim.dynamics.uncertainty import Draws, Uncertainty
 from rovsim.dynamics.vehicle import Vehicle, build_vehicle, known_vehicle, load_vehicle
-from rovsim.results.fitted import Correlation, FittedNoise, Probability
+from rovsim.results.fitted import Correlation, FittedNoise, Possibility, Posterior, Probability
 
 SCHEMA = "rovsim.model/1"
 # m/s2, rad/s2, m, rad: noise larger than was ever fitted; a replay with draws of it would diverge.
@@ -32,6 +32,19 @@ class PossibilityEntry(Section):
     effects: tuple[EffectEntry, ...]
     correlation: Correlation = Correlation()
 
+    @staticmethod
+    def of(fitted: Possibility, source: Path) -> "PossibilityEntry":
+        """The entry of a possibility of a diagnosis, whose file is `source`.
+
+        Raises:
+            BadInput: a value is missing, or no model file may hold it.
+        """
+        return PossibilityEntry(
+            probability=fitted.probability,
+            effects=tuple(EffectEntry.of(effect, source) for effect in fitted.effects),
+            correlation=fitted.correlation,
+        )
+
 
 class UncertaintyEntry(Section):
     """Uncertainty of the effects of a model file: see `rovsim.dynamics.uncertainty`."""
@@ -39,6 +52,25 @@ class UncertaintyEntry(Section):
     noise: FittedNoise
     correlation: Correlation = Correlation()
     instead: tuple[PossibilityEntry, ...] = ()
+
+    @staticmethod
+    def of(posterior: Posterior, noise: FittedNoise, source: Path) -> "UncertaintyEntry":
+        """The entry of what a diagnosis knows of its values.
+
+        Args:
+            posterior: how the values hang together, and what may act instead.
+            noise: that was fitted with them.
+            source: the file of the diagnosis, for messages.
+
+        Raises:
+            BadInput: a value or the noise is not what a model file may hold.
+        """
+        entry = {
+            "noise": noise,
+            "correlation": posterior.correlation,
+            "instead": [PossibilityEntry.of(item, source) for item in posterior.instead],
+        }
+        return checked(UncertaintyEntry, entry, source)
 
     @model_validator(mode="after")
     def _leaves_something(self) -> Self:

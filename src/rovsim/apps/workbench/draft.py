@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rovsim.diagnosis.apply import add_uncertainty, choose_effects, extend, list_entries
+from rovsim.diagnosis.apply import add_uncertainty, choose_effects, extend
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import EffectEntry, Value, build_effects
 from rovsim.dynamics.effects.parameters import Parameter
@@ -16,6 +16,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 
 MOVING = 1.0  # s between two values of one hand that goes on moving
+SOURCE = Path("diagnosis.json")  # where fitted effects are from, for messages
 SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
 
 
@@ -106,7 +107,7 @@ class Draft:
         start.
         """
         if effect in self.fitted:
-            (entry,) = list_entries([self.fitted[effect]], Path("diagnosis.json"))
+            entry = EffectEntry.of(self.fitted[effect], SOURCE)
         else:
             cls = self.catalogue[effect]
             defaults = {
@@ -129,15 +130,14 @@ class Draft:
         if self.diagnosis is None or any(self.values.values()):
             return model
         return add_uncertainty(
-            model, self.ticked, self.base, self.diagnosis, Path("diagnosis.json"), self.catalogue
+            model, self.ticked, self.base, self.diagnosis, SOURCE, self.catalogue
         )
 
     def found(self, but: str = "") -> Model:
         """Return the base with the chosen effects as they were fitted, without the effect `but`."""
         if but not in self._found:
-            entries = list_entries(
-                [fitted for fitted in self.chosen if fitted.effect != but], Path("diagnosis.json")
-            )
+            kept = [fitted for fitted in self.chosen if fitted.effect != but]
+            entries = [EffectEntry.of(fitted, SOURCE) for fitted in kept]
             effects = build_effects(entries, self.catalogue)
             self._found[but] = extend(self.base, effects)
         return self._found[but]
