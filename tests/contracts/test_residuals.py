@@ -86,18 +86,18 @@ def pairs(settings, n=200, seed=0):
 def trained(request):
     settings = settings_of(*request.param)
     X, Y = pairs(settings)
-    return train(X, Y, settings, seed=3)
+    return train(X, Y, settings, seed=3, control="6dof")
 
 
 @pytest.fixture(scope="module")
 def queries(trained):
-    seen, _ = pairs(trained.settings)
-    new, _ = pairs(trained.settings, n=100, seed=1)
+    seen, _ = pairs(stored_settings(trained))
+    new, _ = pairs(stored_settings(trained), n=100, seed=1)
     return np.concatenate([seen, new, 5.0 * new])
 
 
 def test_the_exported_prediction_is_the_library_s(trained, queries):
-    expected = learner(trained.kind).library_from(trained.arrays, trained.settings)(queries)
+    expected = learner(trained.kind).library_from(trained.arrays, stored_settings(trained))(queries)
     process = is_process(learner(trained.kind))
     found = trained.posterior(queries)[0] if process else trained.predict(queries)
     assert np.abs(found - expected).max() < 1e-9
@@ -107,14 +107,12 @@ def test_the_exported_prediction_is_the_library_s(trained, queries):
 def test_without_a_variance_none_is_given(trained, queries):
     with pytest.raises(BadInput, match="no variance"):
         trained.posterior(queries)
-    with pytest.raises(BadInput, match="no variance"):
-        trained.residual("6dof").posterior(queries)
 
 
 @variants(is_process)
 def test_the_exported_variance_is_the_library_s(trained, queries):
-    theirs = learner(trained.kind).posterior_from(trained.arrays, trained.settings)
-    X, Y = pairs(trained.settings)
+    theirs = learner(trained.kind).posterior_from(trained.arrays, stored_settings(trained))
+    X, Y = pairs(stored_settings(trained))
     prior = trained.posterior(far_from(X))[1].max(axis=0)
     # GPyTorch adds it to what svgp predicts
     jitter = 1e-6 * Y.var(axis=0) if trained.kind == "svgp" else 0.0
@@ -130,7 +128,7 @@ def far_from(X):
 @variants(fades)
 def test_a_process_fades_where_it_has_seen_nothing(trained):
     """Full at almost all training rows, exactly nothing far away, never more than the mean."""
-    X, _ = pairs(trained.settings)
+    X, _ = pairs(stored_settings(trained))
     far = far_from(X)
     assert (trained.predict(far) == 0.0).all()
     mean, faded = trained.posterior(X)[0], trained.predict(X)
@@ -138,9 +136,9 @@ def test_a_process_fades_where_it_has_seen_nothing(trained):
     assert (whole | (np.abs(faded) < np.abs(mean))).all()
     assert whole.mean() > 0.95
     plain = settings_of(
-        trained.kind, trained.settings.model_dump() | {"extrapolation_quantile": None}
+        trained.kind, stored_settings(trained).model_dump() | {"extrapolation_quantile": None}
     )
-    never = train(*pairs(plain), plain, seed=3)
+    never = train(*pairs(plain), plain, seed=3, control="6dof")
     assert never.predict(far) == pytest.approx(never.posterior(far)[0], rel=1e-12)
 
 
@@ -155,14 +153,14 @@ def test_one_sample_and_many_give_the_same_bits(trained, queries):
 
 def test_saved_and_read_it_predicts_the_same_bits(trained, queries, tmp_path):
     description = yaml.safe_load(
-        yaml.safe_dump(write_residual(tmp_path, trained.residual("6dof")).model_dump(mode="json"))
+        yaml.safe_dump(write_residual(tmp_path, trained).model_dump(mode="json"))
     )
     read = read_residual(description, tmp_path)
     assert read.predict(queries).tobytes() == trained.predict(queries).tobytes()
-    expected = learner(trained.kind).library_from(trained.arrays, trained.settings)(queries)
+    expected = learner(trained.kind).library_from(trained.arrays, stored_settings(trained))(queries)
     assert np.abs(library_of(read)(queries) - expected).max() < 1e-9
     assert (stored_settings(read), read.control, read.kind) == (
-        trained.settings,
+        stored_settings(trained),
         "6dof",
         trained.kind,
     )
@@ -170,8 +168,8 @@ def test_saved_and_read_it_predicts_the_same_bits(trained, queries, tmp_path):
 
 
 def test_same_seed_same_numbers(trained):
-    X, Y = pairs(trained.settings)
-    again = train(X, Y, trained.settings, seed=3)
+    X, Y = pairs(stored_settings(trained))
+    again = train(X, Y, stored_settings(trained), seed=3, control="6dof")
     assert again.data.tobytes() == trained.data.tobytes()
     assert again.info == trained.info
 
@@ -179,12 +177,12 @@ def test_same_seed_same_numbers(trained):
 def test_training_leaves_the_global_random_numbers_alone(trained):
     import torch
 
-    X, Y = pairs(trained.settings, n=80)
+    X, Y = pairs(stored_settings(trained), n=80)
     torch.manual_seed(1)
     np.random.seed(1)  # noqa: NPY002
     before = torch.random.get_rng_state(), np.random.get_state()[1].tobytes()  # noqa: NPY002
     threads = torch.get_num_threads()
-    train(X, Y, trained.settings, seed=3)
+    train(X, Y, stored_settings(trained), seed=3, control="6dof")
     assert torch.equal(torch.random.get_rng_state(), before[0])
     assert np.random.get_state()[1].tobytes() == before[1]  # noqa: NPY002
     assert (torch.get_num_threads(), torch.get_default_dtype()) == (threads, torch.float32)
@@ -199,9 +197,13 @@ def test_no_number_comes_of_not_a_number(trained, queries):
 
 
 def test_progress_ends_at_the_end(trained):
-    X, Y = pairs(trained.settings, n=80)
+    X, Y = pairs(stored_settings(trained), n=80)
     seen = []
-    train(X, Y, trained.settings, 0, lambda done, total: seen.append((done, total)))
+
+    def note(done, total):
+        seen.append((done, total))
+
+    train(X, Y, stored_settings(trained), 0, note, control="6dof")
     assert [done for done, _ in seen] == list(range(1, seen[-1][1] + 1))
 
 
@@ -225,7 +227,7 @@ def test_unusable_pairs_are_refused(kind, spoil):
     else:
         X, Y = X[:0], Y[:0]
     with pytest.raises(BadInput):
-        train(X, Y, settings, seed=0)
+        train(X, Y, settings, seed=0, control="6dof")
 
 
 @pytest.mark.parametrize("kind", learners())
@@ -233,14 +235,14 @@ def test_identical_rows_are_learnt(kind):
     settings = settings_of(kind)
     X, Y = np.ones((6, 12)), np.ones((6, 6))
     near = learner(kind).shrinkage + 1e-6
-    assert train(X, Y, settings, seed=0).predict(X) == pytest.approx(Y, rel=near)
+    assert train(X, Y, settings, seed=0, control="6dof").predict(X) == pytest.approx(Y, rel=near)
 
 
 def test_fewer_rows_than_neighbours_are_refused():
     settings = settings_of("knn", {"k": 5})
     X, Y = pairs(settings, n=4)
     with pytest.raises(BadInput, match="4 training rows"):
-        train(X, Y, settings, seed=0)
+        train(X, Y, settings, seed=0, control="6dof")
 
 
 @pytest.mark.parametrize("kind", learners())
@@ -271,8 +273,8 @@ def test_unusable_settings_are_refused(content, message):
 def saved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("saved")
     settings = settings_of("knn")
-    trained = train(*pairs(settings), settings, 0)
-    return write_residual(folder, trained.residual("3dof")).model_dump(mode="json"), folder
+    trained = train(*pairs(settings), settings, 0, control="6dof")
+    return write_residual(folder, trained).model_dump(mode="json"), folder
 
 
 @pytest.mark.parametrize(
@@ -465,11 +467,12 @@ def ridge(tmp_path, monkeypatch):
 
 def test_a_learner_is_one_file(ridge, tmp_path):
     assert set(learners()) == {"gp", "knn", "svgp", "ridge"}
-    trained = train(*pairs(ridge), ridge, seed=0)
+    trained = train(*pairs(ridge), ridge, seed=0, control="6dof")
+    assert stored_settings(trained) == ridge
     new, _ = pairs(ridge, n=50, seed=1)
-    theirs = library_of(trained.residual("6dof"))(new)
+    theirs = library_of(trained)(new)
     assert trained.predict(new) == pytest.approx(theirs, abs=1e-9)
-    description = write_residual(tmp_path, trained.residual("6dof")).model_dump(mode="json")
+    description = write_residual(tmp_path, trained).model_dump(mode="json")
     test_without_a_variance_none_is_given(trained, new)
     with pytest.raises(BadInput, match="no variance"):
         read_residual(description, tmp_path).posterior(new)

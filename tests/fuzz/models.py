@@ -84,7 +84,7 @@ class Neighbours(Entry):
         random = np.random.default_rng(0)
         settings = learner_settings(self.settings)
         X = random.normal(size=(200, len(feature_names(settings.features))))
-        residual = train(X, X[:, :6], settings, seed=0).residual("all")
+        residual = train(X, X[:, :6], settings, seed=0, control="all")
         self.model, self.file = self.folder / "model.yaml", self.folder / "residual.npz"
         self.stored = write_residual(self.folder, residual).model_dump(mode="json")
         self.arrays = read_arrays(self.file)

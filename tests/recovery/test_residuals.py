@@ -43,7 +43,8 @@ def test_a_hidden_residual_is_learnt(kind):
     settings = learner_settings({"kind": kind} | quick.get(kind, {}))
     seen, a_res = run(1, 4000)
     noise = 0.2 * a_res.std(0) * np.random.default_rng(2).normal(size=a_res.shape)
-    learnt = train(assemble(settings.features, *seen), a_res + noise, settings, seed=0)
+    X = assemble(settings.features, *seen)
+    learnt = train(X, a_res + noise, settings, seed=0, control="all")
     new, truth = run(3, 1000)
     left = learnt.predict(assemble(settings.features, *new)) - truth
     remains = np.sqrt((left**2).mean(0) / (truth**2).mean(0))
@@ -55,7 +56,7 @@ def test_the_exact_process_is_the_textbook_one():
     settings = learner_settings({"kind": "gp", "max_points": 80, "iterations": 10})
     parts, a_res = run(1, 80)
     X = assemble(settings.features, *parts)
-    trained = train(X, a_res, settings, seed=0)
+    trained = train(X, a_res, settings, seed=0, control="all")
     a = trained.arrays
     Z, T = a["points"], a["targets"]
     Q = (X[::7] + 0.1 - a["shift"]) / a["scale"]

@@ -14,10 +14,9 @@ from rovsim import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
 from rovsim.core.schema import checked
-from rovsim.dynamics.learned.checks import checked_rows, posterior
-from rovsim.dynamics.learned.predictor import evaluate_many
+from rovsim.dynamics.learned.checks import checked_rows
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.dynamics.learned.settings import Control, FeatureSettings
+from rovsim.dynamics.learned.settings import Control
 from rovsim.learning.settings import LearnerSettings
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
@@ -27,10 +26,10 @@ Progress = Callable[[int, int], None]  # rounds done, rounds in all
 
 @dataclass(frozen=True, eq=False)
 class Trained:
-    """What a training returns.
+    """What the `fit` of a learner returns; `train` makes a `Residual` of it.
 
     Attributes:
-        settings: of the learner.
+        settings: of the learner, with what the training chose.
         data: the exported residual that kernels evaluate.
         arrays: from which the model of the library that trained it is rebuilt.
         info: numbers to report (points, hyperparameters, final loss), but no times, so that equal
@@ -41,31 +40,6 @@ class Trained:
     data: Array
     arrays: dict[str, Array]
     info: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def kind(self) -> str:
-        """Name of the learner."""
-        return self.settings.kind
-
-    @property
-    def features(self) -> FeatureSettings:
-        """Features it was trained on."""
-        return self.settings.features
-
-    def residual(self, control: Control) -> Residual:
-        """Convert to the residual that a model holds; `control` says what runs it learned from."""
-        settings = self.settings.model_dump(mode="json", exclude={"kind", "features"})
-        return Residual(
-            control, self.kind, self.features, settings, self.data, self.arrays, self.info
-        )
-
-    def predict(self, X: Array) -> Array:
-        """Evaluate the body acceleration (n, 6), m/s2 and rad/s2, at unscaled features X (n, d)."""
-        return evaluate_many(self.data, checked_rows(X, self.features))
-
-    def posterior(self, X: Array) -> tuple[Array, Array]:
-        """Evaluate mean and variance of a Gaussian process; see `checks.posterior`."""
-        return posterior(self.data, X, self.features)
 
 
 @dataclass(frozen=True)
@@ -79,7 +53,7 @@ class Learner:
         fit: `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual
             accelerations Y (n, 6).
         library_from: `library_from(arrays, settings)` rebuilds the prediction of the library
-            itself from `Trained.arrays`, without pickle.
+            itself from the stored arrays, without pickle.
         posterior_from: `posterior_from(arrays, settings, fast)` rebuilds mean and variance of the
             library itself; None for learners without a variance.
         shrinkage: largest share of a target by which a prediction may fall short of it where all
@@ -128,7 +102,7 @@ def learner_settings(content: Any, where: Any = "residual") -> LearnerSettings:
 
 
 def settings_of(residual: Residual) -> LearnerSettings:
-    """The settings that a stored residual was trained with.
+    """The settings that a residual was trained with.
 
     Raises:
         BadInput: no known learner has these settings.
@@ -153,7 +127,9 @@ def train(
     settings: LearnerSettings,
     seed: int,
     progress: Progress = lambda done, total: None,
-) -> Trained:
+    *,
+    control: Control,
+) -> Residual:
     """Train the residual that `settings` describe.
 
     Args:
@@ -162,6 +138,7 @@ def train(
         settings: a learner's settings.
         seed: same seed, same numbers.
         progress: called with rounds done and rounds in all.
+        control: of the runs that the rows are from.
 
     Raises:
         BadInput: rows that are not finite, do not fit together or are too few; or the learner's
@@ -176,7 +153,17 @@ def train(
             expected=f"finite numbers of shape {(len(X), len(AXES))}",
             remedy="Train on usable samples only.",
         )
-    return learner(settings.kind).fit(X, Y, settings, seed, progress)
+    trained = learner(settings.kind).fit(X, Y, settings, seed, progress)
+    chosen = trained.settings.model_dump(mode="json", exclude={"kind", "features"})
+    return Residual(
+        control,
+        settings.kind,
+        settings.features,
+        chosen,
+        trained.data,
+        trained.arrays,
+        trained.info,
+    )
 
 
 def spread_rows(rows: int, most: int | None, seed: int) -> Array:

@@ -53,13 +53,13 @@ def train(
             settings,
             settings.seed,
         )
-        trained = fit(*examples.pairs, learner, settings.seed, progress)
+        residual = fit(*examples.pairs, learner, settings.seed, progress, control=settings.control)
     facts = {"base": base.name, "train_runs": examples.runs, "train_rows": examples.rows}
     facts |= {"seed": settings.seed}
     # both files appear together: a model never refers to the arrays of another training
     with appearing_together(out.parent, last=out.name) as folder:
-        residual = write_residual(folder, trained.residual(settings.control))
-        write_model(base, folder / out.name, residual, {**facts, **story})
+        stored = write_residual(folder, residual)
+        write_model(base, folder / out.name, stored, {**facts, **story})
     return read_model(out, catalogue)
 
 

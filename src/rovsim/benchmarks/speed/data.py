@@ -74,8 +74,8 @@ class Pairs:
 def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """Train a residual of a kind, with these settings of its learner."""
     settings = {"k": NEIGHBOURS, **more} if kind == "knn" else more
-    trained = train(pairs.X, pairs.Y, learner_settings({"kind": kind, **settings}), seed=0)
-    return trained.residual("6dof")
+    learner = learner_settings({"kind": kind, **settings})
+    return train(pairs.X, pairs.Y, learner, seed=0, control="6dof")
 
 
 def unfading(residual: Residual) -> Residual:

@@ -7,9 +7,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.horizons import OPEN_LOOP
+from rovsim.dynamics.learned.residual import Residual
+from rovsim.dynamics.learned.settings import Control
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
-from rovsim.learning.learner import Trained, train
+from rovsim.learning.learner import train
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.binned import backward_difference
 from rovsim.measurement.signals.motion import Motion
@@ -90,11 +92,11 @@ def measure_pitfalls(
     samples = {m.run.id: sample_run(model, m, how) for m in runs}
     test_samples = sample_run(model, test, how)
 
-    def taught(kind: str, names: Sequence[str]) -> tuple[Trained, Array]:
-        training = [samples[name] for name in names]
-        return _trained(training, learners[kind]), test_samples.features(learners[kind].features)
+    def taught(kind: str, names: Sequence[str], control: Control) -> tuple[Residual, Array]:
+        residual = _trained([samples[name] for name in names], learners[kind], control)
+        return residual, test_samples.features(residual.features)
 
-    gp, X = taught("gp", list(samples))
+    gp, X = taught("gp", list(samples), "all")
     scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in samples.values()]), axis=0), 1e-9)
     planar = [m.run.id for m in runs if m.run.control == "3dof"]
     full = [m.run.id for m in runs if m.run.control == "6dof"]
@@ -111,7 +113,10 @@ def measure_pitfalls(
     costs["lost data"] = Cost(right=right, wrong=far)
     costs["scaled twice"] = Cost(right=right, wrong=twice)
     if planar and full:
-        (knn, K), (copy, _) = taught("knn", full), taught("knn", planar * len(full))
+        (knn, K), (copy, _) = (
+            taught("knn", full, "6dof"),
+            taught("knn", planar * len(full), "3dof"),
+        )
         score_of_copies = explained(copy.predict, K, test_samples.a_res)
         costs["copied runs"] = Cost(
             right=explained(knn.predict, K, test_samples.a_res), wrong=score_of_copies
@@ -119,12 +124,12 @@ def measure_pitfalls(
     return costs
 
 
-def _X(one: Samples, residual: Trained) -> Array:
+def _X(one: Samples, residual: Residual) -> Array:
     """Features (n, d) of the samples of a run, as a residual takes them."""
     return one.features(residual.features)
 
 
-def _trained(runs: Sequence[Samples], learner: LearnerSettings) -> Trained:
-    """Train a residual on the samples of some runs."""
+def _trained(runs: Sequence[Samples], learner: LearnerSettings, control: Control) -> Residual:
+    """Train a residual on the samples of some runs of a control."""
     X = np.concatenate([s.features(learner.features) for s in runs])
-    return train(X, np.concatenate([s.a_res for s in runs]), learner, seed=0)
+    return train(X, np.concatenate([s.a_res for s in runs]), learner, seed=0, control=control)
