@@ -8,9 +8,11 @@ import pytest
 from chromium import DESK, FLAGS, LOG, PHONE, PICTURES, Tab, installed, started
 from rovsim.application.configuration import compose
 from rovsim.application.pipeline.design import Designed, write_flight
+from rovsim.application.settings import select
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.design.settings import Question
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures.planned_flight import PlannedFlight
 from rovsim.results.experiment import Experiment, Keeps, RivalOdds, Start, Surer, UsualManoeuvre
@@ -73,7 +75,8 @@ def planned(workbench, campaign):
     """
     settings = compose([f"campaign='{campaign}'", "seconds=20"])
     bench = Workbench.opened(settings, built_in())
-    question = Question.of(settings, "the test", between=RIVALS, seconds=20.0)
+    chosen = select(settings, DiagnosisSettings)
+    question = Question.of(chosen, settings.design, "the test", between=RIVALS, seconds=20.0)
     folder = workbench[1] / bench.flight_folder("nominal", question)
     write_flight(folder, flight())
     one, other = RIVALS

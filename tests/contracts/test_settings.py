@@ -10,6 +10,7 @@ from rovsim.application.settings import CampaignSettings, Settings, select
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import Section, checked
 from rovsim.design.settings import Question
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
@@ -65,7 +66,9 @@ def test_the_page_names_every_key_of_the_tank():
 
 def test_of_the_search_a_question_takes_what_a_design_looks_at_alone():
     def asked(*overrides):
-        return Question.of(compose(overrides), "here", seconds=20.0)
+        settings = compose(overrides)
+        chosen = select(settings, DiagnosisSettings)
+        return Question.of(chosen, settings.design, "here", seconds=20.0)
 
     some = asked("search.most_seconds=120")
     assert (some.most_seconds, some.seconds) == (120.0, 20.0)

@@ -1,11 +1,11 @@
 """What a design may be asked, and limits that a flight keeps to."""
 
-from typing import Annotated, Any
+from typing import Annotated, Sequence
 
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from rovsim.core.schema import Section, checked
-from rovsim.diagnosis.settings import MostSeconds
+from rovsim.diagnosis.settings import DiagnosisSettings, MostSeconds
 from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.simulation.settings import SimulationSettings
 
@@ -61,12 +61,36 @@ class Question(SimulationSettings):
     seed: int = Field(0, ge=0)
 
     @staticmethod
-    def of(settings: Section, where: str, **asked: Any) -> "Question":
-        """What is asked, the rest as the settings of a command have it.
+    def of(
+        settings: DiagnosisSettings,
+        design: DesignSettings,
+        where: str,
+        *,
+        seconds: float,
+        between: Sequence[str] = (),
+        know: Sequence[str] = (),
+    ) -> "Question":
+        """What is asked of a campaign that is cleaned, and looked at, as a diagnosis would.
+
+        Args:
+            settings: of that diagnosis.
+            design: how the flight is looked for.
+            where: who asks, for messages.
+            seconds: that the flight lasts.
+            between: two effects, by their ids.
+            know: parameters, as `effect.parameter`.
 
         Raises:
-            BadInput: it is no question; `where` says whose.
+            BadInput: it is no question.
         """
-        fields = dict.fromkeys(("design", "signals", "replay", "seed"), True)
-        values = settings.model_dump(include={**fields, "search": {"most_seconds"}})
-        return checked(Question, values.pop("search") | values | asked, where)
+        content = {
+            "signals": settings.signals,
+            "replay": settings.replay,
+            "between": between,
+            "know": know,
+            "seconds": seconds,
+            "design": design,
+            "most_seconds": settings.search.most_seconds,
+            "seed": settings.seed,
+        }
+        return checked(Question, content, where)

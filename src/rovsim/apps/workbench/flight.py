@@ -7,6 +7,7 @@ from typing import Any, Mapping, Sequence
 
 from nicegui import ui
 
+from rovsim.application.settings import select
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
@@ -25,6 +26,7 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.design.settings import LONGEST, SHORTEST, Question
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import with_thruster_names
 from rovsim.reporting.units import unit
@@ -109,11 +111,15 @@ class Flight:
     @property
     def question(self) -> Question:
         """The question that is chosen."""
-        choices = self.chosen
-        names = {"between": (choices["one"], choices["other"])}
-        keywords = names if choices["asked"] == "between" else {"know": choices["know"]}
+        choices, settings = self.chosen, self.bench.settings
+        tells_apart = choices["asked"] == "between"
         return Question.of(
-            self.bench.settings, "the question", **keywords, seconds=choices["seconds"]
+            select(settings, DiagnosisSettings),
+            settings.design,
+            "the question",
+            seconds=choices["seconds"],
+            between=(choices["one"], choices["other"]) if tells_apart else (),
+            know=() if tells_apart else choices["know"],
         )
 
     async def _draw(self) -> None:

@@ -13,11 +13,11 @@ from pydantic import Field
 
 from rovsim.application.pipeline.design import design, write_flight
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.settings import CampaignSettings
+from rovsim.application.settings import CampaignSettings, select
 from rovsim.apps.cli.opening import measure_campaign
 from rovsim.apps.cli.output import say
 from rovsim.design.settings import DesignSettings, Question
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.words.experiment import tell_experiment
 
@@ -46,7 +46,11 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
 def _ask(settings: Settings) -> Question:
     """What is asked, checked."""
-    between, know = settings.between or [], settings.know or []
     return Question.of(
-        settings, "command line", between=between, know=know, seconds=settings.seconds
+        select(settings, DiagnosisSettings),
+        settings.design,
+        "command line",
+        seconds=settings.seconds,
+        between=settings.between or (),
+        know=settings.know or (),
     )
