@@ -3,7 +3,7 @@
 import pytest
 
 from rovsim.application.configuration import compose
-from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.benchmarks.blind.flight import fly
 from rovsim.benchmarks.blind.suites import hiding
 from rovsim.dynamics.catalogue import built_in

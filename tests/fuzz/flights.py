@@ -11,7 +11,7 @@ from fuzz.entry import Entry
 from fuzz.hostile import changed
 from rovsim.application.configuration import compose
 from rovsim.application.pipeline.design import design
-from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.core.progress import heard_by
 from rovsim.core.schema import checked
 from rovsim.design.settings import Question

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import yaml
 
+from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.application.pipeline.reading import load_campaign_vehicle
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal

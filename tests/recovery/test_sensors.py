@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rovsim.application.configuration import compose
+from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.application.pipeline.models import load_one_model
-from rovsim.application.pipeline.recordings import measure, open_campaign
 from rovsim.application.settings import select
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, log, multiply

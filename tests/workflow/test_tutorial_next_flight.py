@@ -10,7 +10,7 @@ import pytest
 from pages import fenced
 from rovsim.application.configuration import compose
 from rovsim.application.pipeline.design import design
-from rovsim.application.pipeline.recordings import measure, open_campaign
+from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
 from rovsim.core.files import read_json

@@ -1,21 +1,21 @@
 """The way of the data, one step a file: commands, workbench and workflow call the same functions.
 
-reading           raw exports -> recordings, with doubts about them
-recordings        a campaign -> motions, poses before the filter, quality
-models            names and files -> models; a model file with effects added
-replays           models x motions -> replays -> scores, growth of errors, steps of the ladder
-bands             bands of models, and how much of the test runs lies inside
-error_conditions  under which conditions a model fails
-diagnosis         which effects a model lacks
-given_diagnosis   reads a diagnosis that a user gives, and checks that it is of this campaign
-shown_diagnosis   a diagnosis with figures, tracked; made by another process
-design            the flight that would tell most
-result_cache      keeps diagnoses, and finds them again where nothing changed
-refit             the nominal model with its own parameters fitted
-training          a learned residual on top of a model, and how long its predictions take
-comparison        replays, scores, conditions and forces of several models together
-drawing           figures of a study
-presentation      tables and report of a study
-summary           the study's scores, ladder and growth in one place
-held_out          a held-out run: its scores, beside published errors and pitfalls
+reading            raw exports of a run -> its recording, with doubts about it
+measured_campaign  a whole campaign -> motions, poses before the filter, quality
+models             names and files -> models; a model file with effects added
+replays            models x motions -> replays -> scores, growth of errors, steps of the ladder
+bands              bands of models, and how much of the test runs lies inside
+error_conditions   under which conditions a model fails
+diagnosis          which effects a model lacks
+given_diagnosis    reads a diagnosis that a user gives, and checks that it is of this campaign
+shown_diagnosis    a diagnosis with figures, tracked; made by another process
+design             the flight that would tell most
+result_cache       keeps diagnoses, and finds them again where nothing changed
+refit              the nominal model with its own parameters fitted
+training           a learned residual on top of a model, and how long its predictions take
+comparison         replays, scores, conditions and forces of several models together
+drawing            figures of a study
+presentation       tables and report of a study
+summary            the study's scores, ladder and growth in one place
+held_out           a held-out run: its scores, beside published errors and pitfalls
 """

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import Mapping, Sequence
 
-from rovsim.application.pipeline.recordings import MeasuredCampaign
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
 from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.progress import counted

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
-from rovsim.application.pipeline.recordings import MeasuredCampaign
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.horizons import HORIZON, OPEN_LOOP

@@ -6,8 +6,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Sequence
 
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
 from rovsim.application.pipeline.models import require_physics
-from rovsim.application.pipeline.recordings import MeasuredCampaign
 from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged

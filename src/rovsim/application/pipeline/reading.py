@@ -1,4 +1,4 @@
-"""Read raw exports as recordings, and report on their quality."""
+"""Read the raw exports of one run as a recording, and report on its quality."""
 
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.dynamics.vehicle.units import doubt_units

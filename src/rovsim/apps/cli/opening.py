@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign, measure, open_campaign
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import choose_folder
 

@@ -14,13 +14,13 @@ from rovsim.application.export.targets import target
 from rovsim.application.export.write import export_model, model_parts, write_export
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
-from rovsim.application.pipeline.models import load_models, load_one_model, write_with_effects
-from rovsim.application.pipeline.recordings import (
+from rovsim.application.pipeline.measured_campaign import (
     MeasuredCampaign,
     measure,
     open_campaign,
     refuse_unusable,
 )
+from rovsim.application.pipeline.models import load_models, load_one_model, write_with_effects
 from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import describe_origin, digest_recordings, provenance

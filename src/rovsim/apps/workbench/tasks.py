@@ -5,8 +5,8 @@ from pathlib import Path
 
 from rovsim.application.pipeline.comparison import compare
 from rovsim.application.pipeline.diagnosis import diagnose
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.models import load_models, load_one_model
-from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.training import train
 from rovsim.application.provenance import digest_recordings, provenance
 from rovsim.application.sections import TrainingSettings

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, Sequence
 
 from rovsim.application.pipeline.given_diagnosis import read_given_diagnosis
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.models import load_models
-from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_flight, kept_folder
 from rovsim.application.provenance import describe_origin
 from rovsim.application.settings import WorkbenchSettings, select

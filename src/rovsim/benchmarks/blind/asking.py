@@ -5,7 +5,7 @@ from pathlib import Path
 from rovsim.application.configuration import compose
 from rovsim.application.pipeline.bands import cover_test_runs
 from rovsim.application.pipeline.diagnosis import diagnose
-from rovsim.application.pipeline.recordings import measure
+from rovsim.application.pipeline.measured_campaign import measure
 from rovsim.application.provenance import digest_recordings
 from rovsim.application.settings import select
 from rovsim.core.progress import heard_by

@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 
 from rovsim.application.configuration import compose
-from rovsim.application.pipeline.recordings import MeasuredCampaign, measure, open_campaign
+from rovsim.application.pipeline.measured_campaign import MeasuredCampaign, measure, open_campaign
 from rovsim.application.settings import Settings
 from rovsim.benchmarks.blind.case import Range
 from rovsim.benchmarks.designs.cases import ask, hide

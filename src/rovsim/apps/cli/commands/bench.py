@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from rovsim.application.pipeline.recordings import measure
+from rovsim.application.pipeline.measured_campaign import measure
 from rovsim.application.sections import SimulationSections
 from rovsim.application.settings import BenchSettings, CommandSettings
 from rovsim.apps.cli.output import say
