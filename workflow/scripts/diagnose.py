@@ -1,17 +1,16 @@
 """Diagnose which effects the nominal model lacks."""
 
 from rovsim.application.pipeline.diagnosis import diagnose
-from rovsim.application.provenance import digest_recordings
 from rovsim.application.snakemake_job import job
 from rovsim.diagnosis.settings import DiagnosisSettings
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
         found = diagnose(
+            campaign=rule.campaign,
             runs=rule.runs(),
             base=rule.model("nominal"),
             settings=rule.section(DiagnosisSettings),
             catalogue=rule.catalogue,
-            recordings=digest_recordings(rule.campaign),
         )
         found.write(rule.output())

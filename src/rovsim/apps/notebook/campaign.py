@@ -23,7 +23,7 @@ from rovsim.application.pipeline.measured_campaign import (
 from rovsim.application.pipeline.models import load_models, load_one_model, write_with_effects
 from rovsim.application.pipeline.result_cache import kept_diagnosis, kept_folder
 from rovsim.application.pipeline.training import train
-from rovsim.application.provenance import describe_origin, digest_recordings, provenance
+from rovsim.application.provenance import describe_origin, provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import Settings, select
 from rovsim.apps.notebook import html
@@ -101,8 +101,8 @@ class Campaign:
         path = kept_diagnosis(folder, self.data.campaign, settings, base, self._known)
         if not path.exists():
             with in_a_cell():
-                digest = digest_recordings(self.data.campaign)
-                diagnose(self.data.runs, base, settings, self.catalogue, digest).write(path)
+                found = diagnose(self.data.campaign, self.data.runs, base, settings, self.catalogue)
+                found.write(path)
         return ShownDiagnosis(Diagnosis.read(path), path, self._known)
 
     def add(

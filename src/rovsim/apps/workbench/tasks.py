@@ -8,7 +8,7 @@ from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.measured_campaign import MeasuredCampaign, measure, open_campaign
 from rovsim.application.pipeline.models import load_models, load_one_model
 from rovsim.application.pipeline.training import train
-from rovsim.application.provenance import digest_recordings, provenance
+from rovsim.application.provenance import provenance
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import CampaignSettings, WorkbenchSettings, select
 from rovsim.core.progress import reported
@@ -32,7 +32,7 @@ def diagnose_into(settings: WorkbenchSettings, path: Path) -> Diagnosis:
     """
     catalogue, data, base = _open(settings, even_unusable=True)
     options = select(settings, DiagnosisSettings)
-    result = diagnose(data.runs, base, options, catalogue, digest_recordings(data.campaign))
+    result = diagnose(data.campaign, data.runs, base, options, catalogue)
     result.write(path)
     return result.diagnosis
 

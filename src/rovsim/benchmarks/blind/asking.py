@@ -6,7 +6,6 @@ from rovsim.application.configuration import compose
 from rovsim.application.pipeline.bands import cover_test_runs
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.measured_campaign import measure
-from rovsim.application.provenance import digest_recordings
 from rovsim.application.settings import select
 from rovsim.core.progress import heard_by
 from rovsim.diagnosis.apply import add_effects
@@ -29,8 +28,9 @@ def diagnosis(campaign: Path, out: Path) -> Diagnosis:
     chosen_settings = select(settings, DiagnosisSettings)
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        base, digests = nominal(data.vehicle), digest_recordings(data.campaign)
-        return diagnose(data.runs, base, chosen_settings, built_in(), digests).diagnosis
+        base = nominal(data.vehicle)
+        result = diagnose(data.campaign, data.runs, base, chosen_settings, built_in())
+        return result.diagnosis
 
 
 def bands(campaign: Path, found: Diagnosis) -> Bands | None:

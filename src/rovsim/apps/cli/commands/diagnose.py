@@ -17,7 +17,7 @@ from pydantic import Field
 from rovsim.application.pipeline.diagnosis import diagnose
 from rovsim.application.pipeline.models import load_one_model
 from rovsim.application.pipeline.shown_diagnosis import ShownDiagnosis
-from rovsim.application.provenance import digest_recordings, provenance
+from rovsim.application.provenance import provenance
 from rovsim.application.settings import CampaignSettings, TrackingSettings, select
 from rovsim.apps.cli.complaint import warn
 from rovsim.apps.cli.opening import measure_campaign
@@ -63,8 +63,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             drawing.begin(ReportData(where=where, quality=data.quality))
 
         options = select(settings, DiagnosisSettings)
-        digest = digest_recordings(data.campaign)
-        result = diagnose(data.runs, base, options, catalogue, digest, draw_early)
+        result = diagnose(data.campaign, data.runs, base, options, catalogue, draw_early)
         result.write(out / "diagnosis.json")
         report_data = ReportData(
             quality=data.quality,
@@ -80,7 +79,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             campaign=data.campaign.name,
             base=base.name,
             data=report_data,
-            provenance=provenance(settings, catalogue, data.campaign, digest),
+            provenance=provenance(settings, catalogue, data.campaign, result.diagnosis.recordings),
             effect_files=settings.effect_files,
             params=options.model_dump(mode="json"),
         )
