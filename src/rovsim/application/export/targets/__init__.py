@@ -1,8 +1,8 @@
 """The simulators that a model can be written for: one file each, found by looking into this folder.
 
 A target declares `TITLE` (what people call it), `SUFFIX` of its files, `SOURCE` (where its format
-and its equations are documented), `TAKES` (what drives the vehicle there, one sentence) and three
-functions:
+and its equations are documented), `TAKES` (what drives the vehicle there, one sentence) and these
+functions (without `further`, what `hold` leaves out is all):
 
     hold(effect) -> (effect, why)    what it can hold of an effect; why not the rest (empty: all)
     further(model) -> [Left, ...]    what else it leaves out of a model whose effects it can hold
@@ -45,7 +45,13 @@ def targets() -> dict[str, Target]:
 
 def _target(name: str) -> Target:
     m = import_module(f"{__name__}.{name}")
-    return Target(name, m.TITLE, m.SUFFIX, m.SOURCE, m.TAKES, m.hold, m.further, m.text)
+    further = getattr(m, "further", _leave_nothing)
+    return Target(name, m.TITLE, m.SUFFIX, m.SOURCE, m.TAKES, m.hold, further, m.text)
+
+
+def _leave_nothing(model: Model) -> Sequence[Left]:
+    """Stand in where what a target's `hold` leaves out is all."""
+    return ()
 
 
 def target(name: str) -> Target:

@@ -9,13 +9,11 @@ from typing import Any, Sequence
 import numpy as np
 
 from rovsim.application.export.equation import Equation
-from rovsim.application.export.holding import Left
 from rovsim.application.export.targets import mss
 from rovsim.core.errors import one_line
 from rovsim.core.files import plain
 from rovsim.core.yaml_files import yaml_text
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.model import Model
 
 TITLE = "Fossen's matrices as YAML"
 SUFFIX = ".yaml"
@@ -37,11 +35,6 @@ for what they push to starboard, at the end.
 def hold(effect: Effect) -> tuple[Effect, str]:
     """Return what the file can hold of an effect: the same as the MATLAB function (`mss`)."""
     return mss.hold(effect)
-
-
-def further(model: Model) -> Sequence[Left]:
-    """Return nothing: what `hold` leaves out is all."""
-    return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:

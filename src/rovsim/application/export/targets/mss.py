@@ -18,14 +18,12 @@ from rovsim.application.export.holding import (
     INERTIA,
     RIGID,
     STATIC,
-    Left,
     nothing,
     unpowered,
     whole,
 )
 from rovsim.core.errors import one_line
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.cross_flow import parse_product
 from rovsim.dynamics.vehicle.curves import ForceCurve
 from rovsim.dynamics.vehicle.thrusters import Thrusters
@@ -88,11 +86,6 @@ def hold(effect: Effect) -> tuple[Effect, str]:
     if isinstance(effect, Thrusters):
         return unpowered(effect)
     return whole(effect) if effect.id in WHOLE else nothing(effect)
-
-
-def further(model: Model) -> Sequence[Left]:
-    """Return nothing: what `hold` leaves out is all."""
-    return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:

@@ -18,7 +18,6 @@ from rovsim.application.export.holding import (
     INERTIA,
     RIGID,
     STATIC,
-    Left,
     fixed,
     nothing,
     whole,
@@ -26,7 +25,6 @@ from rovsim.application.export.holding import (
 from rovsim.application.export.xml import comment, document, force_tables, number, numbers
 from rovsim.core.rotations import from_matrix, to_euler
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle.thrusters import Thrusters
 
 TITLE = "Stonefish"
@@ -48,11 +46,6 @@ def hold(effect: Effect) -> tuple[Effect, str]:
         return whole(effect)
     neutral, reason = nothing(effect)
     return neutral, "it computes its own from the shape of the body" if effect.id in OWN else reason
-
-
-def further(model: Model) -> Sequence[Left]:
-    """Return nothing: what `hold` leaves out is all."""
-    return []
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
