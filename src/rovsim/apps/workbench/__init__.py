@@ -17,7 +17,8 @@ work           long work in a process of its own
 jobs           begins long work on the open campaign
 tasks          the long work itself
 folders        folders to choose from
-charts         options of the charts (ECharts)
+chart_axes     axes of the charts (ECharts)
+charts         options of the charts
 parts          pieces of HTML that several screens share
 traces         a chart of measured and simulated values over time
 path           a chart of the path in three dimensions

@@ -7,13 +7,12 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
 from rovsim.reporting.figures.palette import SHADE, Look, looks
 from rovsim.reporting.wording import title
 
-Options = dict[str, Any]  # of ECharts, plain and deep
-
 POINTS = 800  # a curve shows at most: each takes its time to send and to draw
-INK, SOFT, LINE, MARK = "#1a1a1a", "#555555", "#d9d9d9", "#D55E00"
+MARK = "#D55E00"
 TALL, SHORT, GAP, TOP, ICONS = 104, 56, 36, 40, 12  # px: panels, what lies between, legend; icons
 LOW, WIDTH = "/low end of the band", "/width of the band"  # ids of series, as a csv names them
 WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
@@ -38,23 +37,6 @@ class Panel:
     short: bool = False
     bands: Mapping[str, Array] = field(default_factory=dict)
     about: Mapping[str, str] = field(default_factory=dict)
-
-
-def with_minus(options: Options) -> Options:
-    """Return a chart whose numbers on axes and at the pointer have a true minus (charts.js)."""
-    chart = dict(options)
-    for name in {"xAxis", "yAxis"} & chart.keys():
-        axes = chart[name] if isinstance(chart[name], list) else [chart[name]]
-        chart[name] = [_axis_with_minus(axis) for axis in axes]
-    if "tooltip" in chart:
-        chart["tooltip"] = {":valueFormatter": "tellNumber", **chart["tooltip"]}
-    return chart
-
-
-def _axis_with_minus(axis: Options) -> Options:
-    if axis.get("type") != "value":
-        return axis
-    return {**axis, "axisLabel": {":formatter": "tellTick", **axis.get("axisLabel", {})}}
 
 
 def told(curve: str) -> str:
@@ -270,28 +252,15 @@ def _time_axis(k: int, time: Array, last: bool) -> Options:
         "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
         "splitLine": {"show": False},
         "axisPointer": {"label": {":formatter": "p => Number(p.value).toFixed(2) + ' s'"}},
-        **(
-            {
-                "name": "time (s)",
-                "nameLocation": "middle",
-                "nameGap": 22,
-                "nameTextStyle": {"color": SOFT},
-            }
-            if last
-            else {}
-        ),
+        **(named_below("time (s)", 22) if last else {}),
     }
 
 
 def _value_axis(k: int, panel: Panel) -> Options:
     return {
-        "type": "value",
+        **named_above(f"{panel.title} ({panel.unit})", 52),
         "gridIndex": k,
         "scale": True,
         "splitNumber": 2 if panel.short else 3,
-        "name": f"{panel.title} ({panel.unit})",
         "nameGap": 10,
-        "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -52]},
-        "axisLabel": {"color": SOFT},
-        "splitLine": {"lineStyle": {"color": "#eeeeee"}},
     }

@@ -4,7 +4,7 @@ from typing import Any, Callable
 
 from nicegui import ui
 
-from rovsim.apps.workbench.charts import INK, Options
+from rovsim.apps.workbench.chart_axes import INK, Options
 from rovsim.apps.workbench.parts import chart, section, text
 from rovsim.reporting.charts import ConditionMap, chart_conditions
 from rovsim.results.error_conditions import ModelConditions

@@ -6,7 +6,8 @@ from typing import Mapping
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT
+from rovsim.apps.workbench.chart_axes import INK, LINE, SOFT, named_below
+from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.parts import (
     Failure,
     cell,
@@ -124,10 +125,7 @@ def _gaps(quality: Mapping[str, Quality]) -> None:
                 "type": "value",
                 "min": 0,
                 "max": longest,
-                "name": "time in the run (s)",
-                "nameLocation": "middle",
-                "nameGap": 22,
-                "nameTextStyle": {"color": SOFT},
+                **named_below("time in the run (s)", 22),
                 "axisLabel": {"color": SOFT, "showMaxLabel": False},
                 "splitLine": {"show": False},
             },

@@ -4,7 +4,7 @@ from nicegui import app, ui
 
 from rovsim import AXES
 from rovsim.apps.workbench import jobs
-from rovsim.apps.workbench.charts import INK, SOFT, Options
+from rovsim.apps.workbench.chart_axes import GRID, INK, SOFT, Options, named_below
 from rovsim.apps.workbench.parts import (
     cell,
     chart,
@@ -132,12 +132,9 @@ def chart_of(ladder: Ladder) -> Options:
             "type": "value",
             "min": 0,
             "max": ladder_chart.end,
-            "name": f"{ERROR} (standard deviations)",
-            "nameLocation": "middle",
-            "nameGap": 26,
-            "nameTextStyle": {"color": SOFT},
+            **named_below(f"{ERROR} (standard deviations)", 26),
             "axisLabel": {"color": SOFT, "showMaxLabel": False},
-            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
+            "splitLine": {"lineStyle": {"color": GRID}},
         },
         "yAxis": {
             "type": "category",

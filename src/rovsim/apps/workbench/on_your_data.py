@@ -6,7 +6,8 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
+from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
+from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
@@ -80,23 +81,16 @@ def lowered_chart(found: Lowered) -> Options:
         "xAxis": {
             "type": "value",
             "scale": True,
-            "nameLocation": "middle",
-            "nameGap": 26,
-            "name": f"{name} ({unit})" if unit else name,
-            "nameTextStyle": {"color": SOFT},
+            **named_below(f"{name} ({unit})" if unit else name, 26),
             "splitLine": {"show": False},
             "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
             "axisLabel": {"color": SOFT},
         },
         "yAxis": {
-            "type": "value",
+            **named_above(f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})", 56),
             "splitNumber": 4,
             "axisTick": {"show": False},
             "axisLine": {"show": False, "onZero": False},
-            "name": f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})",
-            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-            "axisLabel": {"color": SOFT},
-            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
         },
         "series": series,
     }

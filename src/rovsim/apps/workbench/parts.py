@@ -12,7 +12,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim.apps.workbench.charts import Options, with_minus
+from rovsim.apps.workbench.chart_axes import Options, with_minus
 from rovsim.reporting.formula import mathml
 from rovsim.reporting.wording import significant, title
 from rovsim.results.base import or_nan

@@ -10,7 +10,8 @@ import numpy as np
 from nicegui import ui
 from numpy import ndarray as Array
 
-from rovsim.apps.workbench.charts import SOFT, styles
+from rovsim.apps.workbench.chart_axes import SOFT
+from rovsim.apps.workbench.charts import styles
 from rovsim.apps.workbench.parts import Slider, saving, section, text
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.measurement.signals.motion import Motion

@@ -7,7 +7,8 @@ import numpy as np
 from nicegui import ui
 
 from rovsim import AXES
-from rovsim.apps.workbench.charts import INK, LINE, MARK, SOFT, Options
+from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
+from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.condition_map import FieldMap
 from rovsim.apps.workbench.parts import (
     about_axes,
@@ -174,20 +175,11 @@ def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> O
         "xAxis": {
             "type": "category",
             "data": centers,
-            "nameLocation": "middle",
-            "nameGap": 26,
-            "name": f"{condition} ({curve.unit})" if curve.unit else condition,
-            "nameTextStyle": {"color": SOFT},
+            **named_below(f"{condition} ({curve.unit})" if curve.unit else condition, 26),
             "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
             "axisLabel": {"color": SOFT},
         },
-        "yAxis": {
-            "type": "value",
-            "name": f"{axis} error ({unit})",
-            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-            "axisLabel": {"color": SOFT},
-            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
-        },
+        "yAxis": named_above(f"{axis} error ({unit})", 56),
         "series": [
             {
                 "type": "bar",
@@ -235,22 +227,12 @@ def samples_chart(time, error, inside, run: str, axis: str) -> Options:
         "tooltip": {"trigger": "item"},
         "xAxis": {
             "type": "value",
-            "name": "time in the run (s)",
-            "nameLocation": "middle",
-            "nameGap": 22,
-            "nameTextStyle": {"color": SOFT},
+            **named_below("time in the run (s)", 22),
             "splitLine": {"show": False},
             "axisLabel": {"color": SOFT},
             "axisLine": {"onZero": False, "lineStyle": {"color": LINE}},
         },
-        "yAxis": {
-            "type": "value",
-            "name": f"run {run}, {axis} error",
-            "splitNumber": 3,
-            "nameTextStyle": {"align": "left", "color": INK, "padding": [0, 0, 0, -56]},
-            "axisLabel": {"color": SOFT},
-            "splitLine": {"lineStyle": {"color": "#eeeeee"}},
-        },
+        "yAxis": {**named_above(f"run {run}, {axis} error", 56), "splitNumber": 3},
         "series": [
             {
                 "type": "scatter",
