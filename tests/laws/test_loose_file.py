@@ -53,7 +53,7 @@ def loose_file(without=0.0):
         SimpleNamespace(
             penalty=PENALTY,
             columns=SimpleNamespace(gram=lambda seen: np.array([[seen]])),
-            gram_without=lambda found, term: np.array([[without]]),
+            first_order=SimpleNamespace(gram_without=lambda fit, term: np.array([[without]])),
             sensitivities=SimpleNamespace(base_model=None, blocks=()),
         )
     )
