@@ -30,9 +30,9 @@ def test_progress_reaches_a_listener_and_never_goes_back():
         assert list(counted("abcd", "counting")) == list("abcd")
         with reported("reporting") as progress:
             progress(1, 2)
-        with staged("diagnosing", {"reading": 0.0, "scoring": 0.9}) as stage:
-            stage("reading")
-            stage("scoring")
+        with staged("diagnosing", {"reading": 0.0, "scoring": 0.9}):
+            begin_stage("reading")
+            begin_stage("scoring")
     shares = [share for what, share in told if what == "counting"]
     assert shares == [None, 0.0, 0.25, 0.5, 0.75]
     assert ("reporting", 0.5) in told
@@ -43,10 +43,10 @@ def test_a_stage_goes_on_with_its_steps_and_never_back():
     told = []
     with (
         heard_by(lambda what, share: told.append((what, share))),
-        staged("diagnosing", {"observing": 0.1, "searching": 0.5, "checking": 0.9}) as stage,
+        staged("diagnosing", {"observing": 0.1, "searching": 0.5, "checking": 0.9}),
     ):
         for name in ("observing", "searching", "checking", "observing"):  # it may begin again
-            stage(name)
+            begin_stage(name)
             for _ in range(50):
                 step()
         begin_stage("checking")  # of whatever bar there is

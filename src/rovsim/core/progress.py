@@ -81,8 +81,8 @@ def reported(what: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], None]]:
-    """Yield a function to be called with the name of each stage as it begins.
+def staged(what: str, begins: Mapping[str, float]) -> Iterator[None]:
+    """Show the progress of long work in stages, each of which begins with `begin_stage`.
 
     Within a stage, every call of `step` moves the progress towards the next stage.
 
@@ -91,10 +91,9 @@ def staged(what: str, begins: Mapping[str, float]) -> Iterator[Callable[[str], N
         begins: share of the time that is usually over when each stage begins.
     """
     with _shown(what) as tell:
-        bar = _Bar(what, begins, tell)
-        token = _bar.set(bar)
+        token = _bar.set(_Bar(what, begins, tell))
         try:
-            yield bar.begin
+            yield
         finally:
             _bar.reset(token)
 

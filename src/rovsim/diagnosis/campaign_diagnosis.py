@@ -9,7 +9,7 @@ import numpy as np
 from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON, WINDOW
 from rovsim.core.model_names import NOISE_FLOOR
-from rovsim.core.progress import step
+from rovsim.core.progress import begin_stage, step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.diagnosis_document import CampaignContext, assemble_diagnosis
@@ -63,20 +63,20 @@ def diagnose_campaign(
     base: Model,
     settings: DiagnosisSettings,
     catalogue: Catalogue,
-    stage: Callable[[str], None],
     failing: Callable[[ErrorConditions], None] = lambda where: None,
 ) -> CampaignDiagnosis:
     """Diagnose a model on a campaign; test runs are opened last, for the reported errors.
+
+    Each of the STAGES is reported as it begins.
 
     Args:
         runs: of the campaign.
         base: the model that is diagnosed.
         settings: how the diagnosis decides, and how runs are filtered and replayed.
         catalogue: the effects that may be missing.
-        stage: is told the name of each step as it begins.
         failing: is told under which conditions the base fails, as soon as these are known.
     """
-    stage("reading")
+    begin_stage("reading")
     searched_models, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
     conditions = list_conditions(searched_models)
     failing(conditions)
@@ -84,9 +84,9 @@ def diagnose_campaign(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
     diagnosis = diagnose_train_runs(
-        base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed, stage=stage
+        base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed
     )
-    stage("scoring")
+    begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
     ladder, diverged_runs = _climb(diagnosis, runs, settings, catalogue)
     context = CampaignContext(shares, ladder, train.looked_at, standstills, diverged_runs)

@@ -56,7 +56,6 @@ from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
 from rovsim.diagnosis.validated_search import (
     DiagnosisProblem,
-    Stages,
     ValidatedSearch,
     search_and_validate,
 )
@@ -149,7 +148,6 @@ def diagnose_train_runs(
     *,
     catalogue: Catalogue,
     seed: int = 0,
-    stage: Stages = lambda name: None,
 ) -> TrainDiagnosis:
     """Find what a model lacks on the train runs of a campaign.
 
@@ -161,7 +159,6 @@ def diagnose_train_runs(
         settings: how the search decides.
         catalogue: the effects that may be missing.
         seed: of the draws that tell what chance explains.
-        stage: is told the name of each step as it begins.
     """
     one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
     # models may diverge during a search: they are refused for numbers that are not finite
@@ -170,7 +167,7 @@ def diagnose_train_runs(
         while usable.enough:
             try:
                 problem = DiagnosisProblem(base, usable, settings, catalogue, seed)
-                return _summarise(search_and_validate(problem, stage))
+                return _summarise(search_and_validate(problem))
             except ModelLost as diverged:
                 runs, lost_from = diverged.leave_out(usable.runs)
                 usable = select_usable(runs, {**usable.lost, **lost_from})

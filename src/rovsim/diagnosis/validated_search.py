@@ -6,8 +6,9 @@ without it.
 """
 
 from dataclasses import dataclass, replace
-from typing import Callable, Iterator, Sequence
+from typing import Iterator, Sequence
 
+from rovsim.core.progress import begin_stage
 from rovsim.diagnosis.answer import SettledAnswer, choose_answer, settle, settle_noticed
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.selection.filter_delay import (
@@ -35,8 +36,6 @@ from rovsim.estimation.observer.usable_runs import UsableRuns
 from rovsim.estimation.remaining_noise import fit_remaining_noise
 from rovsim.estimation.sensitivities import linearise_candidates
 from rovsim.estimation.white_columns import WhiteColumns
-
-Stages = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,23 +78,24 @@ class ValidatedSearch:
     holdout: HoldoutValidation
 
 
-def search_and_validate(problem: DiagnosisProblem, stage: Stages) -> ValidatedSearch:
+def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     """Search for the missing effects and validate them, until the assumptions hold.
+
+    Each stage is reported as it begins.
 
     Args:
         problem: what is to be explained.
-        stage: is told the name of each step as it begins.
 
     Raises:
         ModelLost: in some run the model diverges, whatever the filter's corrections.
     """
     base, usable = problem.base, problem.usable
-    stage("observing")
+    begin_stage("observing")
     smoothing = find_smoothing(base, usable.runs) if problem.cameras_may_smooth else None
     training, reserved = keep_apart(usable.runs)
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
-        stage("searching")
+        begin_stage("searching")
         selection = search(start.workspace, start.base_fit, problem.seed)
         return (
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
@@ -106,15 +106,15 @@ def search_and_validate(problem: DiagnosisProblem, stage: Stages) -> ValidatedSe
     holdout = HoldoutValidation(reserved, usable.runs, selection.best.noise.drift is not None)
     answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
-        return search_and_validate(replace(problem, cameras_may_smooth=False), stage)
-    stage("checking")
+        return search_and_validate(replace(problem, cameras_may_smooth=False))
+    begin_stage("checking")
     if answer.leaves_physics:
         filtered = with_camera_filter(base, smoothing)
         joint = settle(fit_jointly(start.workspace, filtered, usable.moved), usable, holdout)
         answer = choose_answer(answer, _unmask(joint), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
-        return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()), stage)
+        return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
     return ValidatedSearch(problem, answer, start, smoothing, holdout)
 
 

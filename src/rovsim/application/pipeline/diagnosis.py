@@ -38,7 +38,7 @@ def diagnose(
     """
     require_physics(base, "diagnose")
     recordings = digest_recordings(campaign)
-    with staged("diagnosing", STAGES) as stage:
-        diagnosed = diagnose_campaign(runs, base, settings, catalogue, stage, failing)
+    with staged("diagnosing", STAGES):
+        diagnosed = diagnose_campaign(runs, base, settings, catalogue, failing)
     diagnosis = diagnosed.diagnosis.model_copy(update={"recordings": recordings})
     return replace(diagnosed, diagnosis=diagnosis)
