@@ -19,6 +19,7 @@ from rovsim.estimation.prior import Prior
 # stays near where it began.
 PRIOR_STD = 10.0
 POLISHING_ROUNDS = 2  # the noise of the first is already the right one
+LEAST_STD = 1e-12  # scales: a standard deviation that may be divided by
 # Times the reduction that its derivatives predict: so much more a fit may yet reach. Of 234 that
 # were given up and went on all the same one gained more (5, of 1), and none what it had to reach.
 REACHABLE = 4.0
@@ -63,7 +64,13 @@ class Fit:
     @property
     def z_scores(self) -> Array:
         """Distance of the free parameters (k,) from changing nothing, in standard deviations."""
-        return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, 1e-12)
+        return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, LEAST_STD)
+
+    @property
+    def correlation(self) -> Array:
+        """Correlation (k, k) of the free parameters."""
+        std = np.maximum(self.std, LEAST_STD)
+        return np.asarray(self.covariance / np.outer(std, std))
 
     def distance(self, own: Sequence[int] | Array) -> float:
         """Wald statistic of some parameters against changing nothing (Wald 1943).

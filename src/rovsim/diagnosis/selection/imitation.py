@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Sequence
 
 import numpy as np
-from numpy import ndarray as Array
 
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -25,16 +24,17 @@ def drop_imitations(workspace: SearchWorkspace, current: Fit) -> Fit:
     """
     if not current.is_finite:
         return current
-    h = current.hypothesis
-    for i, own in enumerate(h.columns):
-        undetermined = [k for k in own if abs(current.z_scores[k]) < UNDETERMINED_Z]
-        others = np.setdiff1d(np.arange(len(h.x)), own)
-        if not undetermined or not len(others):
+    h, numbers = current.hypothesis, np.arange(len(current.hypothesis.x))
+    undetermined = np.abs(current.z_scores) < UNDETERMINED_Z
+    correlation = np.abs(current.correlation)
+    for i, (term, own) in enumerate(zip(h.terms, h.columns, strict=True)):
+        loose, others = undetermined & np.isin(numbers, own), np.setdiff1d(numbers, own)
+        if not loose.any() or not len(others):
             continue
-        names = [h.terms[i].free[k - own[0]] for k in undetermined]
-        start = h.replaced(i, _begin_anew(workspace, h.terms[i], names))
-        imitation = _most_correlated(current.covariance, undetermined, others)
-        start = drop_parameters(start, np.arange(len(h.x)) == imitation)
+        names = [name for name, k in zip(term.free, own, strict=True) if loose[k]]
+        imitation = others[np.argmax(correlation[loose][:, others].max(axis=0))]
+        start = h.replaced(i, _begin_anew(workspace, term, names))
+        start = drop_parameters(start, numbers == imitation)
         trial = prune(workspace, workspace.fit(start))
         if workspace.score(trial) > workspace.score(current):
             return drop_imitations(workspace, trial)
@@ -43,19 +43,10 @@ def drop_imitations(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 def _begin_anew(workspace: SearchWorkspace, term: Term, names: Sequence[str]) -> Term:
     """The term with these parameters where a fit of its effect begins, if it begins with them."""
-    starts = [block.candidate.term() for block in workspace.sensitivities.blocks]
     values = {
         name: start.effect[name]
-        for start in reversed(starts)  # the first that has it counts
-        if start.id == term.id
+        for start in reversed(workspace.list_starts(term))  # the first that has it counts
         for name in names
         if name in start.free
     }
     return replace(term, effect=term.effect.with_values(values))
-
-
-def _most_correlated(covariance: Array, with_any: Sequence[int], others: Array) -> int:
-    """Which of some parameters is most correlated with any of others, by their numbers."""
-    std = np.sqrt(np.diag(covariance))
-    correlation = np.abs(covariance / np.outer(std, std))[np.ix_(np.asarray(with_any), others)]
-    return int(others[np.argmax(np.max(correlation, axis=0))])

@@ -160,8 +160,12 @@ class SearchWorkspace:
         """Starts of the same effect in its other modes, with the same parameters free."""
         if all(p.fitted for p in term.effect.parameters):
             return []
+        return [t for t in self.list_starts(term) if t.free and set(t.free) == set(term.free)]
+
+    def list_starts(self, term: Term) -> list[Term]:
+        """Where fits of the same effect begin, in the order of the candidates."""
         starts = [block.candidate.term() for block in self.sensitivities.blocks]
-        return [t for t in starts if t.id == term.id and t.free and set(t.free) == set(term.free)]
+        return [start for start in starts if start.id == term.id]
 
     def chance_limit(self, current: Fit, seed: int) -> float:
         """The net decrease that the best candidate reaches by chance in all but the allowed cases.

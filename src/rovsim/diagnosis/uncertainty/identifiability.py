@@ -16,10 +16,9 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
 
     Parameters are named `effect.parameter`. In a group all are unsure, and strongly correlated.
     """
-    names, std = fit.hypothesis.parameter_names, np.maximum(fit.std, 1e-12)
+    names = fit.hypothesis.parameter_names
     unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
-    correlation = fit.covariance / np.outer(std, std)
-    joint = np.abs(correlation[np.ix_(unsure, unsure)]) > ALIKE
+    joint = np.abs(fit.correlation[np.ix_(unsure, unsure)]) > ALIKE
     _, label = connected_components(joint, directed=False)
     groups = [[names[k] for k in unsure[label == g]] for g in range(label.max(initial=-1) + 1)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
