@@ -7,10 +7,10 @@ import pytest
 
 from rovsim import AXES
 from rovsim.dynamics.effects.damping import QuadraticDamping
+from rovsim.evaluation.error_metrics import ErrorSums, subtract
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import score_step
-from rovsim.evaluation.scored import Scored
-from rovsim.evaluation.scores import Sums, subtract
+from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings
@@ -49,7 +49,7 @@ def errors(run, replayed):
 
 
 def test_a_run_without_velocities_takes_nothing_from_those_of_another(runs):
-    whole, both = Sums.of(errors(*runs[0])).metrics(), score_step("wrong", runs)
+    whole, both = ErrorSums.of(errors(*runs[0])).metrics(), score_step("wrong", runs)
     assert both.windows_2s is not None
     for axis in UNREAD:
         assert both.velocity_mae[axis] == pytest.approx(whole.velocity_mae[axis])
@@ -59,7 +59,7 @@ def test_a_run_without_velocities_takes_nothing_from_those_of_another(runs):
 
 
 def test_of_a_run_without_velocities_only_turns_are_scored(runs):
-    metrics, step = Sums.of(errors(*runs[1])).metrics(), score_step("wrong", runs[1:])
+    metrics, step = ErrorSums.of(errors(*runs[1])).metrics(), score_step("wrong", runs[1:])
     assert all(metrics.velocity_rmse[axis] is None for axis in UNREAD)
     assert all(metrics.velocity_rmse[axis] > 0.0 for axis in READ)
     assert (metrics.position_rmse_m, metrics.attitude_rmse_rad is None) == (None, False)
@@ -86,9 +86,11 @@ def test_the_growth_of_the_error_is_seen_in_the_longest_windows(runs, horizons):
     motion, _ = runs[0]
     how = SimulationSettings().only(*horizons)
     replayed = replay(model(), motion, how)
-    scored = Scored(["nominal"], how.replay.longest)
-    scored.add(motion, replayed)
+    scored = ScoreCollector(["nominal"], how.replay.longest)
+    scored.add_replay(motion, replayed)
     seen = scored.growth.models["nominal"].horizon_s
     assert seen[-1] == pytest.approx(max(horizons))
     assert max(np.diff(seen)) == pytest.approx(max(0.2, max(horizons) / 25))
-    assert Scored.of([motion], {"nominal": {motion.run.id: replayed}}).growth == scored.growth
+    assert (
+        ScoreCollector.of([motion], {"nominal": {motion.run.id: replayed}}).growth == scored.growth
+    )

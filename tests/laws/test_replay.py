@@ -22,8 +22,8 @@ from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, SiteArrays, WrenchParameters
 from rovsim.dynamics.model import zero_acceleration
-from rovsim.evaluation.scored import score
-from rovsim.evaluation.scores import rms, subtract
+from rovsim.evaluation.error_metrics import rms, subtract
+from rovsim.evaluation.score_collector import score_replay
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.prediction import Replay
@@ -331,7 +331,7 @@ def test_zero_acceleration_keeps_the_body_velocity():
 def test_a_model_that_diverges_has_no_score_rather_than_that_of_its_first_seconds(binned):
     run = replace(simulated(), binned=binned, end=10.0)
     wild = model(QuadraticDamping(surge=-5e4, sway=-5e4, heave=-5e4))
-    found = score(run, replay(wild, run, OPEN)).open_loop
+    found = score_replay(run, replay(wild, run, OPEN)).open_loop
     assert found.velocity_rmse["surge"] is None
     assert found.velocity_mae["surge"] is None
     assert found.acceleration_rmse["surge"] is None

@@ -16,9 +16,9 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import ClockDrift
 from rovsim.dynamics.effects.thrusters import VoltageSag
 from rovsim.estimation.observer.train_runs import prepare_train
+from rovsim.evaluation.error_metrics import ErrorSums, Moments, subtract, summarize
 from rovsim.evaluation.ladder import score_step
-from rovsim.evaluation.scored import Scored, score
-from rovsim.evaluation.scores import Moments, Sums, subtract, summarize
+from rovsim.evaluation.score_collector import ScoreCollector, score_replay
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation import replay as replaying
@@ -111,7 +111,7 @@ def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
     rmse = np.sqrt(np.mean(nu**2, axis=0))
     spread = np.concatenate([m.nu[m.usable] for m in halves]).std(axis=0)
     assert step.windows_2s == pytest.approx(np.mean(rmse / spread), rel=1e-12)
-    assert summarize(errors[0]) == Sums.of(errors[0]).metrics()
+    assert summarize(errors[0]) == ErrorSums.of(errors[0]).metrics()
 
 
 def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, monkeypatch):
@@ -127,11 +127,11 @@ def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, 
         return found
 
     monkeypatch.setattr(replaying, "predict", watched)
-    scored = Scored(["nominal"], how.replay.longest)
+    scored = ScoreCollector(["nominal"], how.replay.longest)
     kept = score_run(scored, model(), motion, how, "2")
     assert held == [0, 0, 0, 1]  # when the open loop, 0.5, 2 and 5 s are made
     np.testing.assert_array_equal(kept.horizons["2"].nu, whole.horizons["2"].nu)
-    assert scored.comparison.models["nominal"].runs["a"] == score(motion, whole)
+    assert scored.comparison.models["nominal"].runs["a"] == score_replay(motion, whole)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
-from rovsim.evaluation.scored import score
+from rovsim.evaluation.score_collector import score_replay
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.replay import replay
@@ -49,7 +49,7 @@ def flown(tmp_path, **settings):
 def check_replay(data, run):
     """A perfect model follows its own tank within the noise of cameras and water."""
     found = replay(nominal(data.vehicle), run, SimulationSettings())
-    error = score(run, found).windows["2"].velocity_rmse
+    error = score_replay(run, found).windows["2"].velocity_rmse
     assert max(error.surge, error.yaw) < 0.05
 
 

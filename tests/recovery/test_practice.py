@@ -12,8 +12,8 @@ from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.core.rotations import to_euler
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.evaluation.scored import score
-from rovsim.evaluation.scores import Sums, subtract
+from rovsim.evaluation.error_metrics import ErrorSums, subtract
+from rovsim.evaluation.score_collector import score_replay
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
@@ -29,12 +29,12 @@ ROOT = Path(__file__).parents[2]
 
 def test_the_nominal_model_explains_the_empty_practice_tank():
     campaign = load_campaign(needed(SHARED / "practice" / "null-2"))
-    model, found = nominal(load_campaign_vehicle(campaign)), Sums.nothing()
+    model, found = nominal(load_campaign_vehicle(campaign)), ErrorSums.nothing()
     for run in campaign.runs:
         if run.split == "test":
             motion = clean(read_run(campaign, run.id)[0], SignalSettings())
             again = replay(model, motion, SimulationSettings())
-            found += Sums.of(subtract(motion, again.horizons["2"]))
+            found += ErrorSums.of(subtract(motion, again.horizons["2"]))
     assert np.all(found.velocity_rmse <= [0.013] * 3 + [0.035] * 3)
 
 
@@ -90,7 +90,7 @@ def binned(request, tmp_path):
 
 def test_bins_are_compared_as_bins(binned):
     model, motion = binned
-    found = score(motion, replay(model, motion, SimulationSettings()))
+    found = score_replay(motion, replay(model, motion, SimulationSettings()))
     for horizon in ("0.5", "2", "5"):
         assert found.windows[horizon].velocity_rmse["surge"] < 1.0
     again = replay(model, motion, SimulationSettings())

@@ -13,7 +13,7 @@ from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.current import CurrentDrift
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle, vehicle_file
-from rovsim.evaluation.scores import rms, subtract
+from rovsim.evaluation.error_metrics import rms, subtract
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import read_run

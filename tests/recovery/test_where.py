@@ -173,7 +173,7 @@ def test_models_are_searched_on_train_runs():
     train = replace(run, run=replace(run.run, id="t", split="train"))
     search = ConditionSearch(model(), ["test", "train"], SimulationSettings())
     for one in (run, train):
-        search.add(one)
+        search.add_run(one)
     assert search.found.runs == ("t",)
     assert ConditionSearch(model(), ["test"], SimulationSettings()).split == "test"
 
@@ -183,7 +183,7 @@ def test_forces_of_a_search_are_those_of_the_model():
     lifted = model().body.M_inv @ [0.0, 0.0, -60.0, 0.0, 0.0, 0.0]
     run = replace(run, nu_dot=run.nu_dot + lifted)
     search = ConditionSearch(model(), ["test"], SimulationSettings())
-    search.add(run)
+    search.add_run(run)
     heave = next(f for f in search.found.explanation.findings if f.axis == "heave")
     assert heave.condition == "throughout"
     samples = sample_run(model(), run, SimulationSettings())

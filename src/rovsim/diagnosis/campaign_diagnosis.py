@@ -20,8 +20,8 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.train_runs import prepare_test, prepare_train
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch, SearchedModel
+from rovsim.evaluation.error_metrics import subtract
 from rovsim.evaluation.ladder import StepScore
-from rovsim.evaluation.scores import subtract
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.diagnosis import Diagnosis, Standstill, law_beside
@@ -108,12 +108,12 @@ def _look(
     def sampled() -> Iterator[tuple[Motion, Samples]]:
         for motion in map(runs.motions.__getitem__, runs.of("train")):
             samples = sample_run(base, motion, settings)
-            search.take(motion, samples)
+            search.add_samples(motion, samples)
             yield motion, samples
 
     standstills = find_standstills(sampled())
     for name in runs.of("test") if search.split == "test" else ():
-        search.add(runs.motions[name])
+        search.add_run(runs.motions[name])
     return [search.found], standstills
 
 

@@ -1,9 +1,9 @@
 """How far a model is from the measurement.
 
-scores            errors and metrics: one definition of each number
+error_metrics     errors and metrics: one definition of each number
 ladder            the error of one model after the other, on the test runs
 growth            how the error grows with the time since the start of a window
-scored            all errors of several models, run by run
+score_collector   all errors of several models, run by run
 force_budget      how much each part of a model pushes along a run, and what is missing
 coverage          whether bands contain as much of the measurement as they should
 latency           how long one prediction takes

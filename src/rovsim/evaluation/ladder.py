@@ -6,7 +6,7 @@ from typing import Iterable
 import numpy as np
 
 from rovsim.core.horizons import HORIZON
-from rovsim.evaluation.scores import Errors, Moments, Sums, normalize, subtract
+from rovsim.evaluation.error_metrics import Errors, ErrorSums, Moments, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
@@ -25,14 +25,14 @@ class StepScore:
     model: str
     split: str = "test"
     away: list[str] = field(default_factory=list)
-    _errors: Sums = field(default_factory=Sums.nothing)
+    _errors: ErrorSums = field(default_factory=ErrorSums.nothing)
     _measured: Moments = field(default_factory=Moments.nothing)
 
     def add(self, motion: Motion, errors: Errors) -> None:
         """Add a run and the errors in its windows of 2 s; ignore a run of another split."""
         if motion.run.split != self.split:
             return
-        sums = Sums.of(errors)
+        sums = ErrorSums.of(errors)
         if not np.isfinite(sums.nu_squared).all():
             self.away.append(motion.run.id)
         self._errors += sums

@@ -14,7 +14,7 @@ from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.force_budget import balance_forces
-from rovsim.evaluation.scored import Scored
+from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.reporting.report_data import ReportData
 from rovsim.results.comparison import Comparison
 from rovsim.results.force_budget import BudgetTotals
@@ -30,7 +30,7 @@ def compare(
 
     Runs are taken once, one after the other, so that memory does not grow with their number.
     """
-    scores = Scored((model.name for model in models), settings.replay.longest)
+    scores = ScoreCollector((model.name for model in models), settings.replay.longest)
     searches = _searches(data, models, settings)
     replays = replay_when_asked(models, data.motions, settings)
     budgets = Remade(
@@ -43,7 +43,7 @@ def compare(
             prediction = score_run(scores, model, motion, settings, HORIZON, OPEN_LOOP)
             replays[model.name].keep(run, prediction)
         for search in searches:
-            search.add(motion)
+            search.add_run(motion)
         forces[run] = budgets[run].totals
     return ReportData(
         motions=data.motions,

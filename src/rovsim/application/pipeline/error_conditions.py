@@ -18,5 +18,5 @@ def find_error_conditions(
     splits = [motion.run.split for motion in motions]
     search = ConditionSearch(model, splits, settings)
     for motion in counted(motions, "searching"):
-        search.add(motion)
+        search.add_run(motion)
     return list_conditions([search.found])

@@ -6,7 +6,7 @@ from rovsim.core.bounded_cache import Recent, Remade
 from rovsim.core.horizons import WINDOW
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scored import Scored
+from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.prediction import Prediction, Replay
 from rovsim.simulation.replay import by_horizon, replay
@@ -38,9 +38,9 @@ def replay_when_asked(
 
 def score_models(
     models: Sequence[Model], motions: Mapping[str, Motion], settings: SimulationSettings
-) -> Scored:
+) -> ScoreCollector:
     """Replay every run with every model, and score it."""
-    scores = Scored((model.name for model in models), settings.replay.longest)
+    scores = ScoreCollector((model.name for model in models), settings.replay.longest)
     for run in counted(list(motions), "replaying"):
         for model in models:
             score_run(scores, model, motions[run], settings)
@@ -48,12 +48,12 @@ def score_models(
 
 
 def score_run(
-    scored: Scored, model: Model, motion: Motion, settings: SimulationSettings, *kept: str
+    scores: ScoreCollector, model: Model, motion: Motion, settings: SimulationSettings, *kept: str
 ) -> Replay:
     """Replay a run horizon by horizon, and add each prediction to the scores.
 
     Args:
-        scored: scores so far; changed in place.
+        scores: so far; changed in place.
         model: that is replayed.
         motion: the run as measured.
         settings: how it is replayed.
@@ -68,5 +68,5 @@ def score_run(
             yield name, prediction
             del prediction  # while the next one is made
 
-    scored.take(motion, model.name, horizons())
+    scores.add_predictions(motion, model.name, horizons())
     return kept_replay

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim.application.pipeline.replays import Replays
-from rovsim.evaluation.scored import Scored
+from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
@@ -30,7 +30,7 @@ def summarize(
         diagnosis: whose effects are added to the ladder one by one.
         out: folder that is written to.
     """
-    scored_runs = Scored.of(motions, replays)
+    scored_runs = ScoreCollector.of(motions, replays)
     ladder = Ladder.with_diagnosis(scored_runs.steps, diagnosis.ladder.steps)
     ErrorConditions.merged(searches).write(out / "where.json")
     scored_runs.growth.write(out / "growth.json")

@@ -8,8 +8,8 @@ from rovsim.core.bounded_cache import Recent
 from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
+from rovsim.evaluation.error_metrics import subtract, summarize
 from rovsim.evaluation.ladder import score_step
-from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.runs import Runs
 from rovsim.results.comparison import Metrics
 from rovsim.results.ladder import Step

@@ -17,7 +17,7 @@ from rovsim.estimation.observer.drifting_current import push_by_current
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import Windows
-from rovsim.evaluation.scores import Moments, normalize, root_mean
+from rovsim.evaluation.error_metrics import Moments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 

@@ -34,7 +34,7 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import evaluate_possible
 from rovsim.estimation.observer.windows import Windows
 from rovsim.estimation.replay_fit import MIN_SPREAD, fit_without
-from rovsim.evaluation.scores import measured_spread
+from rovsim.evaluation.error_metrics import measured_spread
 
 Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 

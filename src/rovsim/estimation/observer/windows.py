@@ -18,7 +18,7 @@ from rovsim.core.progress import step
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.innovations import batch_of, find_fluid_memory
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.evaluation.scores import measured_spread, normalize, rms
+from rovsim.evaluation.error_metrics import measured_spread, normalize, rms
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.simulation.batch import Starts
 from rovsim.simulation.measured_states import undo_mocap_view

@@ -59,12 +59,12 @@ class ConditionSearch:
         self._runs: list[str] = []
         self._parts: list[Blocks] = []
 
-    def add(self, motion: Motion) -> None:
+    def add_run(self, motion: Motion) -> None:
         """Take in a run; ignore a run of the other split."""
         if motion.run.split == self.split:
-            self.take(motion, sample_run(self._model, motion, self._how))
+            self.add_samples(motion, sample_run(self._model, motion, self._how))
 
-    def take(self, motion: Motion, samples: Samples) -> None:
+    def add_samples(self, motion: Motion, samples: Samples) -> None:
         """Take in a run that was sampled already; ignore a run of the other split."""
         if motion.run.split != self.split:
             return
@@ -93,5 +93,5 @@ def search_runs(model: Model, runs: Runs, how: SimulationSettings) -> SearchedMo
     """
     search = ConditionSearch(model, set(runs.splits.values()), how)
     for name in runs.of(search.split):
-        search.add(runs.motions[name])
+        search.add_run(runs.motions[name])
     return search.found

@@ -10,7 +10,7 @@ from rovsim.core.horizons import OPEN_LOOP
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.learned.settings import Control
 from rovsim.dynamics.model import Model
-from rovsim.evaluation.scores import measured_spread, normalize, rms, subtract
+from rovsim.evaluation.error_metrics import measured_spread, normalize, rms, subtract
 from rovsim.learning.learner import train
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.signals.binned import backward_difference

@@ -29,7 +29,7 @@ from rovsim.core.names import as_list
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.residual import ARRAYS
-from rovsim.evaluation.scored import Scored
+from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts, tell_residual
 from rovsim.results.comparison import Comparison
@@ -107,7 +107,9 @@ def _check_name(given: str | Sequence[str]) -> None:
             )
 
 
-def _shown(scored: Scored, said: Mapping[str, str], quality: Mapping[str, Quality]) -> ReportData:
+def _shown(
+    scored: ScoreCollector, said: Mapping[str, str], quality: Mapping[str, Quality]
+) -> ReportData:
     """What figures show of the errors, the models called by what they are."""
     comparison = {said[name]: result for name, result in scored.comparison.models.items()}
     growth = {said[name]: result for name, result in scored.growth.models.items()}

@@ -3,9 +3,9 @@
 from typing import Iterable, Mapping
 
 from rovsim.core.horizons import HORIZON, OPEN_LOOP, name_horizon
+from rovsim.evaluation.error_metrics import subtract, summarize
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import StepScore
-from rovsim.evaluation.scores import subtract, summarize
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison, Metrics, ModelErrors, RunErrors
 from rovsim.results.growth import Growth
@@ -13,7 +13,7 @@ from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Prediction, Replay
 
 
-class Scored:
+class ScoreCollector:
     """Collects errors of models by run, their growth, and the models' steps of the ladder.
 
     Args:
@@ -22,22 +22,26 @@ class Scored:
     """
 
     def __init__(self, models: Iterable[str], longest: float) -> None:
-        self._models = {name: _Score(name, longest) for name in models}
+        self._models = {name: _ModelScores(name, longest) for name in models}
 
     @staticmethod
-    def of(motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]) -> "Scored":
+    def of(
+        motions: Iterable[Motion], replays: Mapping[str, Mapping[str, Replay]]
+    ) -> "ScoreCollector":
         """Collect replays, given by model and run."""
-        scored = Scored(replays, _find_longest(replays))
+        scored = ScoreCollector(replays, _find_longest(replays))
         for motion in motions:
             for runs in replays.values():
-                scored.add(motion, runs[motion.run.id])
+                scored.add_replay(motion, runs[motion.run.id])
         return scored
 
-    def add(self, motion: Motion, replay: Replay) -> None:
+    def add_replay(self, motion: Motion, replay: Replay) -> None:
         """Add the replay of a run by one of the models."""
-        self.take(motion, replay.model, replay.horizons.items())
+        self.add_predictions(motion, replay.model, replay.horizons.items())
 
-    def take(self, motion: Motion, model: str, horizons: Iterable[tuple[str, Prediction]]) -> None:
+    def add_predictions(
+        self, motion: Motion, model: str, horizons: Iterable[tuple[str, Prediction]]
+    ) -> None:
         """Add the predictions of a model for a run, with the names of their horizons.
 
         They may come from a generator, so that only one of them is in memory at a time.
@@ -61,9 +65,9 @@ class Scored:
         return [s.step.step for s in self._models.values()]
 
 
-def score(motion: Motion, replay: Replay) -> RunErrors:
+def score_replay(motion: Motion, replay: Replay) -> RunErrors:
     """Compute all metrics of one model on one run."""
-    run_score = _Score(replay.model, replay.longest)
+    run_score = _ModelScores(replay.model, replay.longest)
     run_score.add(motion, replay.horizons.items())
     return run_score.runs[motion.run.id]
 
@@ -73,7 +77,7 @@ def _find_longest(replays: Mapping[str, Mapping[str, Replay]]) -> float:
     return next((r.longest for runs in replays.values() for r in runs.values()), 0.0)
 
 
-class _Score:
+class _ModelScores:
     """Collects the errors of one model; `longest` s is its longest horizon."""
 
     def __init__(self, model: str, longest: float) -> None:

@@ -71,7 +71,7 @@ def _find_posed(measured: Measured | None) -> tuple[bool, bool]:
 
 
 @dataclass(frozen=True, eq=False)
-class Sums:
+class ErrorSums:
     """Sums of errors over samples, from which all metrics follow. Sums of several runs add up.
 
     Attributes:
@@ -97,17 +97,17 @@ class Sums:
     attitude_squared: float
 
     @staticmethod
-    def nothing() -> "Sums":
+    def nothing() -> "ErrorSums":
         """Sums over no samples."""
         no_counts, zero = np.zeros(6, int), np.zeros(6)
-        return Sums(no_counts, no_counts, 0, 0, zero, zero, zero, 0.0, 0.0)
+        return ErrorSums(no_counts, no_counts, 0, 0, zero, zero, zero, 0.0, 0.0)
 
     @staticmethod
-    def of(errors: Errors) -> "Sums":
+    def of(errors: Errors) -> "ErrorSums":
         """Sums of the errors of one run."""
         measured = errors.axes
         with np.errstate(over="ignore"):  # the errors of a model that diverged are infinite
-            return Sums(
+            return ErrorSums(
                 len(errors.nu) * measured.astype(int),
                 len(errors.nu_dot) * measured.astype(int),
                 len(errors.position) * int(errors.placed),
@@ -119,9 +119,9 @@ class Sums:
                 float(np.square(errors.attitude).sum()) if errors.turned else 0.0,
             )
 
-    def __add__(self, other: "Sums") -> "Sums":
+    def __add__(self, other: "ErrorSums") -> "ErrorSums":
         pairs = ((getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
-        return Sums(*(a + b for a, b in pairs))
+        return ErrorSums(*(a + b for a, b in pairs))
 
     @property
     def velocity_rmse(self) -> Array:
@@ -161,7 +161,7 @@ def rms(x: Array, count: Array | None = None) -> Array:
 
 def summarize(errors: Errors) -> Metrics:
     """Compute the metrics of the errors of one run."""
-    return Sums.of(errors).metrics()
+    return ErrorSums.of(errors).metrics()
 
 
 @dataclass(frozen=True, eq=False)
