@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from rovsim import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.evaluation.held_out.folds import held_out
+from rovsim.evaluation.held_out.folds import relabel_split
 from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published, stand
 from rovsim.learning.pairs import training_runs
 from rovsim.measurement.signals.motion import Poses
@@ -90,7 +90,7 @@ controls = st.sampled_from(["3dof", "6dof"])
 def test_whoever_learns_in_a_fold_never_sees_the_run_held_out(kinds, data):
     runs = [run(str(k), control, split) for k, (control, split) in enumerate(kinds)]
     test = data.draw(st.sampled_from([one.run.id for one in runs]))
-    fold = [held_out(one, test) for one in runs]
+    fold = [relabel_split(one, test) for one in runs]
     assert [one.run.id for one in fold if one.run.split == "test"] == [test]
     assert {one.run.id for one in training_runs(fold, "all")} == {r.run.id for r in runs} - {test}
     for control in ("3dof", "6dof"):

@@ -1,7 +1,7 @@
 """Split all runs anew: one to test on, all others to train on."""
 
 from rovsim.application.snakemake_job import job
-from rovsim.evaluation.held_out.folds import held_out
+from rovsim.evaluation.held_out.folds import relabel_split
 from rovsim.measurement.signals.chain import read_stage
 
 if __name__ == "__main__":
@@ -9,4 +9,4 @@ if __name__ == "__main__":
         runs = {"motions": rule.motions(), "stages": map(read_stage, rule.paths("stages"))}
         for name, read in runs.items():
             for run, out in zip(read, rule.outputs()[name], strict=True):
-                held_out(run, rule.wildcards.fold).write(out)
+                relabel_split(run, rule.wildcards.fold).write(out)

@@ -12,6 +12,6 @@ means          are the recorded velocities means from line to line? compares the
 velocities     do the recorded velocities fit the poses, in our units and axes?
 quality        how good a recording is
 remarks        the quality of a recording in sentences
-held_out       finds test runs that repeat train runs
+copied_runs    finds test runs that copy train runs
 runs           the usable runs of a campaign
 """

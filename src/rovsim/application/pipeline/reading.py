@@ -4,7 +4,7 @@ from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.dynamics.vehicle.units import doubt_units
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
-from rovsim.measurement.held_out import doubt_test_run
+from rovsim.measurement.copied_runs import doubt_copy
 from rovsim.measurement.quality import report_quality
 from rovsim.measurement.recording import Anomalies, Recording, read_run
 from rovsim.measurement.signals.outliers import Outliers
@@ -35,11 +35,11 @@ def judge_recording(
 
     For one that can be used, the report also tells of numbers of the vehicle file that may be in
     another unit, of a motion that does not go with its commands, and of train runs that a test run
-    repeats.
+    copies.
     """
     quality = report_quality(recording, anomalies, outliers)
     if quality.unusable is not None:
         return quality
     vehicle = load_campaign_vehicle(campaign)
-    repeats = doubt_test_run(campaign, campaign.run(recording.run.id))
-    return quality.doubted(*doubt_units(vehicle), *find_doubts(recording, vehicle), *repeats)
+    copies = doubt_copy(campaign, campaign.run(recording.run.id))
+    return quality.doubted(*doubt_units(vehicle), *find_doubts(recording, vehicle), *copies)

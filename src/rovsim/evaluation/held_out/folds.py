@@ -9,7 +9,7 @@ from rovsim.measurement.signals.motion import Motion, Poses
 Run = TypeVar("Run", Motion, Poses, Recording)
 
 
-def held_out(run: Run, test: str) -> Run:
+def relabel_split(run: Run, test: str) -> Run:
     """Label a run for the fold that holds out one run: "test" for that run, "train" for others.
 
     Args:

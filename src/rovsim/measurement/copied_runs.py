@@ -1,4 +1,4 @@
-"""Find test runs that repeat a train run, so that their data were seen in training."""
+"""Find test runs that copy a train run, so that their data were seen in training."""
 
 import filecmp
 from pathlib import Path
@@ -8,8 +8,8 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import Run
 
 
-def doubt_test_run(campaign: Campaign, run: Run) -> Iterator[str]:
-    """Yield a sentence for each train run whose files and used spans a test run repeats."""
+def doubt_copy(campaign: Campaign, run: Run) -> Iterator[str]:
+    """Yield a sentence for each train run whose files and used spans a test run copies."""
     if run.split != "test":
         return
     paths = campaign.mocap_paths(run)
