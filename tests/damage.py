@@ -10,7 +10,7 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.quality import report_quality
+from rovsim.measurement.quality.assessment import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings
 

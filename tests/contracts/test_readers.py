@@ -23,7 +23,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix
 from rovsim.intake.survey import look
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.quality import assess, usable_reason
+from rovsim.measurement.quality.assessment import assess
+from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
 

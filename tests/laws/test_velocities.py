@@ -7,10 +7,10 @@ import pytest
 
 from rovsim.core.rotations import conjugate, from_euler, log, multiply, rotate, unrotate
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.quality import usable_reason
+from rovsim.measurement.quality.usability import usable_reason
+from rovsim.measurement.quality.velocity_conventions import doubt_velocities
 from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.velocities import doubt_velocities
 
 RATE = 50.0
 TIME = np.arange(0.0, 30.0, 1.0 / RATE)

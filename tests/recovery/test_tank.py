@@ -15,7 +15,7 @@ from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle, vehicle_file
 from rovsim.evaluation.error_metrics import rms, subtract
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.quality import report_quality
+from rovsim.measurement.quality.assessment import report_quality
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay

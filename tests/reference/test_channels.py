@@ -20,7 +20,8 @@ from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.quality import assess, report_quality, usable_reason
+from rovsim.measurement.quality.assessment import assess, report_quality
+from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.channels import KINDS, Channel, to_ned
 from rovsim.measurement.signals.chain import SignalSettings, clean

@@ -7,7 +7,7 @@ import pytest
 
 from rovsim.core import rotations
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.quality import assess
+from rovsim.measurement.quality.assessment import assess
 from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
 

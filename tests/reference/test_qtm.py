@@ -11,7 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.quality import assess
+from rovsim.measurement.quality.assessment import assess
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.qtm_tsv import read_qtm
 

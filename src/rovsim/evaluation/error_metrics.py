@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, log, multiply
-from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.measured import Measured, blank, find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none

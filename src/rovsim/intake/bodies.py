@@ -9,7 +9,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.robust import usual_range
 from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 from rovsim.intake.survey.contents import Contents, Track
-from rovsim.measurement.quality import STILL_POSITION
+from rovsim.measurement.quality.usability import STILL_POSITION
 
 
 @dataclass(frozen=True)

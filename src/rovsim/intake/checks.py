@@ -15,7 +15,8 @@ from rovsim.intake.facts import Facts
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.survey.starts import find_start
 from rovsim.intake.vehicles import VehicleMatch, as_logged
-from rovsim.measurement.quality import EXCITED, usable_reason
+from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.rough_motion import even_poses

@@ -17,8 +17,8 @@ from rovsim.intake.runs import missing, runs
 from rovsim.intake.survey.timing import Timing
 from rovsim.intake.unread import list_unread, tell_unread
 from rovsim.intake.vehicles import VehicleMatch
+from rovsim.measurement.quality.velocity_conventions import doubt_velocities
 from rovsim.measurement.recording.readers import mocap_readers
-from rovsim.measurement.velocities import doubt_velocities
 
 
 def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal:

@@ -8,10 +8,6 @@ sensors        where sensors sit on the vehicle, and how late they report
 recording      raw exports in, recordings in NED and FRD out
 signals        from recordings to velocities and accelerations
 rough_motion   recordings on an even clock, to compare them with others roughly
-means          are the recorded velocities means from line to line? compares them with poses
-velocities     do the recorded velocities fit the poses, in our units and axes?
-quality        how good a recording is
-remarks        the quality of a recording in sentences
-copied_runs    finds test runs that copy train runs
+quality        how good a recording is, and what to do about it
 runs           the usable runs of a campaign
 """

@@ -4,8 +4,8 @@ from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.dynamics.vehicle.units import doubt_units
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
-from rovsim.measurement.copied_runs import doubt_copy
-from rovsim.measurement.quality import report_quality
+from rovsim.measurement.quality.assessment import report_quality
+from rovsim.measurement.quality.copied_runs import doubt_copy
 from rovsim.measurement.recording import Anomalies, Recording, read_run
 from rovsim.measurement.signals.outliers import Outliers
 from rovsim.results.quality import Quality

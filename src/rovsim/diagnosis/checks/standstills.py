@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim import AXES
-from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion

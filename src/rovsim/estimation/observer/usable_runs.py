@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim import AXES
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.measured import find_measured
 
 SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics

@@ -9,7 +9,7 @@ import scipy
 from numpy import ndarray as Array
 from numpy.lib.stride_tricks import sliding_window_view
 
-from rovsim.measurement.quality import EXCITED
+from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step

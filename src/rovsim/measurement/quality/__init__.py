@@ -1,0 +1,11 @@
+"""How good a recording is, and what to do about it.
+
+usability             whether a recording can be used, and if not, why
+excitation            how much it moves along each axis, and whether that suffices
+pose_noise            how noisy its poses are
+velocity_means        are the recorded velocities means from line to line? compares with poses
+velocity_conventions  do the recorded velocities fit the poses, in our units and axes?
+copied_runs           finds test runs that copy train runs
+remarks               the quality of a recording in sentences
+assessment            puts all of this together, as `quality/RUN.json`
+"""
