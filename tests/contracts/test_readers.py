@@ -148,7 +148,7 @@ def test_disorder_is_sorted_and_duplicates_dropped_and_counted(tmp_path, name):
     recording, anomalies = read_run(load_campaign(folder), "one")
     np.testing.assert_allclose(recording.time, Swim.ned().time, atol=1e-9)
     np.testing.assert_allclose(recording.position, Swim.ned().position, atol=1e-6)
-    assert (anomalies.duplicates, anomalies.unsorted) == (1, 2)
+    assert (anomalies.motion.duplicates, anomalies.motion.unsorted) == (1, 2)
 
 
 @every_text
@@ -158,7 +158,7 @@ def test_a_cut_last_line_is_counted_not_fatal(tmp_path, name):
     (folder / FORMATS[name]).write_text(text[:-25])
     recording, anomalies = read_run(load_campaign(folder), "one")
     assert len(recording.time) == len(Swim.ned().time) - 1
-    assert anomalies.cut_lines == 1
+    assert anomalies.motion.cut_lines == 1
     assert any("cut short" in r for r in assess(recording, anomalies).remarks)
 
 

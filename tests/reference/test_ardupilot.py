@@ -144,7 +144,7 @@ def test_the_pilot_s_radio_is_a_demand_on_named_axes(tmp_path):
     export = read_commands(path, given)
     np.testing.assert_allclose(export.value, [[0, 0, -0.25, 0, 0, 0]] * 60)
     silent = read_commands(path, log(kind="demand", columns=["RC8"], axes=["yaw"]))
-    assert silent.counts["dropped"] == 60
+    assert silent.repairs.dropped == 60
     with pytest.raises(BadInput, match=r"no messages RCIN"):
         read_commands(dataflash(SWIM).write(tmp_path / "a.BIN"), log(columns=["RC1"]))
 

@@ -44,13 +44,13 @@ def test_frames_without_the_body_are_marked(tmp_path):
     raw[start + 68 * 9 : start + 68 * 10] = bytes(68)
     export = read(tmp_path, bytes(raw))
     assert np.flatnonzero(~export.found).tolist() == [7, 9]
-    assert export.counts["bad_rotations"] == 1
+    assert export.repairs.bad_rotations == 1
 
 
 def test_a_file_that_ends_early_keeps_its_whole_frames(tmp_path):
     export = read(tmp_path, c3d_bytes(SWIM)[:-100])
     assert len(export.time) == 48
-    assert export.counts["cut_lines"] == 1
+    assert export.repairs.cut_lines == 1
 
 
 BAD = {

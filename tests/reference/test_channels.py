@@ -129,7 +129,7 @@ def test_full_poses_keep_their_place_and_the_rest_goes_beside_them(tmp_path):
     assert np.flatnonzero(~beside.found).tolist() == [47]
     np.testing.assert_array_equal(beside.position[beside.found], plain.position[beside.found])
     np.testing.assert_allclose(beside.channels["depth"].value[:, 0], 2 + SLOW, atol=1e-3)
-    assert anomalies.duplicates == 0
+    assert anomalies.motion.duplicates == 0
     assert plain.channels == {}
 
 

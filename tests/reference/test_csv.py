@@ -61,7 +61,7 @@ def test_pwm_becomes_thruster_commands(tmp_path):
     log = commands(tmp_path, ["time_s,t1,t2", "0,1500,1900", "0.02,1100,1700", "0.04,2000,1500"])
     np.testing.assert_allclose(log.value, [[0, 1], [-1, 0.5], [1, 0]])
     assert log.kind == "thruster"
-    assert log.counts["clipped"] == 1
+    assert log.repairs.clipped == 1
 
 
 def test_demands_go_to_the_axes_they_name(tmp_path):
@@ -82,10 +82,10 @@ def test_command_lines_are_sorted_the_last_of_equals_holds_and_empty_ones_go(tmp
     np.testing.assert_allclose(recording.commands.time, [0, 0.02, 0.04, 0.06, 0.12])
     np.testing.assert_allclose(400 * recording.commands.value[:, 0], [0, 10, 20, 40, 60])
     counted = (
-        anomalies.command_unsorted,
-        anomalies.command_duplicates,
-        anomalies.command_dropped,
-        anomalies.command_long_steps,
+        anomalies.commands.unsorted,
+        anomalies.commands.duplicates,
+        anomalies.commands.dropped,
+        anomalies.commands.long_steps,
     )
     assert counted == (1, 1, 2, 1)
     remarks = " ".join(assess(recording, anomalies).remarks)
@@ -100,7 +100,7 @@ def test_an_empty_cell_of_a_log_of_changes_means_the_value_before(tmp_path):
     np.testing.assert_allclose(log.time, [0.02, 0.06, 0.04, 0.10, 0.12])
     pulses = [[1500, 1600], [1580, 1700], [1500, 1700], [1580, 1500], [1540, 1500]]
     np.testing.assert_allclose(1500 + 400 * log.value, pulses)
-    assert log.counts["dropped"] == 2  # before t1 had a value, and a line without any
+    assert log.repairs.dropped == 2  # before t1 had a value, and a line without any
     assert log.notes[0].startswith("5 cells of the commands are empty beside others")
 
 
@@ -161,7 +161,7 @@ def test_inputs_that_were_not_given_leave_their_line_out(tmp_path):
     rows = ("1500,1900,1300", "0,1100,1500", "1500,65535,1500")
     log, lines = radio(["surge", "sway", "yaw"], rows=rows)
     found = read_commands(write_lines(tmp_path / "rc.csv", lines), log)
-    assert (len(found.time), found.counts["dropped"]) == (1, 2)
+    assert (len(found.time), found.repairs.dropped) == (1, 2)
 
 
 def test_pulses_beside_shares_are_refused(tmp_path):

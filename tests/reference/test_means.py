@@ -8,8 +8,8 @@ import pytest
 from rovsim.core import rotations
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.quality.assessment import assess
-from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.repairs import Anomalies
 
 FINE = 0.001  # s: steps of the truth
 

@@ -70,7 +70,7 @@ def test_a_damaged_matrix_counts_as_not_found(tmp_path):
     lines[-5] = "\t".join(cells)
     export = read(tmp_path, lines)
     assert np.flatnonzero(~export.found).tolist() == [15]
-    assert export.counts["bad_rotations"] == 1
+    assert export.repairs.bad_rotations == 1
 
 
 def several_bodies(swim):

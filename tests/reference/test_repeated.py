@@ -25,7 +25,7 @@ def tidied(tmp_path, t, pose, digits=6):
     rows = (",".join(f"{x:.{digits}f}" for x in row) for row in pose)
     lines = [NAMES, *(f"{a:.4f},{row}" for a, row in zip(t, rows, strict=True))]
     path = write_lines(tmp_path / "a.csv", lines)
-    return tidy_export(read_csv(path, MOCAP), path)[0]
+    return tidy_export(read_csv(path, MOCAP), path)
 
 
 @pytest.mark.parametrize("rate", [10, 100])
@@ -88,6 +88,6 @@ def test_a_depth_with_few_digits_beside_the_poses_stays(tmp_path):
     rows = np.hstack([t[:, None], pose, depth])
     lines = [f"{NAMES},depth_m", *(",".join(f"{x:.6f}" for x in row) for row in rows)]
     path = write_lines(tmp_path / "a.csv", lines)
-    found = tidy_export(read_csv(path, MOCAP), path)[0]
+    found = tidy_export(read_csv(path, MOCAP), path)
     assert found.found.all()
     assert len(found.channels["depth"].time) == len(t)

@@ -250,9 +250,9 @@ def test_pulses_of_mavros(tmp_path):
     )
     given = read_commands(bag, demand)
     np.testing.assert_allclose(given.value[:, [0, 5]], [[0.25, 0.0], [0.5, 0.5]])
-    assert given.counts["dropped"] == 1  # its second channel was not overridden
+    assert given.repairs.dropped == 1  # its second channel was not overridden
     silent = read_commands(bag, log(columns=["RC9"], topic="/mavros/rc/override"))
-    assert silent.counts["dropped"] == 3
+    assert silent.repairs.dropped == 3
 
 
 def test_joysticks_and_wrenches(tmp_path):

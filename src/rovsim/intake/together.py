@@ -135,7 +135,7 @@ def _joined(files: Sequence[Contents], said: str) -> Contents:
     """
     main, *rest = sorted(files, key=lambda contents: not contents.drives)
     export = join({contents.named: contents.tracks[0].export for contents in (main, *rest)})
-    track = Track("", tidy_export(export, main.named)[0])
+    track = Track("", tidy_export(export, main.named))
     notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {said}",)
     notes += tuple(note for contents in files for note in contents.notes)
     return replace(main, tracks=(track,), notes=notes, beside=tuple(rest))

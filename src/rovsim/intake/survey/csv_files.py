@@ -120,7 +120,7 @@ def _some(names: list[str]) -> str:
 
 def _track(path: Path) -> Track:
     mocap = Mocap(format="csv", world_axes="ned", body_axes="frd")
-    return Track("", tidy_export(read_csv(path, mocap), path)[0])
+    return Track("", tidy_export(read_csv(path, mocap), path))
 
 
 def _unknown(others: Columns) -> str:

@@ -24,7 +24,7 @@ def look_into_log(path: Path) -> Contents:
         BadInput: it is no such log, or holds no measurement.
     """
     mocap = Mocap(format="ardupilot", world_axes="ned", body_axes="frd")
-    track = Track("", tidy_export(read_log(path, mocap), path)[0])
+    track = Track("", tidy_export(read_log(path, mocap), path))
     drives = tuple(_drives(open_log(path)))
     return Contents(path, "ardupilot", (track,), drives)
 

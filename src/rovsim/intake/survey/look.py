@@ -73,7 +73,7 @@ def _tracks(path: Path, reader: MocapReader, bodies: Sequence[str]) -> Iterator[
         # signs, and the axes y_up and fur of Motive, are applied later: these are the file's own
         mocap = Mocap(format=reader.name, body=body, world_axes=world_axes, body_axes=body_axes)
         try:
-            yield Track(body, tidy_export(reader.read(path, mocap), path)[0])
+            yield Track(body, tidy_export(reader.read(path, mocap), path))
         except BadInput:
             if len(bodies) == 1:
                 raise

@@ -11,8 +11,8 @@ from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.quality.velocity_conventions import doubt_velocities
 from rovsim.measurement.quality.velocity_means import doubt_means
 from rovsim.measurement.recording.channels import KINDS
-from rovsim.measurement.recording.reading import Anomalies
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.repairs import Anomalies
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.chosen_channels import doubt_delays
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
@@ -62,7 +62,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         unusable=usable_reason(recording),
         channels=_describe_channels(recording),
     )
-    remarks = (*remark(report), *anomalies.notes)
+    remarks = (*remark(report, anomalies), *anomalies.notes)
     doubts = (
         *doubt(report),
         *doubt_means(recording),

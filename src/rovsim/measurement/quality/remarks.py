@@ -2,6 +2,7 @@
 
 from typing import Iterator
 
+from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs, MotionRepairs
 from rovsim.measurement.signals.measured import HIGHEST
 from rovsim.results.quality import Quality
 
@@ -19,9 +20,14 @@ def doubt(report: Quality) -> Iterator[str]:
         yield "The commands never change: check 'commands.columns', or that the log was running."
 
 
-def remark(report: Quality) -> list[str]:
+def remark(report: Quality, anomalies: Anomalies) -> list[str]:
     """List further sentences about a recording, the most important first."""
-    return [*_motion(report), *_frames(report), *_commands(report), *_repairs(report)]
+    return [
+        *_motion(report),
+        *_frames(report, anomalies.left_out),
+        *_commands(report, anomalies.commands),
+        *_repairs(report, anomalies),
+    ]
 
 
 def _motion(report: Quality) -> Iterator[str]:
@@ -32,11 +38,11 @@ def _motion(report: Quality) -> Iterator[str]:
         yield f"Hardly any motion in {', '.join(quiet)}: nothing can be said about the model there."
 
 
-def _frames(report: Quality) -> Iterator[str]:
+def _frames(report: Quality, left_out: int) -> Iterator[str]:
     if not report.posed:
         yield _held_channels(report)
         return
-    share = report.not_found / max(report.frames - report.repairs["left_out"], 1)
+    share = report.not_found / max(report.frames - left_out, 1)
     if share > MANY_MISSING:
         yield f"The body was not found in {share:.0%} of the frames: check markers and cameras."
     if report.longest_gap_s > 0.5:
@@ -64,38 +70,40 @@ def _held_channels(report: Quality) -> str:
     return f"There are no full poses; what was measured is {', '.join(channels)}."
 
 
-def _commands(report: Quality) -> Iterator[str]:
-    commands, repairs = report.commands, report.repairs
-    if commands is None:
+def _commands(report: Quality, repairs: CommandRepairs) -> Iterator[str]:
+    if report.commands is None:
         return
-    if repairs["command_long_steps"]:
+    if repairs.long_steps:
         yield (
-            f"{repairs['command_long_steps']} command steps are longer than usual (up to "
-            f"{commands.longest_step_s:.2f} s); the line before is held over them."
+            f"{repairs.long_steps} command steps are longer than usual (up to "
+            f"{report.commands.longest_step_s:.2f} s); the line before is held over them."
         )
-    if repairs["command_clipped"]:
+    if repairs.clipped:
         yield (
-            f"{repairs['command_clipped']} command lines reach beyond [-1, 1] and were limited "
+            f"{repairs.clipped} command lines reach beyond [-1, 1] and were limited "
             "to it: check 'commands.kind'."
         )
-    if repairs["command_dropped"]:
-        yield f"{repairs['command_dropped']} command lines without a value were left out."
+    if repairs.dropped:
+        yield f"{repairs.dropped} command lines without a value were left out."
 
 
-def _repairs(report: Quality) -> Iterator[str]:
-    repairs = report.repairs
-    for prefix, lines in (("", "frames"), ("command_", "command lines")):
-        unsorted, duplicates = repairs[f"{prefix}unsorted"], repairs[f"{prefix}duplicates"]
-        if unsorted:
-            yield f"{unsorted} {lines} were out of order and were sorted by time."
-        if duplicates:
-            yield f"{duplicates} {lines} repeated a time and were left out."
-        if repairs[f"{prefix}cut_lines"]:
-            yield f"The last of the {lines} is cut short and was left out: was the export complete?"
-    if repairs["wrong_header_rate"]:
+def _repairs(report: Quality, anomalies: Anomalies) -> Iterator[str]:
+    motion, left_out = anomalies.motion, anomalies.left_out
+    yield from _lines("frames", motion)
+    yield from _lines("command lines", anomalies.commands)
+    if motion.wrong_header_rate:
         rate = report.rate_hz.median
         yield f"The header's FREQUENCY is not the {rate:.4g} Hz of the times; the times are used."
-    if repairs["left_out"]:
-        yield f"{repairs['left_out']} frames lie outside of what `use` says, and were left out."
-    if repairs["bad_rotations"]:
-        yield f"{repairs['bad_rotations']} frames hold no rotation and count as not found."
+    if left_out:
+        yield f"{left_out} frames lie outside of what `use` says, and were left out."
+    if motion.bad_rotations:
+        yield f"{motion.bad_rotations} frames hold no rotation and count as not found."
+
+
+def _lines(what: str, repairs: MotionRepairs | CommandRepairs) -> Iterator[str]:
+    if repairs.unsorted:
+        yield f"{repairs.unsorted} {what} were out of order and were sorted by time."
+    if repairs.duplicates:
+        yield f"{repairs.duplicates} {what} repeated a time and were left out."
+    if repairs.cut_lines:
+        yield f"The last of the {what} is cut short and was left out: was the export complete?"

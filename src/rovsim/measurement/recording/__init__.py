@@ -24,6 +24,7 @@ channels       each kind of measurement at its own times
 commands       turns logged values into commands
 joined         puts several files of one run together
 one_run        refuses a file whose times begin again: it holds two recordings
+repairs        how many lines were repaired or left out
 tidying        sorts by time, and keeps each time once
 reading        reads the files of a run into a recording
 repeated       removes poses that only repeat the line before
@@ -31,8 +32,9 @@ recording      a run as it was logged, before any filter
 """
 
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.recording.reading import Anomalies, read_run, site
+from rovsim.measurement.recording.reading import read_run, site
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.repairs import Anomalies
 
 __all__ = [
     "Anomalies",

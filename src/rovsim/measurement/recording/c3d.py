@@ -20,6 +20,7 @@ from rovsim.measurement.recording.attitudes import finite_rows, orthonormal
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.readers import MocapReader, choose_body
+from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import Signature
 
 BLOCK, KEY = 512, 0x50
@@ -80,8 +81,9 @@ def read_c3d(path: Path, mocap: Mocap) -> Export:
         visible = finite_rows(table[:, body]) & (table[:, body, 16] >= 0.0)
         valid = visible & orthonormal(R[:, :3, :3])
         attitude = from_matrix(np.where(valid[:, None, None], R[:, :3, :3], np.eye(3)))
-        counts = {"cut_lines": cut_lines, "bad_rotations": int(np.sum(visible & ~valid))}
-        return Export(np.arange(len(table)) / rate, position, attitude, valid, rate, counts=counts)
+        repairs = MotionRepairs(cut_lines=cut_lines, bad_rotations=int(np.sum(visible & ~valid)))
+        time = np.arange(len(table)) / rate
+        return Export(time, position, attitude, valid, rate, repairs=repairs)
 
 
 def _refused(path: Path, found: str, expected: str) -> BadInput:

@@ -1,5 +1,6 @@
 """Turn logged values into commands, whatever file they came from."""
 
+from dataclasses import replace
 from typing import Callable
 
 import numpy as np
@@ -13,6 +14,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.readers import KIND
+from rovsim.measurement.recording.repairs import CommandRepairs
 
 # Beyond 1100 .. 1900 us a speed controller gives no more; beyond 800 .. 2200 us no servo signal is
 # valid.
@@ -33,7 +35,7 @@ def as_commands(
     value: Array,
     log: CommandLog,
     locate: Locate,
-    counts: dict[str, int] | None = None,
+    repairs: CommandRepairs | None = None,
     *,
     pulses: bool = False,
     notes: tuple[str, ...] = (),
@@ -45,7 +47,7 @@ def as_commands(
         value: (m, c), the columns of the log, followed by its auxiliary ones.
         log: what the columns mean.
         locate: says where a value stands, for errors.
-        counts: repairs that were made before.
+        repairs: those that were made before.
         pulses: whether the values are pulses in us although the log says otherwise, as for a
             demand from a radio.
         notes: sentences about the file.
@@ -58,12 +60,12 @@ def as_commands(
     _check_range(value, log, unit, locate)
     complete = finite_rows(value)
     value, clipped = _normalized(value[complete], log, unit)
-    counts = {**(counts or {}), "dropped": int(np.sum(~complete)), "clipped": clipped}
+    repairs = replace(repairs or CommandRepairs(), dropped=int(np.sum(~complete)), clipped=clipped)
     auxiliary = {
         name: Logged(time[np.isfinite(column)], column[np.isfinite(column)])
         for name, column in zip(log.auxiliary, extra.T, strict=False)
     }
-    return CommandExport(time[complete], value, KIND[log.kind], counts, notes, auxiliary)
+    return CommandExport(time[complete], value, KIND[log.kind], repairs, notes, auxiliary)
 
 
 def are_pulses(value: Array) -> bool:

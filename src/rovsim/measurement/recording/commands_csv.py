@@ -16,6 +16,7 @@ from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.named_columns import column_places
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import CommandReader
+from rovsim.measurement.recording.repairs import CommandRepairs
 from rovsim.measurement.recording.times import times
 
 HEAVE = AXES.index("heave")
@@ -43,9 +44,8 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     value[:, command_columns], fill_notes = _held(time, value[:, command_columns])
     value, radio_notes = _of_a_radio(value, log)
     notes = (*pulse_notes, *radio_notes, *fill_notes)
-    return as_commands(
-        time, value, log, place, {"cut_lines": cut_lines}, pulses=bool(radio_notes), notes=notes
-    )
+    repairs = CommandRepairs(cut_lines=cut_lines)
+    return as_commands(time, value, log, place, repairs, pulses=bool(radio_notes), notes=notes)
 
 
 def _without_pulse(value: Array, log: CommandLog) -> tuple[Array, tuple[str, ...]]:

@@ -28,6 +28,7 @@ from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.named_columns import column_places
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader
+from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.times import times
 
@@ -79,7 +80,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
     if "qw" in names:
         notes += check_unit_length(columns.of(QUATERNION), partial(_quaternion_at, table))
-    return _export(columns, mocap, {"cut_lines": cut_lines}, notes)
+    return _export(columns, mocap, MotionRepairs(cut_lines=cut_lines), notes)
 
 
 def _quaternion_at(table: Lines, row: int) -> str:
@@ -108,7 +109,7 @@ def _said(count: int) -> tuple[str, ...]:
 
 
 def _export(
-    columns: Columns, mocap: Mocap, counts: dict[str, int], notes: tuple[str, ...]
+    columns: Columns, mocap: Mocap, repairs: MotionRepairs, notes: tuple[str, ...]
 ) -> Export:
     position, nu = columns.of(POSITION), columns.of([*LINEAR, *ANGULAR])
     quaternions = "qw" in columns.values
@@ -119,7 +120,7 @@ def _export(
     nonempty = np.isfinite(np.hstack([position, angles])).any(axis=1)
     if not posed.any() or posed.sum() < TOGETHER * nonempty.sum():
         channels |= _apart(columns, position, angles) | _velocities(columns, nu)
-        return Export.of_channels(channels, counts, notes)
+        return Export.of_channels(channels, repairs, notes)
     binned = _means(posed, nu, mocap)
     if not binned:
         channels |= _velocities(columns, nu)
@@ -133,7 +134,7 @@ def _export(
         attitude[frame],
         valid[frame],
         nu=nu[frame] if binned else None,
-        counts=counts,
+        repairs=repairs,
         channels=channels,
         notes=notes,
     )

@@ -8,6 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.run import CommandKind, Logged
 from rovsim.measurement.recording.channels import Channels
+from rovsim.measurement.recording.repairs import CommandRepairs, MotionRepairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,7 +22,7 @@ class Export:
         found: bool (n,), False where the body was not seen.
         rate: nominal rate, Hz; None when the file does not say.
         nu: (n, 6), body velocities, m/s and rad/s; None when not exported.
-        counts: number of repairs while reading, by name (`cut_lines`, `bad_rotations`).
+        repairs: number of lines that were repaired or left out.
         channels: further measured channels.
         notes: sentences about the file that its owner should read.
     """
@@ -32,13 +33,13 @@ class Export:
     found: Array
     rate: float | None = None
     nu: Array | None = None
-    counts: dict[str, int] = field(default_factory=dict)
+    repairs: MotionRepairs = field(default_factory=MotionRepairs)
     channels: Channels = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
     @staticmethod
     def of_channels(
-        channels: Channels, counts: dict[str, int] | None = None, notes: tuple[str, ...] = ()
+        channels: Channels, repairs: MotionRepairs | None = None, notes: tuple[str, ...] = ()
     ) -> "Export":
         """Make the export of a file without full poses."""
         return Export(
@@ -46,7 +47,7 @@ class Export:
             np.empty((0, 3)),
             np.empty((0, 4)),
             np.empty(0, bool),
-            counts=counts or {},
+            repairs=repairs or MotionRepairs(),
             channels=channels,
             notes=notes,
         )
@@ -60,7 +61,7 @@ class CommandExport:
         time: (m,) s.
         value: (m, c), as in `rovsim.core.run.Commands`.
         kind: what the commands drive.
-        counts: number of repairs while reading, by name (`cut_lines`, `dropped`, `clipped`).
+        repairs: number of lines that were repaired or left out.
         notes: sentences about the file that its owner should read.
         auxiliary: further logged numbers, by name.
     """
@@ -68,6 +69,6 @@ class CommandExport:
     time: Array
     value: Array
     kind: CommandKind
-    counts: dict[str, int] = field(default_factory=dict)
+    repairs: CommandRepairs = field(default_factory=CommandRepairs)
     notes: tuple[str, ...] = ()
     auxiliary: Mapping[str, Logged] = field(default_factory=dict)

@@ -1,6 +1,5 @@
 """Join several files of one run, which hold different sensors on one clock, into one export."""
 
-from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import Mapping
@@ -9,6 +8,7 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.repairs import MotionRepairs
 
 POSES = "full poses"
 TOLD = ("position", "attitude", "euler")  # channels that full poses contain as well
@@ -35,14 +35,12 @@ def join(exports: Mapping[Path, Export]) -> Export:
     _check_different(exports)
     posed = [export for export in exports.values() if POSES in list_held(export)]
     basis = (posed or list(exports.values()))[0]
-    counts: Counter[str] = Counter()
-    for export in exports.values():
-        counts.update(export.counts)
+    repairs = sum((export.repairs for export in exports.values()), MotionRepairs())
     channels = {
         kind: c for export in exports.values() for kind, c in export.channels.items() if len(c.time)
     }
     notes = dict.fromkeys(note for export in exports.values() for note in export.notes)
-    return replace(basis, counts=dict(counts), channels=channels, notes=(*notes, *left_out))
+    return replace(basis, repairs=repairs, channels=channels, notes=(*notes, *left_out))
 
 
 def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export], list[str]]:

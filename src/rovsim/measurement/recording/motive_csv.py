@@ -18,6 +18,7 @@ from rovsim.measurement.recording.delimited import split_lines, without_cut_line
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import FileAxes, MocapReader, choose_body
+from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.times import times
 
@@ -75,9 +76,8 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
     valid &= finite_rows(position)
     position, attitude = _upright(position, attitude, mocap)
     notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP)
-    return Export(
-        time, position, attitude, valid, _rate(layout), counts={"cut_lines": cut_lines}, notes=notes
-    )
+    repairs = MotionRepairs(cut_lines=cut_lines)
+    return Export(time, position, attitude, valid, _rate(layout), repairs=repairs, notes=notes)
 
 
 def _upright(position: Array, attitude: Array, mocap: Mocap) -> tuple[Array, Array]:

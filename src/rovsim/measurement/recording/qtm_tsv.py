@@ -16,6 +16,7 @@ from rovsim.measurement.recording.delimited import Lines, split_lines, without_c
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader, choose_body
+from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import Signature, head_lines
 from rovsim.measurement.recording.times import times
 
@@ -67,8 +68,8 @@ def read_qtm(path: Path, mocap: Mocap) -> Export:
         visible &= ~(residual[:, 0] < 0.0)
     valid = visible & orthonormal(R)
     attitude = from_matrix(np.where(valid[:, None, None], R, np.eye(3)))
-    counts = {"cut_lines": cut_lines, "bad_rotations": int(np.sum(visible & ~valid))}
-    return Export(time, values[:, :3] * 1e-3, attitude, valid, rate, counts=counts)
+    repairs = MotionRepairs(cut_lines=cut_lines, bad_rotations=int(np.sum(visible & ~valid)))
+    return Export(time, values[:, :3] * 1e-3, attitude, valid, rate, repairs=repairs)
 
 
 def _layout(path: Path, lines: list[str]) -> Layout:

@@ -1,6 +1,6 @@
 """From the files of a run to one `Recording` in NED and FRD."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,41 +19,12 @@ from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.joined import join
 from rovsim.measurement.recording.readers import KIND, command_readers, mocap_readers, reader_of
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs
 from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, tidy_export
 
 # Times beyond this are dates (seconds since 1970 or since the machine was started); a day is none.
 LATE = 1e5  # s
 LONGER = 100.0  # times as long as the recording: the log has another unit of time
-
-
-@dataclass(frozen=True)
-class Anomalies:
-    """How many lines of the raw files had to be repaired or left out, for each reason.
-
-    Attributes:
-        used: the spans [from, to] that are used, s; empty where all is.
-        notes: sentences of the readers about their files.
-    """
-
-    duplicates: int = 0
-    unsorted: int = 0
-    cut_lines: int = 0
-    bad_rotations: int = 0
-    wrong_header_rate: int = 0  # 1: the header's rate does not agree with the times
-    command_duplicates: int = 0
-    command_unsorted: int = 0
-    command_cut_lines: int = 0
-    command_dropped: int = 0
-    command_clipped: int = 0
-    command_long_steps: int = 0
-    left_out: int = 0  # outside of the used spans
-    used: tuple[tuple[float, float], ...] = ()
-    notes: tuple[str, ...] = ()
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """The numbers of lines, by name."""
-        return {name: count for name, count in vars(self).items() if isinstance(count, int)}
 
 
 def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
@@ -65,8 +36,8 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     run, mocap = campaign.run(run_id), campaign.mocap
     reader = reader_of(mocap.format, mocap_readers(), f"{campaign.file}, mocap.format")
     paths = campaign.mocap_paths(run)
-    export, counts = tidy_export(join({path: reader.read(path, mocap) for path in paths}), paths[0])
-    commands, command_counts, notes = _read_commands(campaign, run)
+    export = tidy_export(join({path: reader.read(path, mocap) for path in paths}), paths[0])
+    commands, repairs, notes = _read_commands(campaign, run)
     if run.commanded:
         _check_clocks(export.time, commands.time, campaign.commands_path(run))
     export, commands = _from_zero(export, _with_battery(commands, export.channels))
@@ -75,9 +46,7 @@ def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
     recording = to_ned(export, mocap, info, site(campaign), commands)
     notes = tuple(dict.fromkeys([*export.notes, *notes]))
     spans = tuple((begin, end) for begin, end in run.use or ())
-    return recording, Anomalies(
-        **counts, **command_counts, left_out=left_out, used=spans, notes=notes
-    )
+    return recording, Anomalies(export.repairs, repairs, left_out, spans, notes)
 
 
 def site(campaign: Campaign) -> Site:
@@ -87,15 +56,15 @@ def site(campaign: Campaign) -> Site:
 
 def _read_commands(
     campaign: Campaign, run: Run
-) -> tuple[Commands, dict[str, int], tuple[str, ...]]:
+) -> tuple[Commands, CommandRepairs, tuple[str, ...]]:
     log = campaign.commands
     if not run.commanded or log is None:
-        return _no_commands(log), {}, ()
+        return _no_commands(log), CommandRepairs(), ()
     reader = reader_of(log.format, command_readers(), f"{campaign.file}, commands.format")
     path = campaign.commands_path(run)
     export = reader.read(path, log)
-    commands, counts = tidy_commands(export, path)
-    return _shifted(commands, run.commands_shift_s), counts, export.notes
+    commands, repairs = tidy_commands(export, path)
+    return _shifted(commands, run.commands_shift_s), repairs, export.notes
 
 
 def _no_commands(log: CommandLog | None) -> Commands:

@@ -12,15 +12,19 @@ from rovsim.core.run import Commands, Logged
 from rovsim.measurement.recording.channels import Channels, tidy_channels
 from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.one_run import check_one_run
+from rovsim.measurement.recording.repairs import CommandRepairs, MotionRepairs
 from rovsim.measurement.recording.repeated import without_repeated
 
 RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
 
 
-def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
-    """Sort by time, keep the first of equal times, and check the rate; count what was wrong.
+def tidy_export(export: Export, path: Path) -> Export:
+    """Sort by time, keep the first of equal times, and check the rate.
 
     Poses that only repeat the one before are removed (`without_repeated`).
+
+    Returns:
+        The export, whose `repairs` count what was wrong.
 
     Raises:
         BadInput: there are neither poses nor a channel with two samples.
@@ -29,9 +33,9 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
     for time in (export.time[export.found], *(c.time for c in export.channels.values())):
         check_one_run(time, path)
     channels, unsorted, duplicates = tidy_channels(export.channels)
-    counts = {**export.counts, "unsorted": unsorted, "duplicates": duplicates}
+    repairs = replace(export.repairs, unsorted=unsorted, duplicates=duplicates)
     if not export.found.any() and any(len(c.time) > 1 for c in channels.values()):
-        return _of_channels(export, channels), counts
+        return _of_channels(replace(export, repairs=repairs), channels)
     order = np.argsort(export.time, kind="stable")
     time = export.time[order]
     keep = order[np.diff(time, prepend=-np.inf) > 0]
@@ -39,9 +43,10 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
         raise _nothing(export, len(keep), path)
     rate, measured = export.rate, measured_rate(export.time[keep])
     if rate and abs(measured / rate - 1.0) > RATES_DIFFER:
-        rate, counts["wrong_header_rate"] = None, 1
-    counts["unsorted"] += int(np.sum(np.diff(export.time) < 0))
-    counts["duplicates"] += len(time) - len(keep)
+        rate, repairs = None, replace(repairs, wrong_header_rate=1)
+    repairs += MotionRepairs(
+        unsorted=int(np.sum(np.diff(export.time) < 0)), duplicates=len(time) - len(keep)
+    )
     tidied = replace(
         export,
         time=export.time[keep],
@@ -50,9 +55,10 @@ def tidy_export(export: Export, path: Path) -> tuple[Export, dict[str, int]]:
         found=export.found[keep],
         rate=rate,
         nu=None if export.nu is None else export.nu[keep],
+        repairs=repairs,
         channels=channels,
     )
-    return without_repeated(tidied), counts
+    return without_repeated(tidied)
 
 
 def _nothing(export: Export, frames: int, path: Path) -> BadInput:
@@ -88,7 +94,7 @@ def measured_rate(time: Array) -> float:
     return 1.0 / float(np.median(np.diff(time)))
 
 
-def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, int]]:
+def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, CommandRepairs]:
     """Sort by time and keep the last of equal times (it is what the vehicle got); count both.
 
     Raises:
@@ -97,7 +103,7 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     """
     if not len(log.time):
         raise BadInput(
-            f"no commands ({log.counts.get('dropped', 0)} lines without a value)",
+            f"no commands ({log.repairs.dropped} lines without a value)",
             where=path,
             expected="at least one line with a time and every column",
             remedy="Export the commands again, or take the run out of 'runs'.",
@@ -107,15 +113,17 @@ def tidy_commands(log: CommandExport, path: Path) -> tuple[Commands, dict[str, i
     time = log.time[order]
     keep = order[np.diff(time, append=np.inf) > 0]
     steps = np.diff(log.time[keep])
-    counts = {f"command_{name}": count for name, count in log.counts.items()}
-    counts["command_unsorted"] = int(np.sum(np.diff(log.time) < 0))
-    counts["command_duplicates"] = len(time) - len(keep)
     longest = LONG_STEP * np.median(steps) if len(steps) else np.inf
-    counts["command_long_steps"] = int(np.sum(steps > longest))
+    repairs = replace(
+        log.repairs,
+        unsorted=int(np.sum(np.diff(log.time) < 0)),
+        duplicates=len(time) - len(keep),
+        long_steps=int(np.sum(steps > longest)),
+    )
     auxiliary = {
         name: _in_order(logged) for name, logged in log.auxiliary.items() if len(logged.time)
     }
-    return Commands(log.time[keep], log.value[keep], log.kind, auxiliary), counts
+    return Commands(log.time[keep], log.value[keep], log.kind, auxiliary), repairs
 
 
 def _in_order(own: Logged) -> Logged:
