@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import lfilter
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.spectrum import find_spectrum
 from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions

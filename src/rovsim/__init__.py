@@ -23,9 +23,10 @@ apps         command line, workbench, notebook, other programs
 from importlib import import_module
 from typing import Any
 
+from rovsim.core.axes import AXES as AXES  # for effects of one's own
+
 __version__ = "0.2.0"
 
-AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 NOTEBOOK = ("open", "tank")
 
 

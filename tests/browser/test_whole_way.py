@@ -6,8 +6,8 @@ import shutil
 
 import pytest
 
-from rovsim import AXES
 from rovsim.apps.cli.main import main
+from rovsim.core.axes import AXES
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.model_file import read_model

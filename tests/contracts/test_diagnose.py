@@ -6,10 +6,10 @@ import shutil
 import pytest
 
 from fuzz.entries import DiagnosisJson
-from rovsim import AXES
 from rovsim.application.configuration import compose
 from rovsim.apps.cli.main import main
 from rovsim.apps.workbench import tasks
+from rovsim.core.axes import AXES
 from rovsim.core.files import read_json
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.diagnosis.apply import add_effects

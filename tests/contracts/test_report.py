@@ -10,7 +10,7 @@ from statistics import geometric_mean
 
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.style import save

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.advice import FIX_SCALE, advise
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.diagnosis.uncertainty.common_scale import include_scale

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.ranking import OrderedEffect

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.evaluation.error_conditions.lowered import find_most_lowered

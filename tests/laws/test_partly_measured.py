@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.evaluation.error_metrics import ErrorSums, subtract
 from rovsim.evaluation.growth import GrowthScore

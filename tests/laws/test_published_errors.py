@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.held_out.folds import relabel_split

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flown import observed
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.vehicle_file.whole_file import (
     fit_whole_file,
     free_rest,

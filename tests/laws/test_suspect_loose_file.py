@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
 from rovsim.diagnosis.selection.vehicle_file.steps import suspect_loose_file
 from rovsim.dynamics.effects.added_mass import AddedMass

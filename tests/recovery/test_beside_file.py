@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 from flown import observed
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.search_result import Rival, keep_likeliest
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.vehicle_file.steps import prefer_file

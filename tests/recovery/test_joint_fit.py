@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.answer import settle
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together

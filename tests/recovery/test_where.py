@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.run import Site
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import average_blocks

@@ -14,7 +14,7 @@ from recordings import (
     write_lines,
     write_run,
 )
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.core.run import Commands

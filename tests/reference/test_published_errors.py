@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.evaluation.held_out.published_errors import (

@@ -11,7 +11,7 @@ model_names     names of the built-in models
 signs           minus signs of numbers in text
 columns         text that fits a terminal
 progress        how far long work is, and the time left
-axes            letters and units of the six axes
+axes            the six axes, their letters and units
 horizons        lengths of the windows of replays
 run             id, split and commands of a run, and the site it was recorded at
 pwm             pulses of a radio control, and what they command

@@ -1,5 +1,6 @@
-"""Letters and units of velocities, forces and spectra along the six axes, surge to yaw."""
+"""The six axes, and letters and units of velocities, forces and spectra along them."""
 
+AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 VELOCITY = ("u", "v", "w", "p", "q", "r")  # letters of Fossen 2021, table 2.1
 FORCE = ("X", "Y", "Z", "K", "M", "N")
 VELOCITY_UNITS = ("m/s",) * 3 + ("rad/s",) * 3

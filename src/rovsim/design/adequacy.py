@@ -5,8 +5,7 @@ from typing import Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import ACCELERATION_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.signs import minus
 from rovsim.design.envelope import Envelope

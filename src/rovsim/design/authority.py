@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.run import CommandKind, Commands, latest
 from rovsim.dynamics.model import Model
 from rovsim.simulation.command_columns import round_as_logged

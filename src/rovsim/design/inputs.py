@@ -9,7 +9,7 @@ from typing import Callable, Mapping, NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 
 TICK = 0.1  # s between two positions of a stick: a hand does not move it faster than 5 Hz
 SLOWEST, FASTEST = 0.02, 1.0  # Hz: once in most of a minute; half of what a hand can do

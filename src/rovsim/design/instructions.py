@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.signs import minus
 from rovsim.design.inputs import BASELINES, IDLE, NUMBERS, SWELL, Oscillation
 from rovsim.design.search import CandidateFlight

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.rotations import multiply, normalized, rotate, to_euler, unrotate
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy

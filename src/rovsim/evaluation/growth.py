@@ -3,7 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.evaluation.error_metrics import root_mean
 from rovsim.measurement.signals.measured import blank, find_measured
 from rovsim.measurement.signals.motion import Motion

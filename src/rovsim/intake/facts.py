@@ -6,7 +6,7 @@ from typing import Sequence
 
 import numpy as np
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.intake.axes import Axes, find_axes
 from rovsim.intake.bodies import FoundBody, find_body, track_of

@@ -13,7 +13,7 @@ import scipy
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.robust import STD_PER_MAD
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import Posterior, Predict, Progress, spread_rows

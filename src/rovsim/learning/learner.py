@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 import rovsim.learning.learners
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
 from rovsim.core.schema import checked

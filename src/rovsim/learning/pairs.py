@@ -6,7 +6,7 @@ from typing import Any, Iterable, Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model

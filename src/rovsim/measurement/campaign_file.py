@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.names import Name, as_list, is_name
 from rovsim.core.rotations import BodyAxes, WorldAxes
 from rovsim.core.schema import Axis, Number, PathText, Section

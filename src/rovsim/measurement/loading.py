@@ -6,7 +6,7 @@ import unicodedata
 from pathlib import Path
 from typing import Sequence
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml

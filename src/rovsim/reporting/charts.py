@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.model_names import NOISE_FLOOR, ZERO_ACCELERATION
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT
 from rovsim.reporting.figures.palette import Look, family_look

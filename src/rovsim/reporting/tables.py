@@ -8,8 +8,7 @@ from typing import Sequence
 import numpy as np
 from pandas import DataFrame, MultiIndex, Series
 
-from rovsim import AXES
-from rovsim.core.axes import ACCELERATION_UNITS, VELOCITY_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES, VELOCITY_UNITS
 from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON
 from rovsim.core.model_names import NOISE_FLOOR

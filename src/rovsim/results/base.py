@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import JsonValue, SerializerFunctionWrapHandler, ValidationError, model_serializer
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_json, write_json
 from rovsim.core.schema import Section

@@ -12,8 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import FORCE, VELOCITY
+from rovsim.core.axes import AXES, FORCE, VELOCITY
 from rovsim.dynamics.body import Body, cross_matrix
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench

@@ -10,8 +10,8 @@ from typing import Iterable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.application.export.holding import Left
+from rovsim.core.axes import AXES
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import RunInfo, Site
 from rovsim.dynamics.effects.base import (

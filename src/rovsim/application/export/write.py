@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Sequence
 
-from rovsim import AXES
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import Left, leave_out
 from rovsim.application.export.sizes import Sized, size_all
 from rovsim.application.export.targets import Target
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import require_replaceable, write_text
 from rovsim.dynamics.model import Model

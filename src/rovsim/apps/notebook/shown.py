@@ -9,9 +9,9 @@ from typing import Mapping, Sequence
 from matplotlib.figure import Figure
 from pandas import DataFrame, Series
 
-from rovsim import AXES
 from rovsim.application.export.sizes import Sized
 from rovsim.apps.notebook import html
+from rovsim.core.axes import AXES
 from rovsim.core.horizons import HORIZON
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model

@@ -5,7 +5,6 @@ from typing import Any, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.add_effects import Effects
 from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import about_axes, computed, heading, text, tile, tile_html
@@ -21,6 +20,7 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.axes import AXES
 from rovsim.core.errors import RovsimError
 from rovsim.core.horizons import WINDOW
 from rovsim.dynamics.model import Model

@@ -4,7 +4,6 @@ from typing import Any, Sequence
 
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
@@ -33,7 +32,7 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.horizons import WINDOW
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.wording import title

@@ -5,7 +5,6 @@ from typing import Mapping
 
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.chart_axes import INK, LINE, SOFT, named_below
 from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.parts import (
@@ -21,7 +20,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.core.files import read_text, write_text
 from rovsim.reporting.words.sentences import doubt_sentences

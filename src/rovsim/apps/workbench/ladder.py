@@ -2,7 +2,6 @@
 
 from nicegui import app, ui
 
-from rovsim import AXES
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.chart_axes import GRID, INK, SOFT, Options, named_below
 from rovsim.apps.workbench.parts import (
@@ -17,7 +16,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.learning.learner import learners
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
 from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, significant, title

@@ -5,7 +5,6 @@ from typing import Any, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.choices import Choices
 from rovsim.apps.workbench.parts import (
@@ -33,7 +32,7 @@ from rovsim.apps.workbench.traces import (
     panels,
 )
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
 from rovsim.dynamics.catalogue import Catalogue

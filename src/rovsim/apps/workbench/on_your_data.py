@@ -5,13 +5,12 @@ from typing import Collection
 import numpy as np
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
 from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.parts import chart, computed
 from rovsim.apps.workbench.where import ERRORS, WHISKER
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import ACCELERATION_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.errors import RovsimError
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import tabulate

@@ -8,7 +8,6 @@ import numpy as np
 from nicegui import ui
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.apps.workbench.charts import (
     Panel,
     columns,
@@ -21,7 +20,7 @@ from rovsim.apps.workbench.charts import (
 from rovsim.apps.workbench.parts import Slider, chart
 from rovsim.apps.workbench.runaway import cut, find_divergence
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import ACCELERATION_UNITS, FORCE_UNITS, VELOCITY_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.core.rotations import short_way, to_euler
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion

@@ -6,7 +6,6 @@ from typing import Sequence
 import numpy as np
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
 from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.condition_map import FieldMap
@@ -22,7 +21,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import ACCELERATION_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.entries import list_conditions

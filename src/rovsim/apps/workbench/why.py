@@ -6,7 +6,6 @@ from typing import Sequence
 
 from nicegui import ui
 
-from rovsim import AXES
 from rovsim.apps.workbench import jobs
 from rovsim.apps.workbench.gallery import picture
 from rovsim.apps.workbench.on_your_data import show_lowered
@@ -28,7 +27,7 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
-from rovsim.core.axes import FORCE_UNITS
+from rovsim.core.axes import AXES, FORCE_UNITS
 from rovsim.core.errors import RovsimError
 from rovsim.reporting.wording import ERROR, IMPROBABLE, percent, significant, tell_probability
 from rovsim.reporting.words.verdict import Missing, explain, interval

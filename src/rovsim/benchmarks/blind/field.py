@@ -13,9 +13,9 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
+from rovsim.core.axes import AXES
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 

@@ -20,13 +20,13 @@ from typing import Any, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from rovsim import AXES
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.benchmarks.blind.field import CAMERAS, camera, laboratory, workshops
 from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings
+from rovsim.core.axes import AXES
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.estimation.observer.usable_runs import UsableRuns
 

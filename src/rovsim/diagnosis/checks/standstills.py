@@ -11,7 +11,7 @@ from typing import Iterable, Iterator, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import find_measured

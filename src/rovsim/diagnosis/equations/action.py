@@ -5,7 +5,7 @@ from typing import NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.form import Form, get_law, split_law
 from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.dynamics.effects.base import Effect

@@ -14,7 +14,7 @@ from numpy import ndarray as Array
 from scipy.fft import next_fast_len
 from scipy.signal import find_peaks
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.spectrum import Spectrum, find_spectrum
 from rovsim.diagnosis.structure.residual import AxisResidual, Structure, split_by_axis
 from rovsim.estimation.fit import Fit

@@ -5,7 +5,7 @@ from typing import Iterator, Sequence
 
 import numpy as np
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.action import find_action, leaves_structure
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits

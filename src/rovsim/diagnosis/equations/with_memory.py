@@ -11,8 +11,7 @@ from dataclasses import dataclass, replace
 from textwrap import dedent
 from typing import ClassVar, Mapping, Sequence
 
-from rovsim import AXES
-from rovsim.core.axes import FORCE, VELOCITY
+from rovsim.core.axes import AXES, FORCE, VELOCITY
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law, stated
 from rovsim.dynamics.effects.base import Effect

@@ -12,8 +12,7 @@ from typing import Iterator, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import FORCE, VELOCITY
+from rovsim.core.axes import AXES, FORCE, VELOCITY
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns

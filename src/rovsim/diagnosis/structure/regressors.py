@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.stats import chi2
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.dynamics.effects.law import SMOOTH

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.signal import lfilter
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.structure.unknown_thrust import (
     SPIN,
     find_jumps,

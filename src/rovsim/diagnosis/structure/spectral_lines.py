@@ -17,7 +17,7 @@ from scipy.fft import next_fast_len
 from scipy.ndimage import median_filter
 from scipy.stats import chi2
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.estimation.observer.observed_run import ObservedRun
 

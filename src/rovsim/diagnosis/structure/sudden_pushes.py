@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.robust import STD_PER_MAD
 from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
 from rovsim.estimation.observer.kalman import AxisFilter

@@ -1,6 +1,6 @@
 """Water resistance along one axis by motion along another."""
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
 from rovsim.dynamics.effects.parameters import Signature

@@ -6,7 +6,7 @@ from typing import Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.effects.base import Autopilot, Parameter, Wrench

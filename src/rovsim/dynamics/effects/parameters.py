@@ -5,7 +5,7 @@ from typing import Mapping
 
 import numpy as np
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 
 # kg, the BlueROV2 Heavy (conf/vehicle): `Parameter.scale` in the catalogue suits its size.
 REFERENCE_MASS = 13.5

@@ -2,7 +2,7 @@
 
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.effects.base import DemandTransform, Parameter
 from rovsim.dynamics.effects.parameters import Signature
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter
 

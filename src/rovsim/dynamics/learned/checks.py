@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.layout import (
     BLOCKS,

@@ -6,7 +6,7 @@ from typing import Iterator
 
 import numpy as np
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.vehicle.file import Vehicle
 

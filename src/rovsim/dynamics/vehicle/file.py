@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.names import Name
 from rovsim.core.schema import Axis, Section
 from rovsim.dynamics.body import Body

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field, PlainValidator
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.schema import Section
 from rovsim.dynamics.effects.added_mass import PAIRS as MASS_PAIRS
 from rovsim.dynamics.effects.added_mass import AddedMass, AddedMassCoupling

@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field, PositiveFloat
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.names import Name
 from rovsim.core.schema import Section

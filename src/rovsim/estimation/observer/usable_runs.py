@@ -6,7 +6,7 @@ from typing import Mapping, NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.measured import find_measured

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.run import Commands, latest
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle

@@ -14,7 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion

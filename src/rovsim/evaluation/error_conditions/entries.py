@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.findings import ErrorExplanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel

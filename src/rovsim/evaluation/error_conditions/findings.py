@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 from threadpoolctl import threadpool_limits
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.evaluation.error_conditions.bins import (
     BinnedErrors,
     Binning,

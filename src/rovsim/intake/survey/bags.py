@@ -7,7 +7,7 @@ from typing import Any, Callable, Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track

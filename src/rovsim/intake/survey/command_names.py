@@ -6,7 +6,7 @@ from typing import Collection, Mapping, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.measurement.recording.commands import guess_unit
 from rovsim.measurement.recording.units import in_words
 

@@ -8,8 +8,8 @@ from typing import Mapping, NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core import pwm
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT
 from rovsim.intake.survey.command_names import (

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_text
 from rovsim.intake.survey.column_names import find_columns

@@ -9,7 +9,7 @@ from collections import defaultdict
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.csv import KNOWN
 from rovsim.measurement.recording.delimited import Lines, without_cut_line

@@ -7,7 +7,7 @@ import scipy
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.cross_validation import noise_factor

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 from pydantic import Field
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.learned.layout import MOST_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.determinism import seeded_torch

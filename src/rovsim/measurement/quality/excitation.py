@@ -3,8 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import LONG_STEP
 from rovsim.core.rotations import continuous, normalized, turns, unrotate

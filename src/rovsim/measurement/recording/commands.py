@@ -6,8 +6,8 @@ from typing import Callable
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core import pwm
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
 from rovsim.measurement.campaign_file import CommandLog

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core import pwm
+from rovsim.core.axes import AXES
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import are_pulses, as_commands, as_logged

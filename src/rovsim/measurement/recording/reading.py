@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import axes_signs
 from rovsim.core.run import Commands, Logged, RunInfo, Site

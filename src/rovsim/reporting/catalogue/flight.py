@@ -5,7 +5,7 @@ from pathlib import Path
 
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.errors import unlisted
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect

@@ -9,8 +9,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import DENSITY_UNITS, FORCE_UNITS
+from rovsim.core.axes import AXES, DENSITY_UNITS, FORCE_UNITS
 from rovsim.reporting.figures.legends import explain_empty, note, set_log_scale
 from rovsim.reporting.figures.palette import FAMILIES, looks
 from rovsim.reporting.figures.style import sheet, styled

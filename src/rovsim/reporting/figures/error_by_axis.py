@@ -7,8 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from rovsim import AXES
-from rovsim.core.axes import ACCELERATION_UNITS, VELOCITY_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES, VELOCITY_UNITS
 from rovsim.core.horizons import HORIZON
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note, patches
 from rovsim.reporting.figures.palette import Look, Style, looks

@@ -3,8 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from rovsim import AXES
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.reporting.figures.legends import add_legend, explain_empty, lines, note
 from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.style import sheet, styled

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import VERMILION, Style
 from rovsim.reporting.figures.style import sheet, styled

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.reporting.figures.legends import explain_empty
 from rovsim.reporting.figures.palette import Look
 from rovsim.reporting.figures.series import broken, limits

@@ -2,7 +2,7 @@
 
 from pandas import DataFrame, MultiIndex
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.model_names import NOMINAL
 from rovsim.reporting.wording import listed, title

@@ -14,8 +14,7 @@ from matplotlib.lines import Line2D
 from numpy import ndarray as Array
 from PIL import Image
 
-from rovsim import AXES
-from rovsim.core.axes import ACCELERATION_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.files import write_bytes
 from rovsim.dynamics.effects.parameters import Signature
 from rovsim.evaluation.error_conditions.bins import BinnedErrors

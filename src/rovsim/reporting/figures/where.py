@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rovsim import AXES
-from rovsim.core.axes import ACCELERATION_UNITS
+from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.reporting.charts import BinCurve, chart_bins, find_varying_shares
 from rovsim.reporting.figures.legends import add_legend, explain_empty, lines, note
 from rovsim.reporting.figures.palette import Look, looks

@@ -7,7 +7,7 @@ from typing import Mapping, Sequence
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.files import write_text
 from rovsim.core.horizons import HORIZON, OPEN_LOOP
 from rovsim.core.making import tell_making

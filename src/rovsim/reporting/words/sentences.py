@@ -6,8 +6,7 @@ from typing import Mapping, Sequence
 import numpy as np
 from pandas import DataFrame, Series
 
-from rovsim import AXES
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.horizons import HORIZON
 from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL, PROPOSED, ZERO_ACCELERATION
 from rovsim.reporting.figures.palette import family, is_learned

@@ -2,8 +2,7 @@
 
 from typing import Mapping, Sequence
 
-from rovsim import AXES
-from rovsim.core.axes import VELOCITY_UNITS
+from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant
 from rovsim.results.diagnosis import Diagnosis, LookedAt, Standstill
 

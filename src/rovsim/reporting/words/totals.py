@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.dynamics.body import Body
 from rovsim.reporting.wording import listed, significant
 

@@ -4,8 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Mapping, Sequence
 
-from rovsim import AXES
-from rovsim.core.axes import FORCE_UNITS
+from rovsim.core.axes import AXES, FORCE_UNITS
 from rovsim.core.normal import Z_95
 from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect, StochasticCurrent

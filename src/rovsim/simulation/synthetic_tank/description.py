@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Mapping, Sequence
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 from rovsim.core.schema import Section, checked
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.vehicle import known_vehicle, load_vehicle, vehicle_file

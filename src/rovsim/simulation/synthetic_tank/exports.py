@@ -5,8 +5,8 @@ from typing import TextIO
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core import gauss_markov
+from rovsim.core.axes import AXES
 from rovsim.core.pwm import to_pulses
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView

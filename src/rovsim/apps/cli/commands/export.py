@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Sequence
 
-from rovsim import AXES
 from rovsim.application.export.sizes import Sized, flights
 from rovsim.application.export.targets import Target, target, targets
 from rovsim.application.export.write import TYPICAL, export_model, model_parts, write_export
@@ -20,6 +19,7 @@ from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.application.pipeline.reading import load_campaign_vehicle
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import say
+from rovsim.core.axes import AXES
 from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 from rovsim.core.model_names import BUILT_IN

@@ -6,7 +6,7 @@ from typing import Any, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
+from rovsim.core.axes import AXES
 
 Hidden = Mapping[str, Mapping[str, float]]  # values by effect and parameter
 

@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 from typing import Sequence
 
-from rovsim import AXES
-from rovsim.core.axes import FORCE, FORCE_UNITS
+from rovsim.core.axes import AXES, FORCE, FORCE_UNITS
 from rovsim.diagnosis.equations.products.variables import VARIABLES, write_unit
 from rovsim.dynamics.effects.law_codes import EAST, NORTH
 

@@ -10,8 +10,7 @@ from typing import Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
-from rovsim.core.axes import VELOCITY
+from rovsim.core.axes import AXES, VELOCITY
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
 

@@ -7,8 +7,8 @@ from typing import Any, Callable, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim import AXES
 from rovsim.core import pwm
+from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
