@@ -1,7 +1,7 @@
 """Horizons: how far replays look ahead before they restart from the measurement; their names."""
 
 OPEN_LOOP = "open_loop"  # a single replay of the whole run
-WINDOW = 2.0  # s, length of the windows in the ladder, in figures and in summaries
+STANDARD_WINDOW = 2.0  # s, of replays in the ladder, in figures and in summaries
 
 
 def name_horizon(seconds: float) -> str:
@@ -9,4 +9,4 @@ def name_horizon(seconds: float) -> str:
     return f"{seconds:g}"
 
 
-HORIZON = name_horizon(WINDOW)
+STANDARD_HORIZON = name_horizon(STANDARD_WINDOW)  # as predictions and scores call it

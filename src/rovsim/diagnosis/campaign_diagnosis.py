@@ -7,7 +7,7 @@ from typing import Callable, Iterator, Sequence
 import numpy as np
 
 from rovsim.core.files import write_text
-from rovsim.core.horizons import HORIZON, WINDOW
+from rovsim.core.horizons import STANDARD_HORIZON, STANDARD_WINDOW
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import begin_stage, step
 from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
@@ -127,14 +127,14 @@ def _climb(
     Returns:
         The ladder, and ids of the test runs in which the base diverges.
     """
-    models, window_settings = _list_models(diagnosis), settings.only(WINDOW)
+    models, window_settings = _list_models(diagnosis), settings.only(STANDARD_WINDOW)
     scores = [StepScore(model.name) for model in models]
     for name in runs.of("test"):
         motion = runs.motions[name]
         for model, score in zip(models, scores, strict=True):
             step()
             prediction = replay(model, motion, window_settings, open_loop=False)
-            score.add(motion, subtract(motion, prediction.horizons[HORIZON]))
+            score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
     steps = [score.step for score in scores]
     floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
     return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away

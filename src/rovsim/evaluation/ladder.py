@@ -5,7 +5,7 @@ from typing import Iterable
 
 import numpy as np
 
-from rovsim.core.horizons import HORIZON
+from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.evaluation.error_metrics import Errors, ErrorSums, Moments, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.ladder import Step
@@ -57,5 +57,5 @@ def score_step(name: str, pairs: Iterable[tuple[Motion, Replay]], split: str = "
     """The step of a model, from runs and their replays."""
     score = StepScore(name, split)
     for motion, replay in pairs:
-        score.add(motion, subtract(motion, replay.horizons[HORIZON]))
+        score.add(motion, subtract(motion, replay.horizons[STANDARD_HORIZON]))
     return score.step

@@ -2,7 +2,7 @@
 
 from typing import Iterable, Mapping
 
-from rovsim.core.horizons import HORIZON, OPEN_LOOP, name_horizon
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON, name_horizon
 from rovsim.evaluation.error_metrics import subtract, summarize
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import StepScore
@@ -99,7 +99,7 @@ class _ModelScores:
 
     def _summarize(self, motion: Motion, horizon: str, prediction: Prediction) -> Metrics:
         errors = subtract(motion, prediction)
-        if horizon == HORIZON:
+        if horizon == STANDARD_HORIZON:
             self.step.add(motion, errors)
         if horizon == name_horizon(self.growth.horizon):
             self.growth.add(motion, prediction)

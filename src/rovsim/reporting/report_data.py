@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Mapping, get_args, get_type_hints
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.horizons import HORIZON, OPEN_LOOP
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
 from rovsim.measurement.signals.measured import blank
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.figures import FigureKind, find_figure, list_figures, refuse_unknown
@@ -178,12 +178,12 @@ class RunData:
     @property
     def predicted_nu(self) -> dict[str, Array]:
         """Predicted velocity (n, 6) by model, in 2 s windows."""
-        return self._predicted(HORIZON, "nu")
+        return self._predicted(STANDARD_HORIZON, "nu")
 
     @property
     def predicted_nu_dot(self) -> dict[str, Array]:
         """Predicted acceleration (n, 6) by model, in 2 s windows."""
-        return self._predicted(HORIZON, "nu_dot")
+        return self._predicted(STANDARD_HORIZON, "nu_dot")
 
     @property
     def predicted_eta(self) -> dict[str, Array]:
@@ -215,8 +215,8 @@ class RunData:
 
 # How models were replayed for the predictions that a figure shows.
 REPLAYED = {
-    "predicted_nu": f"{HORIZON} s windows",
-    "predicted_nu_dot": f"{HORIZON} s windows",
+    "predicted_nu": f"{STANDARD_HORIZON} s windows",
+    "predicted_nu_dot": f"{STANDARD_HORIZON} s windows",
     "predicted_eta": "open loop",
 }
 

@@ -10,7 +10,7 @@ from pandas import DataFrame, MultiIndex, Series
 
 from rovsim.core.axes import ACCELERATION_UNITS, AXES, VELOCITY_UNITS
 from rovsim.core.files import write_text
-from rovsim.core.horizons import HORIZON
+from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
@@ -143,7 +143,7 @@ def _aligned(column: Series) -> str:
 
 def tabulate_errors(
     comparison: Comparison,
-    horizon: str = HORIZON,
+    horizon: str = STANDARD_HORIZON,
     split: str = "test",
     quantity: str = "velocity_rmse",
 ) -> Table:

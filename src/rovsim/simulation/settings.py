@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, PositiveFloat, field_validator
 
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.core.run import Between
 from rovsim.core.schema import Section
 from rovsim.measurement.signals.chain import SignalSettings
@@ -17,7 +17,7 @@ class ReplaySettings(Section):
     # thruster whose time constant is 0.05 s unstable (2.79 time constants)
     step: Annotated[float, Field(gt=0.0, le=0.1)] = 0.01
     commands: Between = "held"  # what an autopilot does with a set-point
-    horizons: tuple[PositiveFloat, ...] = (0.5, WINDOW, 5.0)  # s (docs/signals.md)
+    horizons: tuple[PositiveFloat, ...] = (0.5, STANDARD_WINDOW, 5.0)  # s (docs/signals.md)
 
     @property
     def longest(self) -> float:
@@ -31,8 +31,8 @@ class ReplaySettings(Section):
     @field_validator("horizons")
     @classmethod
     def _has_that_of_the_ladder(cls, horizons: tuple[float, ...]) -> tuple[float, ...]:
-        if WINDOW not in horizons or len(set(horizons)) < len(horizons):
-            raise ValueError(f"{WINDOW:g} s and others, each once")
+        if STANDARD_WINDOW not in horizons or len(set(horizons)) < len(horizons):
+            raise ValueError(f"{STANDARD_WINDOW:g} s and others, each once")
         return horizons
 
 

@@ -5,7 +5,7 @@ from typing import Mapping, Sequence
 
 from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
 from rovsim.core.bounded_cache import Recent, Remade
-from rovsim.core.horizons import HORIZON, WINDOW
+from rovsim.core.horizons import STANDARD_HORIZON, STANDARD_WINDOW
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.coverage import cover
@@ -29,10 +29,10 @@ def bands_when_asked(
     """
     recent = Recent[Band | None]()
     with_uncertainty = [model for model in models if model.uncertainty is not None]
-    window_settings = settings.only(WINDOW)
+    window_settings = settings.only(STANDARD_WINDOW)
 
     def of(model: Model, run: str) -> Band | None:
-        spans = find_spans(motions[run], window_settings.replay, open_loop=False)[HORIZON]
+        spans = find_spans(motions[run], window_settings.replay, open_loop=False)[STANDARD_HORIZON]
         return predict_band(model, motions[run], spans, window_settings)
 
     return {m.name: Remade(motions, partial(of, m), recent=recent) for m in with_uncertainty}
@@ -66,7 +66,7 @@ def cover_test_runs(
 
 
 def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:
-    window_settings = settings.only(*(s for s in settings.replay.horizons if s >= WINDOW))
+    window_settings = settings.only(*(s for s in settings.replay.horizons if s >= STANDARD_WINDOW))
     coverage = {}
     for name, spans in find_spans(motion, window_settings.replay, open_loop=False).items():
         band = predict_band(model, motion, spans, window_settings) if spans else None

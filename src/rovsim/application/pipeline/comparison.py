@@ -8,7 +8,7 @@ from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
 from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
 from rovsim.application.pipeline.replays import replay_when_asked, score_run
 from rovsim.core.bounded_cache import Remade
-from rovsim.core.horizons import HORIZON, OPEN_LOOP
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.entries import list_conditions
@@ -40,7 +40,7 @@ def compare(
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
         for model in models:
-            prediction = score_run(scores, model, motion, settings, HORIZON, OPEN_LOOP)
+            prediction = score_run(scores, model, motion, settings, STANDARD_HORIZON, OPEN_LOOP)
             replays[model.name].keep(run, prediction)
         for search in searches:
             search.add_run(motion)
@@ -72,7 +72,7 @@ def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tu
     if len(runs) <= DRAWN:
         return tuple(runs)
     errors = comparison.models[model].runs
-    rmse = np.array([errors[run].windows[HORIZON].velocity_rmse.array() for run in runs])
+    rmse = np.array([errors[run].windows[STANDARD_HORIZON].velocity_rmse.array() for run in runs])
     rmse = np.nan_to_num(rmse[:, np.isfinite(rmse).any(axis=0)], nan=np.inf)  # diverged: the worst
     worst = np.argsort(-np.mean(rmse / np.median(rmse, axis=0), axis=1), kind="stable")
     return tuple(runs[k] for k in sorted(worst[:DRAWN].tolist()))

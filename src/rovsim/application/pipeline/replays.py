@@ -3,7 +3,7 @@
 from typing import Iterator, Mapping, Sequence
 
 from rovsim.core.bounded_cache import Recent, Remade
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.core.progress import counted
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.score_collector import ScoreCollector
@@ -26,7 +26,7 @@ def replay_when_asked(
     Returns:
         Replays by model and run.
     """
-    window_settings, recent = settings.only(WINDOW), Recent[Replay]()
+    window_settings, recent = settings.only(STANDARD_WINDOW), Recent[Replay]()
 
     def by(model: Model) -> Remade[Replay]:
         return Remade(

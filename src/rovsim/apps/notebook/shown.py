@@ -12,7 +12,7 @@ from pandas import DataFrame, Series
 from rovsim.application.export.sizes import Sized
 from rovsim.apps.notebook import html
 from rovsim.core.axes import AXES
-from rovsim.core.horizons import HORIZON
+from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.reporting.figures import find_figure
@@ -91,7 +91,7 @@ class ShownComparison(Figures):
         return Series(values, name="error", dtype=float)
 
     def table(
-        self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
+        self, quantity: str = "velocity_rmse", horizon: str = STANDARD_HORIZON, split: str = "test"
     ) -> DataFrame:
         """Return the errors by model and axis, pooled over runs.
 
@@ -105,7 +105,7 @@ class ShownComparison(Figures):
         return printed.frame.set_axis(heads, axis=1)
 
     def printed(
-        self, quantity: str = "velocity_rmse", horizon: str = HORIZON, split: str = "test"
+        self, quantity: str = "velocity_rmse", horizon: str = STANDARD_HORIZON, split: str = "test"
     ) -> Table:
         """Return the same table for paper: see its `latex()`, `csv()` and `write(folder, name)`."""
         return tabulate_errors(self.result, horizon, split, quantity)

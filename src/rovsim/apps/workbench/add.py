@@ -22,7 +22,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import AXES
 from rovsim.core.errors import RovsimError
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.dynamics.model import Model
 from rovsim.simulation.prediction import Prediction
 
@@ -38,7 +38,7 @@ class Add:
         train = bench.data.runs.of("train")
         self.runs = train or list(bench.data.motions)
         run = first_run(bench)
-        first = {"run": run, "axes": excited(bench, run), "horizon": WINDOW}
+        first = {"run": run, "axes": excited(bench, run), "horizon": STANDARD_WINDOW}
         possible: Mapping[str, Sequence[Any]] = {
             "run": self.runs,
             "axes": AXES,

@@ -33,7 +33,7 @@ from rovsim.apps.workbench.traces import (
 )
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import AXES, VELOCITY_UNITS
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.wording import title
 from rovsim.simulation.bands import LEVEL, Band, why_without_bands
@@ -58,7 +58,7 @@ class Compare:
             "models": [bench.base.name],
             "axes": excited(bench, run),
             "quantity": "nu",
-            "horizon": WINDOW,
+            "horizon": STANDARD_WINDOW,
             "bands": False,
         }
         possible: dict[str, Sequence[Any]] = {

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from numpy import ndarray as Array
 
 from rovsim.core.bounded_cache import Recent
-from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_WINDOW, name_horizon
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
 from rovsim.evaluation.error_metrics import subtract, summarize
@@ -76,14 +76,16 @@ class KeptReplays:
     def run_error(self, model: Model, run: str) -> float | None:
         """Return the 2 s error (`windows_2s`) on one run alone; None if it has none."""
         motion = self.runs.motions[run]
-        replayed = self.replayed(model, run, WINDOW)
+        replayed = self.replayed(model, run, STANDARD_WINDOW)
         return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
 
     def step(self, model: Model) -> Step:
         """Return the ladder's step of a model, its errors on the test runs; this opens these."""
         if model not in self._steps:
             tests = self.runs.of("test")
-            pairs = ((self.runs.motions[r], self.replayed(model, r, WINDOW)) for r in tests)
+            pairs = (
+                (self.runs.motions[r], self.replayed(model, r, STANDARD_WINDOW)) for r in tests
+            )
             self._steps[model] = score_step(model.name, pairs)
         return self._steps[model]
 

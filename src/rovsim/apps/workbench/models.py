@@ -34,7 +34,7 @@ from rovsim.apps.workbench.traces import (
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.errors import RovsimError
-from rovsim.core.horizons import OPEN_LOOP, WINDOW, name_horizon
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_WINDOW, name_horizon
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import name_parameter
@@ -71,7 +71,7 @@ class Models:
             "right": next(reversed(others), None),
             "run": run,
             "axes": excited(bench, run),
-            "horizon": WINDOW,
+            "horizon": STANDARD_WINDOW,
         }
         possible: Mapping[str, Sequence[Any]] = {
             "left": names,

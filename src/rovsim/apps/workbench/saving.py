@@ -17,7 +17,7 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.runaway import find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.dynamics.model import Model
 
 
@@ -57,7 +57,8 @@ class Saving:
         """Whether a replay of a test run diverges (2 s windows)."""
         replays, motions = self.bench.replays, self.bench.data.motions
         return any(
-            find_divergence(motions[run].time, replays.prediction(model, run, WINDOW)) is not None
+            find_divergence(motions[run].time, replays.prediction(model, run, STANDARD_WINDOW))
+            is not None
             for run in self.bench.data.runs.of("test")
         )
 

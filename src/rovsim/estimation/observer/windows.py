@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.integrate import cumulative_simpson
 
-from rovsim.core.horizons import WINDOW
+from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.core.progress import step
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.innovations import batch_of, find_fluid_memory
@@ -58,7 +58,7 @@ class Windows:
     """Windows of one run, in which models are started anew at what was measured."""
 
     run: ObservedRun
-    seconds: float = WINDOW
+    seconds: float = STANDARD_WINDOW
 
     @cached_property
     def spans(self) -> list[tuple[int, int]]:

@@ -12,7 +12,7 @@ from rovsim.measurement.recording.csv_checks import LIMITS
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.recording import Recording
 
-WINDOW = 0.5  # s, over which poses and velocities are compared: slower than noise
+AVERAGING_TIME = 0.5  # s, over which poses and velocities are compared: slower than noise
 FEWEST = 20  # windows
 EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion is not compared
 ALIKE, UNLIKE = 0.9, 0.6  # cosine between measured velocities and those from the poses
@@ -82,9 +82,9 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
     time, position, attitude = of.time[tracked], of.position[tracked], of.attitude[tracked]
     if len(time) < FEWEST:
         return None
-    k = max(1, round(WINDOW / float(np.median(np.diff(time)))))
+    k = max(1, round(AVERAGING_TIME / float(np.median(np.diff(time)))))
     duration = (time[k:] - time[:-k])[:, None]
-    usable = duration[:, 0] < 2.0 * WINDOW + 2.0 * np.median(np.diff(time))
+    usable = duration[:, 0] < 2.0 * AVERAGING_TIME + 2.0 * np.median(np.diff(time))
     if usable.sum() < FEWEST:
         return None
     if kind == "velocity":

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from pandas import DataFrame
 
 from rovsim.core.axes import ACCELERATION_UNITS, AXES, VELOCITY_UNITS
-from rovsim.core.horizons import HORIZON
+from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note, patches
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.pooled import (
@@ -38,7 +38,7 @@ TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written 
 
 
 @styled()
-def draw(*, comparison: Comparison, horizon: str = HORIZON, split: str = "test") -> Figure:
+def draw(*, comparison: Comparison, horizon: str = STANDARD_HORIZON, split: str = "test") -> Figure:
     """Draw `comparison.json` for one horizon ("2", "open_loop") and one split."""
     style = looks(comparison.models)
     several = len(comparison.models) > 1  # one alone is always as good as itself

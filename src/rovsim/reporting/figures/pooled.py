@@ -3,7 +3,7 @@
 from pandas import DataFrame, MultiIndex
 
 from rovsim.core.axes import AXES
-from rovsim.core.horizons import HORIZON, OPEN_LOOP
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
 from rovsim.core.model_names import NOMINAL
 from rovsim.reporting.wording import listed, title
 from rovsim.results.comparison import Comparison
@@ -22,7 +22,7 @@ def tidy(comparison: Comparison, quantity: str, horizon: str, split: str) -> Dat
 
 
 def pool(
-    comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
+    comparison: Comparison, quantity: str, horizon: str = STANDARD_HORIZON, split: str = "test"
 ) -> DataFrame:
     """Return the mean error over the runs of a split, all with the same weight.
 
@@ -53,7 +53,7 @@ def pool(
 
 
 def between_runs(
-    comparison: Comparison, quantity: str, horizon: str = HORIZON, split: str = "test"
+    comparison: Comparison, quantity: str, horizon: str = STANDARD_HORIZON, split: str = "test"
 ) -> tuple[DataFrame, DataFrame]:
     """Return the lowest and the highest value among the runs that `pool` averages.
 

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from rovsim.core.axes import AXES
 from rovsim.core.files import write_text
-from rovsim.core.horizons import HORIZON, OPEN_LOOP
+from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
 from rovsim.core.making import tell_making
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, find_figure
@@ -34,9 +34,9 @@ from rovsim.results.timing import RATES
 
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
-    (HORIZON, "velocity_rmse"),
-    (HORIZON, "acceleration_rmse"),
-    (HORIZON, "velocity_mae"),
+    (STANDARD_HORIZON, "velocity_rmse"),
+    (STANDARD_HORIZON, "acceleration_rmse"),
+    (STANDARD_HORIZON, "velocity_mae"),
     (OPEN_LOOP, "velocity_rmse"),
 )
 

@@ -7,7 +7,7 @@ import numpy as np
 from pandas import DataFrame, Series
 
 from rovsim.core.axes import AXES, VELOCITY_UNITS
-from rovsim.core.horizons import HORIZON
+from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL, PROPOSED, ZERO_ACCELERATION
 from rovsim.reporting.figures.palette import family, is_learned
 from rovsim.reporting.figures.pooled import pool, relate
@@ -35,7 +35,7 @@ def summarize(data: ReportData) -> list[str]:
     """Return the summary, one string per paragraph; nothing without a comparison."""
     if data.comparison is None:
         return []
-    errors = pool(data.comparison, "velocity_rmse", HORIZON, "test")
+    errors = pool(data.comparison, "velocity_rmse", STANDARD_HORIZON, "test")
     steps = scores(data.ladder) if data.ladder else {}
     paragraphs = [
         runs_sentences(data.quality),
