@@ -12,7 +12,7 @@ from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.spectrum import find_spectrum
 from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
-from rovsim.evaluation.error_conditions.findings import explain
+from rovsim.evaluation.error_conditions.findings import explain_errors
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published
 from rovsim.results.comparison import Comparison
@@ -113,7 +113,7 @@ def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions
         noise = np.random.default_rng(k).standard_normal(empty.error.shape)
         error = _level(name) * (0.1 * noise + np.outer(speed * np.abs(speed), [1, 0, 0, 0, 0, 0]))
         found.append(
-            SearchedModel(name, "train", ("3dof-1",), explain(replace(empty, error=error)))
+            SearchedModel(name, "train", ("3dof-1",), explain_errors(replace(empty, error=error)))
         )
     return list_conditions(found)
 

@@ -16,7 +16,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.clocks import ClockDrift
 from rovsim.dynamics.effects.thrusters import VoltageSag
 from rovsim.estimation.observer.train_runs import prepare_train
-from rovsim.evaluation.error_metrics import ErrorSums, Moments, subtract, summarize
+from rovsim.evaluation.error_metrics import ErrorSums, VelocityMoments, compute_metrics, subtract
 from rovsim.evaluation.ladder import score_step
 from rovsim.evaluation.score_collector import ScoreCollector, score_replay
 from rovsim.measurement.runs import Runs
@@ -96,7 +96,7 @@ def test_runs_taken_in_one_by_one_score_as_one_set():
     parts = [random.normal(k, 1.0 + k, size=(n, 6)) for k, n in enumerate((50, 0, 7))]
     whole = np.concatenate(parts)
     motions = [SimpleNamespace(nu=x, usable=np.ones(len(x), bool), measured=None) for x in parts]
-    together = sum(map(Moments.of, motions), Moments.nothing())
+    together = sum(map(VelocityMoments.of, motions), VelocityMoments.nothing())
     np.testing.assert_allclose(together.std, whole.std(axis=0), rtol=1e-12)
     np.testing.assert_allclose(together.mean, whole.mean(axis=0), rtol=1e-12)
 
@@ -111,7 +111,7 @@ def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
     rmse = np.sqrt(np.mean(nu**2, axis=0))
     spread = np.concatenate([m.nu[m.usable] for m in halves]).std(axis=0)
     assert step.windows_2s == pytest.approx(np.mean(rmse / spread), rel=1e-12)
-    assert summarize(errors[0]) == ErrorSums.of(errors[0]).metrics()
+    assert compute_metrics(errors[0]) == ErrorSums.of(errors[0]).metrics()
 
 
 def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, monkeypatch):

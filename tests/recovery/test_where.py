@@ -10,9 +10,9 @@ from rovsim.core.axes import AXES
 from rovsim.core.run import Site
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches
 from rovsim.evaluation.error_conditions.conditions import average_blocks
-from rovsim.evaluation.error_conditions.findings import explain
+from rovsim.evaluation.error_conditions.findings import explain_errors
 from rovsim.evaluation.error_conditions.search import ConditionSearch
-from rovsim.evaluation.error_conditions.sentences import summarize
+from rovsim.evaluation.error_conditions.sentences import say_findings
 from rovsim.results.error_conditions import BLOCK
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
@@ -60,57 +60,57 @@ CAUSES = {
 def test_a_planted_cause_is_the_first_finding(cause, seed):
     shape, condition, words = CAUSES[cause]
     world = planted(shape, seed=seed)
-    found = explain(world)
+    found = explain_errors(world)
     first = found.findings[0]
     assert (first.axis, first.condition) == ("surge", condition)
     explained = 1 - np.mean((0.05 * noise(1.0, seed)[:, 0]) ** 2) / np.mean(world.error[:, 0] ** 2)
     # bins are steps, and seldom visited ones are not judged, so the share errs to the low side
     low = 0.3 if first.table.binning.judged.all() else 0.8
     assert explained - low < first.share_of_error < explained + 0.05
-    assert words in summarize(found)[0]
-    assert f"{100 * first.share_of_error:.0f} %" in summarize(found)[0]
+    assert words in say_findings(found)[0]
+    assert f"{100 * first.share_of_error:.0f} %" in say_findings(found)[0]
     assert first.share().share_of_error == pytest.approx(first.share_of_error, abs=1e-3)
 
 
 def test_what_a_constant_alone_would_explain_is_told_beside_it():
     """The figure takes a constant out: the sentence must hold both numbers."""
-    explanation = explain(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)))
-    first, said = explanation.findings[0], summarize(explanation)[0]
+    explanation = explain_errors(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)))
+    first, said = explanation.findings[0], say_findings(explanation)[0]
     assert first.condition == "surge speed"
     throughout = explanation.tables["surge"]["throughout"].share
     assert throughout > 0.1
     assert f", a constant alone {100 * throughout:.0f} %." in said
-    pure = summarize(explain(planted(lambda u, t: u - u.mean())))[0]
+    pure = say_findings(explain_errors(planted(lambda u, t: u - u.mean())))[0]
     assert "a constant alone" not in pure
 
 
 def test_two_causes_are_told_one_after_the_other():
     world = planted(lambda u, t: u * np.abs(u) - 0.02 * t)
-    conditions = [f.condition for f in explain(world).findings]
+    conditions = [f.condition for f in explain_errors(world).findings]
     assert set(conditions) == {"surge speed", "surge thrust"}
 
 
 @pytest.mark.parametrize("memory", [pytest.param(0.0, marks=pytest.mark.thorough), 1.0])
 def test_noise_gives_no_finding_in_95_of_100_campaigns(memory):
     seeds = range(60)
-    alarms = sum(bool(explain(driven(SECONDS, noise(memory, s), s)).findings) for s in seeds)
+    alarms = sum(bool(explain_errors(driven(SECONDS, noise(memory, s), s)).findings) for s in seeds)
     assert alarms <= 0.05 * len(seeds)
 
 
 def test_a_constant_error_is_told_as_the_push_that_it_stands_for():
     M = np.diag([15.0, 20.0, 25.0, 1.0, 1.0, 2.0])
-    found = explain(planted(lambda u, t: 0.2 + 0 * u, size=-1.0), inertia=M)
+    found = explain_errors(planted(lambda u, t: 0.2 + 0 * u, size=-1.0), inertia=M)
     assert found.findings[0].push == pytest.approx(-3.0, rel=0.05)
     assert found.findings[0].share().push == pytest.approx(-3.0, rel=0.05)
     assert re.search(
         r"more backward than the model, as a push of (2\.9|3\.0|3\.1) N would make it",
-        summarize(found)[0],
+        say_findings(found)[0],
     )
-    found = explain(planted(lambda u, t: 0.2 + 0 * u, axis="yaw"), inertia=M)
-    assert re.search(r"as a push of 0\.(39|4|40|41) N m would", summarize(found)[0])
-    beside = explain(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)), inertia=M)
+    found = explain_errors(planted(lambda u, t: 0.2 + 0 * u, axis="yaw"), inertia=M)
+    assert re.search(r"as a push of 0\.(39|4|40|41) N m would", say_findings(found)[0])
+    beside = explain_errors(planted(lambda u, t: 0.1 + 0.6 * u * np.abs(u)), inertia=M)
     assert beside.findings[0].share().push is None
-    assert re.search(r"a constant alone \d+ % \(a push of [12]\.\d N\)\.", summarize(beside)[0])
+    assert re.search(r"a constant alone \d+ % \(a push of [12]\.\d N\)\.", say_findings(beside)[0])
 
 
 def test_a_push_holds_what_other_axes_of_the_inertia_add():
@@ -119,27 +119,30 @@ def test_a_push_holds_what_other_axes_of_the_inertia_add():
     world = planted(lambda u, t: 0.2 + 0 * u)
     error = world.error.copy()
     error[:, 4] = 0.1
-    pushed = explain(replace(world, error=error), inertia=M)
+    pushed = explain_errors(replace(world, error=error), inertia=M)
     surge = next(f for f in pushed.findings if f.axis == "surge")
     assert surge.push == pytest.approx(3.5, rel=0.05)
     unseen = replace(world, error=error, axes=np.array([True] * 3 + [False] * 3))
-    surge = next(f for f in explain(unseen, inertia=M).findings if f.axis == "surge")
+    surge = next(f for f in explain_errors(unseen, inertia=M).findings if f.axis == "surge")
     assert surge.push == pytest.approx(3.0, rel=0.05)
 
 
 def test_an_adequate_model_is_told_to_be_one():
-    assert "No condition explains" in summarize(explain(driven(SECONDS, noise(1.0, 3), 3)))[0]
+    assert (
+        "No condition explains"
+        in say_findings(explain_errors(driven(SECONDS, noise(1.0, 3), 3)))[0]
+    )
 
 
 def test_too_little_is_said_to_be_too_little():
     short = driven(2.0, noise(0.0, 0)[:8])
-    assert "Too little" in summarize(explain(short))[0]
+    assert "Too little" in say_findings(explain_errors(short))[0]
 
 
 def test_an_error_too_small_to_matter_is_not_a_finding():
     world = planted(lambda u, t: 0.02 * u)
     world = replace(world, error=1e-3 * world.error)
-    assert explain(world).findings == []
+    assert explain_errors(world).findings == []
 
 
 @pytest.mark.parametrize("memory", [0.0, 1.0])

@@ -159,13 +159,13 @@ def rms(x: Array, count: Array | None = None) -> Array:
         return root_mean(np.square(x).sum(axis=0), len(x) if count is None else count)
 
 
-def summarize(errors: Errors) -> Metrics:
+def compute_metrics(errors: Errors) -> Metrics:
     """Compute the metrics of the errors of one run."""
     return ErrorSums.of(errors).metrics()
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class VelocityMoments:
     """Moments of samples on six axes; those of two sets add up.
 
     Chan, Golub & LeVeque 1983, Am. Stat. 37(3), eq. 2.1.
@@ -181,23 +181,23 @@ class Moments:
     squares: Array
 
     @staticmethod
-    def nothing() -> "Moments":
+    def nothing() -> "VelocityMoments":
         """Moments of no samples."""
-        return Moments(np.zeros(6, int), np.zeros(6), np.zeros(6))
+        return VelocityMoments(np.zeros(6, int), np.zeros(6), np.zeros(6))
 
     @staticmethod
-    def of(motion: Motion) -> "Moments":
+    def of(motion: Motion) -> "VelocityMoments":
         """Moments of the measured velocity of a run, on the axes that were measured."""
         x = motion.nu[motion.usable]
         mean = x.mean(axis=0) if len(x) else np.zeros(6)
         count = len(x) * find_measured(motion.measured).astype(int)
-        return Moments(count, mean, np.square(x - mean).sum(axis=0))
+        return VelocityMoments(count, mean, np.square(x - mean).sum(axis=0))
 
-    def __add__(self, other: "Moments") -> "Moments":
+    def __add__(self, other: "VelocityMoments") -> "VelocityMoments":
         count = self.count + other.count
         share, shift = other.count / np.maximum(count, 1), other.mean - self.mean
         squares = self.squares + other.squares + shift**2 * self.count * share
-        return Moments(count, self.mean + share * shift, squares)
+        return VelocityMoments(count, self.mean + share * shift, squares)
 
     @property
     def std(self) -> Array:
@@ -207,7 +207,7 @@ class Moments:
 
 def measured_spread(motions: Iterable[Motion]) -> Array:
     """Standard deviation (6,) of the measured velocity over some runs; NaN on unmeasured axes."""
-    return sum(map(Moments.of, motions), Moments.nothing()).std
+    return sum(map(VelocityMoments.of, motions), VelocityMoments.nothing()).std
 
 
 def normalize(spread: Array, velocity_rmse: Array) -> float | None:

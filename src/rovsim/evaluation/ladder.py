@@ -6,7 +6,7 @@ from typing import Iterable
 import numpy as np
 
 from rovsim.core.horizons import STANDARD_HORIZON
-from rovsim.evaluation.error_metrics import Errors, ErrorSums, Moments, normalize, subtract
+from rovsim.evaluation.error_metrics import Errors, ErrorSums, VelocityMoments, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.ladder import Step
 from rovsim.simulation.prediction import Replay
@@ -26,7 +26,7 @@ class StepScore:
     split: str = "test"
     away: list[str] = field(default_factory=list)
     _errors: ErrorSums = field(default_factory=ErrorSums.nothing)
-    _measured: Moments = field(default_factory=Moments.nothing)
+    _measured: VelocityMoments = field(default_factory=VelocityMoments.nothing)
 
     def add(self, motion: Motion, errors: Errors) -> None:
         """Add a run and the errors in its windows of 2 s; ignore a run of another split."""
@@ -36,7 +36,7 @@ class StepScore:
         if not np.isfinite(sums.nu_squared).all():
             self.away.append(motion.run.id)
         self._errors += sums
-        self._measured += Moments.of(motion)
+        self._measured += VelocityMoments.of(motion)
 
     @property
     def step(self) -> Step:

@@ -3,7 +3,7 @@
 from typing import Iterable, Mapping
 
 from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON, name_horizon
-from rovsim.evaluation.error_metrics import subtract, summarize
+from rovsim.evaluation.error_metrics import compute_metrics, subtract
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import StepScore
 from rovsim.measurement.signals.motion import Motion
@@ -103,4 +103,4 @@ class _ModelScores:
             self.step.add(motion, errors)
         if horizon == name_horizon(self.growth.horizon):
             self.growth.add(motion, prediction)
-        return summarize(errors)
+        return compute_metrics(errors)

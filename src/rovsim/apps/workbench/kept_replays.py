@@ -8,7 +8,7 @@ from rovsim.core.bounded_cache import Recent
 from rovsim.core.horizons import OPEN_LOOP, STANDARD_WINDOW, name_horizon
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.search import SearchedModel, search_runs
-from rovsim.evaluation.error_metrics import subtract, summarize
+from rovsim.evaluation.error_metrics import compute_metrics, subtract
 from rovsim.evaluation.ladder import score_step
 from rovsim.measurement.runs import Runs
 from rovsim.results.comparison import Metrics
@@ -71,7 +71,9 @@ class KeptReplays:
 
     def metrics(self, model: Model, run: str, horizon: float | None) -> Metrics:
         """Return the errors on one run, with the numbers of comparison.json."""
-        return summarize(subtract(self.runs.motions[run], self.prediction(model, run, horizon)))
+        return compute_metrics(
+            subtract(self.runs.motions[run], self.prediction(model, run, horizon))
+        )
 
     def run_error(self, model: Model, run: str) -> float | None:
         """Return the 2 s error (`windows_2s`) on one run alone; None if it has none."""

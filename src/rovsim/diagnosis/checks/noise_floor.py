@@ -17,7 +17,7 @@ from rovsim.estimation.observer.drifting_current import push_by_current
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import Windows
-from rovsim.evaluation.error_metrics import Moments, normalize, root_mean
+from rovsim.evaluation.error_metrics import VelocityMoments, normalize, root_mean
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 
@@ -57,14 +57,14 @@ def simulate_noise_floor(
         know how the noise of these passes the filter.
     """
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
-    squares, count, windows, moments = np.zeros(6), 0, 0, Moments.nothing()
+    squares, count, windows, moments = np.zeros(6), 0, 0, VelocityMoments.nothing()
     for run in runs:
         if run.motion.measured is not None:
             return None
         errors = perfect.errors(run)
         squares, count = squares + np.square(errors).sum(axis=0), count + len(errors)
         windows += len(Windows(run).spans)
-        moments += Moments.of(run.motion)
+        moments += VelocityMoments.of(run.motion)
     return NoiseFloor(normalize(moments.std, root_mean(squares, count)), windows)
 
 

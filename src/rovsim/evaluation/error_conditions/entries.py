@@ -9,7 +9,7 @@ from rovsim.core.axes import AXES
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.findings import ErrorExplanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel
-from rovsim.evaluation.error_conditions.sentences import UNITS, say, summarize
+from rovsim.evaluation.error_conditions.sentences import UNITS, say_finding, say_findings
 from rovsim.results.error_conditions import (
     ConditionFinding,
     ConditionTable,
@@ -32,7 +32,7 @@ def _list_model(one: SearchedModel) -> ModelConditions:
         runs=one.runs,
         enough=explanation.enough,
         error={axis: _size(explanation, k) for k, axis in enumerate(AXES)},
-        sentences=tuple(summarize(explanation)),
+        sentences=tuple(say_findings(explanation)),
         findings=tuple(map(_finding, explanation.findings)),
         axes={
             axis: {name: tabulate(t) for name, t in tables.items()}
@@ -60,7 +60,7 @@ def _finding(found: Finding) -> ConditionFinding:
         unit=UNITS.get(found.axis, "rad/s²"),
         chance=found.chance,
         alike=tuple(c.name for c in found.alike),
-        sentence=say(found),
+        sentence=say_finding(found),
     )
 
 

@@ -94,7 +94,7 @@ class ErrorExplanation:
         return ErrorExplanation(None, {axis: {} for axis in AXES}, [], False)
 
 
-def explain(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> ErrorExplanation:
+def explain_errors(blocks: Blocks, seed: int = 0, inertia: Array | None = None) -> ErrorExplanation:
     """Search all conditions on the axes that were measured.
 
     Args:

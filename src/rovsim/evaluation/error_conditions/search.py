@@ -5,7 +5,7 @@ from typing import Collection
 
 from rovsim.dynamics.model import Model
 from rovsim.evaluation.error_conditions.conditions import Blocks, average_blocks, join_blocks
-from rovsim.evaluation.error_conditions.findings import ErrorExplanation, explain
+from rovsim.evaluation.error_conditions.findings import ErrorExplanation, explain_errors
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import Samples, sample_run
@@ -79,7 +79,7 @@ class ConditionSearch:
         if not parts:
             explanation = ErrorExplanation.nothing()
         else:
-            explanation = explain(join_blocks(parts), inertia=self._model.M)
+            explanation = explain_errors(join_blocks(parts), inertia=self._model.M)
         return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)
 
 

@@ -51,13 +51,13 @@ USUAL = {
 STRAIGHT = 0.6  # correlation of error and condition: beyond, the error grows or falls with it
 
 
-def say(found: Finding) -> str:
+def say_finding(found: Finding) -> str:
     """Say a finding in sentences that need no others."""
     earlier = f", beyond {' and '.join(found.after)}" if found.after else ""
     return f"{_begin(found.axis)}{earlier}: {_what(found)} {_share(found)} {_usual(found)}"
 
 
-def summarize(explanation: ErrorExplanation) -> list[str]:
+def say_findings(explanation: ErrorExplanation) -> list[str]:
     """Say all findings, or why there are none, in sentences."""
     if not explanation.enough:
         return ["Too little was recorded to tell under which condition the model fails."]
@@ -66,7 +66,7 @@ def summarize(explanation: ErrorExplanation) -> list[str]:
             "No condition explains the error. Over speed, thrust, attitude, place and time, the "
             "mean error is no larger than chance would make it."
         ]
-    return [say(finding) for finding in explanation.findings]
+    return [say_finding(finding) for finding in explanation.findings]
 
 
 def amount(value: float) -> str:
