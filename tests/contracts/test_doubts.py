@@ -27,7 +27,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.rough_motion import velocities
+from rovsim.measurement.rough_motion import estimate_velocities
 from rovsim.measurement.signals.outliers import KeepAll
 from said import unfolded
 
@@ -170,13 +170,13 @@ def test_a_time_zone_is_told_without_a_remainder_of_nothing(campaign):
     vehicle = load_campaign_vehicle(load_campaign(campaign))
     recording, _ = read_recording(load_campaign(campaign), "6dof-1")
     caused = cause(vehicle, recording.commands, 0.0, 120.0)
-    lag = cross_correlate(velocities(recording), *caused).best(np.eye(3))[1]
+    lag = cross_correlate(estimate_velocities(recording), *caused).best(np.eye(3))[1]
     for rest, told in (
         (0.0, "Add +7200 s to the times of the commands (`comm"),
         (5.0, "the +5.0 s"),
     ):
         late = 7200.0 + rest - lag
-        found = cross_correlate(velocities(recording), caused[0] - late, caused[1], late)
+        found = cross_correlate(estimate_velocities(recording), caused[0] - late, caused[1], late)
         assert told in tell_following(found, np.eye(3))
 
 

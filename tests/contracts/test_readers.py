@@ -44,7 +44,7 @@ import numpy as np
 
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.readers import FileAxes, MocapReader
-from rovsim.measurement.recording.signature import Signature, starts_with
+from rovsim.measurement.recording.signature import FileSignature, starts_with
 
 
 def read(path, mocap):
@@ -54,7 +54,10 @@ def read(path, mocap):
 
 
 MOCAP_READER = MocapReader(
-    "plain", read, (Signature(starts_with(b"PLAIN")),), axes=FileAxes(("ned",), ("frd",), said="so")
+    "plain",
+    read,
+    (FileSignature(starts_with(b"PLAIN")),),
+    axes=FileAxes(("ned",), ("frd",), said="so"),
 )
 '''
 

@@ -19,10 +19,10 @@ from rovsim.measurement.signals.chain import (
     SignalSettings,
     clean,
     differentiated,
+    filter_and_differentiate,
     filtered,
     read_stage,
     resampled,
-    velocities,
 )
 from rovsim.measurement.signals.differentiate import Differentiation
 from rovsim.measurement.signals.filter import Filter, filter_eta
@@ -97,7 +97,7 @@ def test_an_unknown_key_is_named():
 @pytest.mark.parametrize("chain", CHAINS, ids=name)
 def test_a_body_at_rest_has_no_velocity(chain):
     eta = np.tile(wandering(1, 1), (60, 1))
-    for x in velocities(eta, 0.01, chain):
+    for x in filter_and_differentiate(eta, 0.01, chain):
         np.testing.assert_allclose(x, 0.0, atol=1e-8)
 
 
@@ -105,8 +105,8 @@ def test_a_body_at_rest_has_no_velocity(chain):
 @pytest.mark.parametrize("n", [50, 201])
 def test_a_film_run_backwards(chain, n):
     eta = wandering(2, n)
-    nu, nu_dot = velocities(eta, 0.01, chain)
-    back_nu, back_nu_dot = velocities(eta[::-1], 0.01, chain)
+    nu, nu_dot = filter_and_differentiate(eta, 0.01, chain)
+    back_nu, back_nu_dot = filter_and_differentiate(eta[::-1], 0.01, chain)
     # nu_dot = d/dt nu keeps its sign; the tolerance is the filter's remaining transient
     np.testing.assert_allclose(back_nu[::-1], -nu, atol=1e-4)
     np.testing.assert_allclose(back_nu_dot[::-1], nu_dot, atol=5e-3)
@@ -115,9 +115,9 @@ def test_a_film_run_backwards(chain, n):
 @pytest.mark.parametrize("chain", CHAINS, ids=name)
 def test_a_batch_is_a_loop(chain):
     eta = wandering(3, 50, batch=(2, 3))
-    nu, nu_dot = velocities(eta, 0.01, chain)
+    nu, nu_dot = filter_and_differentiate(eta, 0.01, chain)
     for i in np.ndindex(2, 3):
-        one_nu, one_nu_dot = velocities(eta[i], 0.01, chain)
+        one_nu, one_nu_dot = filter_and_differentiate(eta[i], 0.01, chain)
         np.testing.assert_allclose(nu[i], one_nu, atol=1e-12)
         np.testing.assert_allclose(nu_dot[i], one_nu_dot, atol=1e-9)
 
@@ -125,7 +125,7 @@ def test_a_batch_is_a_loop(chain):
 @pytest.mark.parametrize("chain", CHAINS, ids=name)
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 7, 20])
 def test_short_series_give_numbers_or_say_that_they_cannot(chain, n):
-    nu, nu_dot = velocities(wandering(4, n), 0.01, chain)
+    nu, nu_dot = filter_and_differentiate(wandering(4, n), 0.01, chain)
     assert nu.shape == nu_dot.shape == (n, 6)
     assert (np.isfinite(nu) == (n >= 3)).all()
     assert (np.isfinite(nu_dot) == (n >= 3)).all()

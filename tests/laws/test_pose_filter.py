@@ -29,7 +29,7 @@ from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.estimation.observer.residual_source import Linearised
 from rovsim.measurement.signals.binned import backward_difference
-from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.chain import SignalSettings, filter_and_differentiate
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.measured_states import true_states, undo_mocap_view
 from rovsim.simulation.replay import replay, simulate
@@ -120,7 +120,7 @@ def driven(world, seconds=6.0):
     run = motion(0.6 * sticks(7, 3), seconds=seconds, start=start)
     true = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     shown = world.mocap_view.report(true, 0.01)
-    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN.signals)
+    nu, nu_dot = filter_and_differentiate(shown[:, :7], 0.01, OPEN.signals)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)
     return true, replace(
         run, eta=shown[:, :7], nu=nu, nu_dot=nu_dot, state_nu=shown[:, 7:], usable=usable

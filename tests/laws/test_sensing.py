@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from rovsim.core.rotations import exp, log, matrix, multiply, normalized
 from rovsim.dynamics.effects.sensing import MarkerMisalignment, MarkerOffset, WorldTilt
-from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.chain import SignalSettings, filter_and_differentiate
 from rovsim.measurement.signals.filter import Butterworth
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.samples import sample_run
@@ -68,7 +68,7 @@ def driven(world, seconds=4.0):
     run = motion(0.6 * sticks(7, 1), seconds=seconds, start=start)
     true = simulate(world, run, [(0, len(run.time) - 1, start)], ReplaySettings())[0]
     shown = world.mocap_view.states(true)
-    nu, nu_dot = velocities(shown[:, :7], 0.01, OPEN.signals)
+    nu, nu_dot = filter_and_differentiate(shown[:, :7], 0.01, OPEN.signals)
     usable = (run.time > 0.2) & (run.time < seconds - 0.2)
     return true, replace(
         run, eta=shown[:, :7], nu=nu, nu_dot=nu_dot, state_nu=shown[:, 7:], usable=usable

@@ -11,8 +11,8 @@ from rovsim.measurement.signals.binned import backward_difference, bin_means, ed
 from rovsim.measurement.signals.chain import (
     SignalSettings,
     differentiated,
+    filter_and_differentiate,
     filtered,
-    velocities,
 )
 from rovsim.measurement.signals.differentiate import (
     Central,
@@ -173,7 +173,7 @@ def test_noise_in_velocity_and_acceleration_is_what_theory_says(seed):
     rate, n, noise = 100.0, 20000, np.repeat([0.5e-3, 2e-3], 3)
     e = noise * np.random.default_rng(seed).normal(size=(n, 6))
     eta = np.concatenate([e[:, :3], rotations.exp(e[:, 3:])], axis=1)
-    nu, nu_dot = velocities(eta, 1 / rate, SignalSettings())
+    nu, nu_dot = filter_and_differentiate(eta, 1 / rate, SignalSettings())
     f = np.linspace(0, rate / 2, 5000)[:-1]
     gain = 1 / (1 + (np.tan(np.pi * f / rate) / np.tan(np.pi * 5 / rate)) ** 6)
     for k, found in ((1, nu), (2, nu_dot)):

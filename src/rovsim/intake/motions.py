@@ -18,7 +18,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.intake.survey.contents import CommandCandidate, Track
 from rovsim.intake.vehicles import VehicleMatch, as_logged
-from rovsim.measurement.rough_motion import Velocities, velocities
+from rovsim.measurement.rough_motion import Velocities, estimate_velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
 
@@ -50,7 +50,7 @@ class MotionFile:
         """
         if len(self.track.export.time) < 2:
             return None
-        estimate = velocities(self.track.export)
+        estimate = estimate_velocities(self.track.export)
         return estimate if np.isfinite(estimate.nu).any() else None
 
 

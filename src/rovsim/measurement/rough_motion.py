@@ -104,7 +104,7 @@ def _far(clock: Array, time: Array) -> Array:
     return time[after] - time[after - 1] > max(BRIDGED, 2.0 * step)
 
 
-def velocities(export: Export | Recording) -> Velocities:
+def estimate_velocities(export: Export | Recording) -> Velocities:
     """Take body velocities as exported, else from slopes of full poses, else from the channels."""
     if export.nu is not None:
         return _exported(export)

@@ -22,7 +22,7 @@ class Gap(Section):
     duration_s: float
 
 
-class CommandLog(Section):
+class CommandSummary(Section):
     """What the command log holds."""
 
     kind: str
@@ -84,7 +84,7 @@ class Quality(Result):
     gaps: tuple[Gap, ...]
     outliers: int | None
     repairs: dict[str, int]
-    commands: CommandLog | None
+    commands: CommandSummary | None
     posed: bool = True
     excitation: dict[str, Excitation]
     noise: PoseNoise

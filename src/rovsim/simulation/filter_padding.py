@@ -13,7 +13,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.measurement.signals.chain import SignalSettings, velocities
+from rovsim.measurement.signals.chain import SignalSettings, filter_and_differentiate
 from rovsim.measurement.signals.clock import find_stretches, time_step
 from rovsim.measurement.signals.motion import Motion
 
@@ -88,7 +88,7 @@ def derive(
             padded = np.stack(
                 [np.vstack([p, paths[k][:count]]) for p, k in zip(measured, batch, strict=True)]
             )
-            filtered = np.stack(velocities(padded, period, signals))
+            filtered = np.stack(filter_and_differentiate(padded, period, signals))
             for i, k in enumerate(batch):
                 derivatives[k][:, :count] = filtered[:, i, before:]
     return derivatives

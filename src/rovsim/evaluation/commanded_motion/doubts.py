@@ -20,7 +20,12 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.evaluation.commanded_motion.predicted import can_push_sideways, cause, righting
 from rovsim.measurement.recording import Recording
-from rovsim.measurement.rough_motion import ResampledPoses, even_poses, of_poses, velocities
+from rovsim.measurement.rough_motion import (
+    ResampledPoses,
+    estimate_velocities,
+    even_poses,
+    of_poses,
+)
 
 LONGEST = 120.0  # s of commands that are considered
 HANGS = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle hangs upside down
@@ -63,7 +68,7 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
         return
     has_poses = recording.found.any() and recording.nu is None
     poses = even_poses(recording) if has_poses else None
-    motion = velocities(recording) if poses is None else of_poses(poses)
+    motion = estimate_velocities(recording) if poses is None else of_poses(poses)
     if not np.isfinite(motion.nu).any():
         return
     correlation = cross_correlate(motion, *predicted)

@@ -13,7 +13,7 @@ from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.intake.survey.csv_files import within
 from rovsim.measurement.campaign_file import Mocap, Topics
-from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
+from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
 from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
 from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
@@ -235,12 +235,12 @@ def _kind(value: Array) -> tuple[LoggedKind | None, str]:
     return None, f"numbers from {np.nanmin(value):.4g} to {np.nanmax(value):.4g}"
 
 
-def _given(found: Samples) -> Array:
+def _given(found: TopicSamples) -> Array:
     """Mark the channels (c,) that ever carried a pulse."""
     return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
 
 
-def _outputs(found: Samples) -> CommandCandidate:
+def _outputs(found: TopicSamples) -> CommandCandidate:
     numbers = np.flatnonzero(_given(found)) + 1
     columns = tuple(f"SERVO{k}" for k in numbers)
     return CommandCandidate(
@@ -254,7 +254,7 @@ def _outputs(found: Samples) -> CommandCandidate:
     )
 
 
-def _pilot(found: Samples) -> CommandCandidate:
+def _pilot(found: TopicSamples) -> CommandCandidate:
     active = _given(found)
     columns = [c for c in PILOT if (k := _channel_number(c)) <= len(active) and active[k - 1]]
     value = found.value[:, [_channel_number(c) - 1 for c in columns]]

@@ -6,7 +6,7 @@ from pathlib import Path
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.delimited import is_table
 from rovsim.measurement.recording.readers import mocap_readers
-from rovsim.measurement.recording.signature import HEAD, Signature, decoded, head_lines
+from rovsim.measurement.recording.signature import HEAD, FileSignature, decoded, head_lines
 
 AS_CSV = "docs/formats.md lists the columns"
 # First bytes of files that people take for recordings -> what they are, and what to do about it.
@@ -68,7 +68,7 @@ def sniff(path: Path) -> str:
     raise _unknown(path, head)
 
 
-def _check_ending(path: Path, signature: Signature) -> None:
+def _check_ending(path: Path, signature: FileSignature) -> None:
     if signature.endings and path.suffix.lower() not in signature.endings:
         raise BadInput(
             f"{signature.what}, by what stands in it, whose name ends in '{path.suffix}'",

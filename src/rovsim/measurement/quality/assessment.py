@@ -16,7 +16,7 @@ from rovsim.measurement.recording.repairs import Anomalies
 from rovsim.measurement.recording.tidying import measured_rate
 from rovsim.measurement.signals.chosen_channels import doubt_delays
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
-from rovsim.results.quality import CommandLog, Gap, MeasuredChannel, Quality, Rate
+from rovsim.results.quality import CommandSummary, Gap, MeasuredChannel, Quality, Rate
 
 GAP = 0.05  # s; shorter ones are bridged by any resampling
 
@@ -110,12 +110,12 @@ def _describe_channels(recording: Recording) -> dict[str, MeasuredChannel]:
     }
 
 
-def _describe_commands(recording: Recording) -> CommandLog | None:
+def _describe_commands(recording: Recording) -> CommandSummary | None:
     time = recording.commands.time
     if not len(time):
         return None
     steps = np.diff(time)
-    return CommandLog(
+    return CommandSummary(
         kind=recording.commands.kind,
         lines=len(time),
         start_s=float(time[0]),

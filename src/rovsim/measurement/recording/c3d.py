@@ -21,7 +21,7 @@ from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
-from rovsim.measurement.recording.signature import Signature
+from rovsim.measurement.recording.signature import FileSignature
 
 BLOCK, KEY = 512, 0x50
 INTEL, SUN = 84, 86  # processor types; 85 is DEC, with floats of its own
@@ -193,4 +193,4 @@ def _recognised(head: bytes) -> bool:
     return len(head) > 2 and head[1] == KEY and head[0] < 32
 
 
-MOCAP_READER = MocapReader("c3d", read_c3d, (Signature(_recognised),), body_names)
+MOCAP_READER = MocapReader("c3d", read_c3d, (FileSignature(_recognised),), body_names)

@@ -29,7 +29,7 @@ from rovsim.measurement.recording.named_columns import column_places
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader
 from rovsim.measurement.recording.repairs import MotionRepairs
-from rovsim.measurement.recording.signature import Signature, head_lines
+from rovsim.measurement.recording.signature import FileSignature, head_lines
 from rovsim.measurement.recording.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
@@ -48,7 +48,7 @@ NEAR = 0.75  # similarity of names: 'depth' is near 'depth_m', a demand 'pitch' 
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class CsvColumns:
     """Columns of numbers (n,) by name, beside the times (n,) s of their lines."""
 
     time: Array
@@ -75,7 +75,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     zeros = _zeros(names, values)
     poses = np.isin(names, [*POSITION, *EULER])
     values[np.ix_(zeros, poses)] = np.nan
-    columns = Columns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
+    columns = CsvColumns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
     check_plausible(path, columns.time, columns.values)
     notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
     if "qw" in names:
@@ -109,7 +109,7 @@ def _said(count: int) -> tuple[str, ...]:
 
 
 def _export(
-    columns: Columns, mocap: Mocap, repairs: MotionRepairs, notes: tuple[str, ...]
+    columns: CsvColumns, mocap: Mocap, repairs: MotionRepairs, notes: tuple[str, ...]
 ) -> Export:
     position, nu = columns.of(POSITION), columns.of([*LINEAR, *ANGULAR])
     quaternions = "qw" in columns.values
@@ -168,7 +168,7 @@ def _frames(time: Array, partly: Array, channels: Mapping[str, Channel]) -> Arra
     return partly | ~np.isin(time, np.concatenate([c.time for c in channels.values()]))
 
 
-def _apart(columns: Columns, position: Array, angles: Array) -> dict[str, Channel]:
+def _apart(columns: CsvColumns, position: Array, angles: Array) -> dict[str, Channel]:
     """Make channels of position and attitude; attitudes with missing angles become `euler`."""
     attitude, valid = _attitude(angles)
     channels = {
@@ -181,7 +181,7 @@ def _apart(columns: Columns, position: Array, angles: Array) -> dict[str, Channe
     return channels
 
 
-def _velocities(columns: Columns, nu: Array) -> dict[str, Channel]:
+def _velocities(columns: CsvColumns, nu: Array) -> dict[str, Channel]:
     return {
         "velocity": measured(columns.time, nu[:, :3]),
         "rates": measured(columns.time, nu[:, 3:]),
@@ -236,4 +236,4 @@ def _recognised(head: bytes) -> bool:
     return len(lines) > 1 and (bool(re.search(r"[,;\t]", lines[0])) or is_table(head))
 
 
-MOCAP_READER = MocapReader("csv", read_csv, (Signature(_recognised),), general=True)
+MOCAP_READER = MocapReader("csv", read_csv, (FileSignature(_recognised),), general=True)

@@ -19,7 +19,7 @@ from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import FileAxes, MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
-from rovsim.measurement.recording.signature import Signature, head_lines
+from rovsim.measurement.recording.signature import FileSignature, head_lines
 from rovsim.measurement.recording.times import times
 
 RE_EXPORT = (
@@ -228,7 +228,7 @@ def _recognised(head: bytes) -> bool:
 MOCAP_READER = MocapReader(
     "motive_csv",
     read_motive,
-    (Signature(_recognised),),
+    (FileSignature(_recognised),),
     body_names,
     FileAxes(("z_up", "ned", "y_up"), ("flu", "frd", "fur")),
 )

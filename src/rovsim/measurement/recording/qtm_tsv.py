@@ -17,7 +17,7 @@ from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
-from rovsim.measurement.recording.signature import Signature, head_lines
+from rovsim.measurement.recording.signature import FileSignature, head_lines
 from rovsim.measurement.recording.times import times
 
 POSITION = ["X", "Y", "Z"]
@@ -194,4 +194,4 @@ def _recognised(head: bytes) -> bool:
     return headed or any("Rot[0]" in line for line in lines[:40])
 
 
-MOCAP_READER = MocapReader("qtm_tsv", read_qtm, (Signature(_recognised),), body_names)
+MOCAP_READER = MocapReader("qtm_tsv", read_qtm, (FileSignature(_recognised),), body_names)

@@ -11,7 +11,7 @@ from rovsim.core.rotations import BodyAxes, WorldAxes
 from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.recording.exports import CommandExport, Export
-from rovsim.measurement.recording.signature import Signature
+from rovsim.measurement.recording.signature import FileSignature
 
 # What each kind of logged command drives.
 KIND: dict[str, CommandKind] = {
@@ -83,7 +83,7 @@ class MocapReader:
 
     name: str
     read: Callable[[Path, Mocap], Export]
-    signatures: tuple[Signature, ...]
+    signatures: tuple[FileSignature, ...]
     bodies: Callable[[Path], Sequence[str]] = lambda path: [""]
     axes: FileAxes = FileAxes()
     general: bool = False

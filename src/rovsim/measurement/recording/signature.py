@@ -7,7 +7,7 @@ HEAD = 1 << 16  # bytes from the start of a file: more than any header
 
 
 @dataclass(frozen=True)
-class Signature:
+class FileSignature:
     """How files of a format are recognised.
 
     Attributes:

@@ -154,7 +154,9 @@ def differentiate_poses(poses: Poses, settings: SignalSettings) -> Motion:
     )
 
 
-def velocities(eta: Array, dt: float, settings: SignalSettings) -> tuple[Array, Array]:
+def filter_and_differentiate(
+    eta: Array, dt: float, settings: SignalSettings
+) -> tuple[Array, Array]:
     """Body velocity and acceleration (..., n, 6) of model poses (..., n, 7), `dt` s apart.
 
     Filter and derivative are those that the measurement went through. Quaternions must be

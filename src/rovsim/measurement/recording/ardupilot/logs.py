@@ -7,7 +7,7 @@ from rovsim.measurement.recording.ardupilot.dataflash import HEAD, read_dataflas
 from rovsim.measurement.recording.ardupilot.series import RE_RECORD, ArduPilotLog, no_log
 from rovsim.measurement.recording.ardupilot.telemetry import MARKERS, read_telemetry
 from rovsim.measurement.recording.foreign import read_by
-from rovsim.measurement.recording.signature import Signature, starts_with
+from rovsim.measurement.recording.signature import FileSignature, starts_with
 
 READERS = {".bin": read_dataflash, ".tlog": read_telemetry}
 
@@ -44,6 +44,6 @@ def _telemetry(head: bytes) -> bool:
 
 
 SIGNATURES = (
-    Signature(starts_with(HEAD + b"\x80"), "an ArduPilot dataflash log", (".bin",)),
-    Signature(_telemetry, "an ArduPilot telemetry log", (".tlog",)),
+    FileSignature(starts_with(HEAD + b"\x80"), "an ArduPilot dataflash log", (".bin",)),
+    FileSignature(_telemetry, "an ArduPilot telemetry log", (".tlog",)),
 )

@@ -22,7 +22,7 @@ Numbers = Callable[[Any], Sequence[float]]
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class TopicSamples:
     """Numbers from the n messages of one topic.
 
     Attributes:
@@ -58,7 +58,7 @@ class Bag:
             return kind, message
         raise self._nothing(topic, key)
 
-    def read(self, topic: str, key: str, numbers: Numbers, expected: str) -> Samples:
+    def read(self, topic: str, key: str, numbers: Numbers, expected: str) -> TopicSamples:
         """Take numbers out of every message of a topic.
 
         Args:
@@ -82,7 +82,7 @@ class Bag:
         clocks = np.array([row[:2] for row in rows], dtype=np.int64)
         value = np.array([row[2:] for row in rows], dtype=float)
         time, notes = on_bag_clock(topic, clocks[:, 0], clocks[:, 1])
-        return Samples(topic, kind, time, value, notes)
+        return TopicSamples(topic, kind, time, value, notes)
 
     def _messages(self, topic: str, key: str) -> Iterator[tuple[str, int, Any]]:
         """Yield type, time of arrival (ns) and content of each message of a topic."""

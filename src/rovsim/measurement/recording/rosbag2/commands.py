@@ -14,7 +14,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.readers import CommandReader
-from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
+from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
 
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
 PULSES = ("RCOut", "OverrideRCIn", "RCIn")
@@ -79,7 +79,7 @@ def _only_topic(bag: Bag) -> str:
     )
 
 
-def _without_pulse(found: Samples) -> tuple[Array, tuple[str, ...]]:
+def _without_pulse(found: TopicSamples) -> tuple[Array, tuple[str, ...]]:
     """Replace values (m, c) of 0 and 65535, which mean "no pulse"; with sentences about them.
 
     An output without pulses is a thruster at rest; an input without pulses is missing.

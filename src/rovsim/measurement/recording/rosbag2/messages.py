@@ -14,7 +14,7 @@ UNKNOWN = float("nan")
 
 
 @dataclass(frozen=True)
-class Reading:
+class TopicReader:
     """How a topic is read.
 
     Attributes:
@@ -34,25 +34,25 @@ def pose(message: Any) -> list[float]:
     return [*_vector(position), q.w, q.x, q.y, q.z]
 
 
-def readings(mocap: Mocap) -> dict[str, Reading]:
+def topic_readers(mocap: Mocap) -> dict[str, TopicReader]:
     """How the topics of channels are read, by their key in `mocap.topics`."""
     return {
-        "odometry": Reading(
+        "odometry": TopicReader(
             _twist, {"velocity": slice(0, 3), "rates": slice(3, 6)}, "a twist: linear and angular"
         ),
-        "imu": Reading(
+        "imu": TopicReader(
             _inertial,
             {"attitude": slice(0, 4), "rates": slice(4, 7), "specific_force": slice(7, 10)},
             "an Imu",
         ),
-        "attitude": Reading(_attitude, {"attitude": slice(0, 4)}, "an attitude"),
-        "depth": Reading(
+        "attitude": TopicReader(_attitude, {"attitude": slice(0, 4)}, "an attitude"),
+        "depth": TopicReader(
             _depth_by(mocap), {"depth": slice(0, 1)}, "a FluidPressure, a number or a place"
         ),
-        "velocity": Reading(
+        "velocity": TopicReader(
             _velocity, {"velocity": slice(0, 3)}, "a velocity: twist.linear, velocity or vector"
         ),
-        "battery": Reading(_voltage, {"voltage": slice(0, 1)}, "a BatteryState"),
+        "battery": TopicReader(_voltage, {"voltage": slice(0, 1)}, "a BatteryState"),
     }
 
 

@@ -10,9 +10,9 @@ from rovsim.measurement.recording.attitudes import check_unit_length, finite_row
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.readers import FileAxes, MocapReader
-from rovsim.measurement.recording.rosbag2.bag import Bag, Samples, opened
-from rovsim.measurement.recording.rosbag2.messages import Reading, pose, readings
-from rovsim.measurement.recording.signature import Signature, starts_with
+from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
+from rovsim.measurement.recording.rosbag2.messages import TopicReader, pose, topic_readers
+from rovsim.measurement.recording.signature import FileSignature, starts_with
 
 POSES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")
 
@@ -28,11 +28,11 @@ def read_bag(path: Path, mocap: Mocap) -> Export:
         pose_topic = _pose_topic(bag, mocap, topics)
         channels: dict[str, Channel] = {}
         notes: list[str] = []
-        for key, reading in readings(mocap).items():
+        for key, reader in topic_readers(mocap).items():
             topic = getattr(topics, key)
             if topic and topic != pose_topic:
-                samples = bag.read(topic, f"mocap.topics.{key}", reading.numbers, reading.expected)
-                channels |= _channels(samples, reading)
+                samples = bag.read(topic, f"mocap.topics.{key}", reader.numbers, reader.expected)
+                channels |= _channels(samples, reader)
                 notes += samples.notes
         if pose_topic is None:
             return Export.of_channels(channels, notes=tuple(notes))
@@ -71,8 +71,8 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
     return Export(samples.time, position, attitude, valid, channels=channels, notes=notes)
 
 
-def _channels(found: Samples, reading: Reading) -> dict[str, Channel]:
-    values = {kind: found.value[:, columns] for kind, columns in reading.channels.items()}
+def _channels(found: TopicSamples, reader: TopicReader) -> dict[str, Channel]:
+    values = {kind: found.value[:, columns] for kind, columns in reader.channels.items()}
     if "attitude" in values:
         attitude, valid = unit_quaternions(values["attitude"])
         values["attitude"] = np.where(valid[:, None], attitude, np.nan)
@@ -83,8 +83,8 @@ MOCAP_READER = MocapReader(
     "rosbag2",
     read_bag,
     (
-        Signature(starts_with(b"SQLite format 3\0"), "a ROS 2 bag (sqlite3)", (".db3",)),
-        Signature(starts_with(b"\x89MCAP"), "a ROS 2 bag (MCAP)", (".mcap",)),
+        FileSignature(starts_with(b"SQLite format 3\0"), "a ROS 2 bag (sqlite3)", (".db3",)),
+        FileSignature(starts_with(b"\x89MCAP"), "a ROS 2 bag (MCAP)", (".mcap",)),
     ),
     axes=FileAxes(usual=("z_up", "flu"), said="guess: what ROS means by default (REP 103)"),
     folder=True,
