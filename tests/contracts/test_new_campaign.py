@@ -5,7 +5,7 @@ import numpy as np
 from rovsim.apps.workbench.new_campaign import TOPICS, tell_unanswered
 from rovsim.intake.guesses import list_guesses
 from rovsim.intake.proposal import ANSWER, CampaignProposal, OpenQuestion
-from rovsim.intake.survey.timing import Timing
+from rovsim.intake.survey.timing import RowTiming
 
 NO_LOG = "guess: no log of commands was among the files"
 RUNS = [{"id": "run_1", "control": "3dof"}, {"id": "run_2", "control": "6dof"}]
@@ -38,4 +38,4 @@ def test_all_that_is_not_answered_yet_is_named_as_on_the_screen():
 
 def test_one_gap_is_a_gap():
     time = np.delete(np.arange(0.0, 10.0, 0.1), [50, 51])
-    assert str(Timing.of(time)) == "98 rows, 9.9 s at 10 Hz, a gap of 0.30 s"
+    assert str(RowTiming.of(time)) == "98 rows, 9.9 s at 10 Hz, a gap of 0.30 s"

@@ -14,7 +14,7 @@ from rovsim.evaluation.commanded_motion.predicted import velocity
 from rovsim.intake.facts import Facts
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.survey.starts import find_start
-from rovsim.intake.vehicles import VehicleMatch, as_logged
+from rovsim.intake.vehicles import VehicleMatch, convert_log
 from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording
@@ -120,7 +120,7 @@ def check_order(
         A sentence on that change; empty where none is clearly better, or commands are not those of
         thrusters alone.
     """
-    commands, measured = as_logged(log.drive, fit, log.path), motion.measured
+    commands, measured = convert_log(log.drive, fit, log.path), motion.measured
     if commands is None or measured is None or any(fit.vehicle.angles):
         return ""
     if commands.kind != "thruster":

@@ -14,7 +14,7 @@ from rovsim.intake.facts import Facts, find_facts
 from rovsim.intake.places import Places
 from rovsim.intake.proposal import CampaignProposal
 from rovsim.intake.runs import missing, runs
-from rovsim.intake.survey.timing import Timing
+from rovsim.intake.survey.timing import RowTiming
 from rovsim.intake.unread import list_unread, tell_unread
 from rovsim.intake.vehicles import VehicleMatch
 from rovsim.measurement.quality.velocity_conventions import doubt_velocities
@@ -63,7 +63,7 @@ def _lines(facts: Facts) -> Iterator[str]:
         log = (
             f" with {pair.log.path.name}" if pair.log and pair.log.path != pair.motion.path else ""
         )
-        timing = Timing.of(pair.motion.track.export.time)
+        timing = RowTiming.of(pair.motion.track.export.time)
         yield f"{name}: {pair.motion.name}{log}, {timing}{missing(pair)}"
 
 

@@ -17,7 +17,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.intake.survey.contents import CommandCandidate, Track
-from rovsim.intake.vehicles import VehicleMatch, as_logged
+from rovsim.intake.vehicles import VehicleMatch, convert_log
 from rovsim.measurement.rough_motion import Velocities, estimate_velocities
 
 LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
@@ -77,7 +77,7 @@ class CommandFile:
         return cache[fit.name]
 
     def _velocity(self, fit: VehicleMatch) -> tuple[Array, Array] | None:
-        commands = as_logged(self.drive, fit, self.path)
+        commands = convert_log(self.drive, fit, self.path)
         if commands is None or len(commands.time) < 2:
             return None
         return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)

@@ -10,8 +10,8 @@ from rovsim.intake.facts import Facts
 from rovsim.intake.names import said_control
 from rovsim.intake.pairing import Pair
 from rovsim.intake.places import Places
-from rovsim.intake.spans import Entry, list_entries
-from rovsim.intake.survey.timing import Timing
+from rovsim.intake.spans import RunEntry, list_run_entries
+from rovsim.intake.survey.timing import RowTiming
 
 # rad/s that the commands alone would cause in yaw: beyond, the pilot turned the vehicle. Roll and
 # pitch do not tell: whoever pushes below CO has to hold them.
@@ -28,7 +28,7 @@ FIRST = "guess: several runs are in this file, one after the other; 'use' says w
 
 def runs(facts: Facts, places: Places, draft: Draft) -> None:
     """Write the section `runs` into the draft, with comments and questions."""
-    entries = list_entries(facts)
+    entries = list_run_entries(facts)
     controls = [_control(facts, entry) for entry in entries]
     splits = split([control for control, _ in controls])
     draft.content["runs"] = []
@@ -49,7 +49,7 @@ def runs(facts: Facts, places: Places, draft: Draft) -> None:
     )
 
 
-def _remarks(facts: Facts, one: Entry) -> list[str]:
+def _remarks(facts: Facts, one: RunEntry) -> list[str]:
     """List comments on a run: what its files hold, and why it is a run."""
     if one.pause:
         return [PART.format(one.pause)]
@@ -59,11 +59,11 @@ def _remarks(facts: Facts, one: Entry) -> list[str]:
 
 def described(one: Pair) -> list[str]:
     """Describe the files of a run: name and timing of its motion, and of its commands."""
-    lines = [f"{one.motion.name}: {Timing.of(one.motion.track.export.time)}{missing(one)}"]
+    lines = [f"{one.motion.name}: {RowTiming.of(one.motion.track.export.time)}{missing(one)}"]
     if one.log is None:
         return lines
     time = np.unique(one.log.drive.time)
-    timing = f"{Timing.of(time)}; " if len(time) > 1 else ""
+    timing = f"{RowTiming.of(time)}; " if len(time) > 1 else ""
     same_file = one.log.path == one.motion.path
     return [
         *lines,
@@ -87,7 +87,7 @@ def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
     return files if len(files) > 1 else files[0]
 
 
-def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> str:
+def _log(facts: Facts, run: RunEntry, place: str, places: Places, draft: Draft) -> str:
     """Return the path of a run's commands, `none`, or the placeholder of a question."""
     pair = facts.pairs[run.file]
     if pair.log is not None:
@@ -100,7 +100,7 @@ def _log(facts: Facts, run: Entry, place: str, places: Places, draft: Draft) -> 
     return draft.ask(f"{place}.commands", asks, answers)
 
 
-def _control(facts: Facts, run: Entry) -> tuple[str, str]:
+def _control(facts: Facts, run: RunEntry) -> tuple[str, str]:
     """Tell the control of a run, `3dof` or `6dof`, and why if it is a guess (else nothing)."""
     pair, fit = facts.pairs[run.file], facts.choice.fit
     if control := said_control(pair.motion.path.stem):
@@ -113,7 +113,7 @@ def _control(facts: Facts, run: Entry) -> tuple[str, str]:
     return name, f"guess: {name}, by how much its commands turn it ({spread:.2f} rad/s in yaw)"
 
 
-def _during(run: Entry, time: Array, nu: Array) -> Array:
+def _during(run: RunEntry, time: Array, nu: Array) -> Array:
     """Return the rows of velocities (m, 6) that lie in a run; all where the clocks differ."""
     begin, end = run.use or (-np.inf, np.inf)
     during = (time >= begin) & (time <= end)

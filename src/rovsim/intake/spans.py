@@ -14,7 +14,7 @@ SHORT = 10.0  # s: what lasts less between two pauses is no run
 
 
 @dataclass(frozen=True)
-class Entry:
+class RunEntry:
     """A run as campaign.yaml will list it.
 
     Attributes:
@@ -30,7 +30,7 @@ class Entry:
     pause: float = 0.0
 
 
-def list_entries(facts: Facts) -> list[Entry]:
+def list_run_entries(facts: Facts) -> list[RunEntry]:
     """List all runs, in the order of their files."""
     files = enumerate(zip(facts.ids, facts.pairs, strict=True))
     return [
@@ -38,7 +38,7 @@ def list_entries(facts: Facts) -> list[Entry]:
     ]
 
 
-def find_spans(export: Export) -> list[tuple[float, float]]:
+def find_run_spans(export: Export) -> list[tuple[float, float]]:
     """Find the first and last time in s of each run in a file; none where it is one run."""
     time = export.time[export.found] if export.found.any() else export.time
     pauses = np.flatnonzero(np.diff(time) > PAUSE)
@@ -49,13 +49,13 @@ def find_spans(export: Export) -> list[tuple[float, float]]:
     return list(zip(begins[long].tolist(), ends[long].tolist(), strict=True))
 
 
-def _split(k: int, name: str, export: Export) -> Iterator[Entry]:
-    spans = find_spans(export)
+def _split(k: int, name: str, export: Export) -> Iterator[RunEntry]:
+    spans = find_run_spans(export)
     if not spans:
-        yield Entry(k, name)
+        yield RunEntry(k, name)
         return
     previous_end = spans[0][0]
     for number, (begin, end) in enumerate(spans, start=1):
         use = floor(1e3 * begin) / 1e3, ceil(1e3 * end) / 1e3
-        yield Entry(k, f"{name}-{number}", use, begin - previous_end)
+        yield RunEntry(k, f"{name}-{number}", use, begin - previous_end)
         previous_end = end

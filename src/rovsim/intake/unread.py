@@ -7,7 +7,7 @@ from typing import Sequence
 from rovsim.intake.draft import Draft
 from rovsim.intake.facts import Facts
 from rovsim.intake.pairing import Pair
-from rovsim.intake.spans import list_entries
+from rovsim.intake.spans import list_run_entries
 from rovsim.intake.survey.contents import Contents
 
 MOST = 20  # names of columns or files in a sentence
@@ -25,7 +25,7 @@ def list_unread(facts: Facts, draft: Draft) -> list[str]:
 def tell_unread(facts: Facts, draft: Draft) -> None:
     """Write unused columns as comments above the first run of each file."""
     by_path = {item.named: item for item in _every(facts)}
-    first_run = {item.file: n for n, item in reversed([*enumerate(list_entries(facts))])}
+    first_run = {item.file: n for n, item in reversed([*enumerate(list_run_entries(facts))])}
     for k, (motion, pair) in enumerate(zip(facts.motions, facts.pairs, strict=True)):
         paths = dict.fromkeys([*(file.named for file in motion.files), *_log(pair)])
         for item in (by_path[path] for path in paths):

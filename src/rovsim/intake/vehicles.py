@@ -95,7 +95,7 @@ def _drives(vehicle: Vehicle, drive: CommandCandidate) -> bool:
     return mixer is not None and all(vehicle.thrusters.mixing()[:, axis].any() for axis in moving)
 
 
-def as_logged(drive: CommandCandidate, fit: VehicleMatch, path: Path) -> Commands | None:
+def convert_log(drive: CommandCandidate, fit: VehicleMatch, path: Path) -> Commands | None:
     """Convert a log to commands as the vehicle takes them.
 
     Args:

@@ -20,7 +20,7 @@ from rovsim.intake.survey.command_names import (
 )
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.intake.survey.headings import rewritten
-from rovsim.intake.survey.other_numbers import Columns, find_numbers, find_sparse, read_others
+from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, find_sparse, read_others
 from rovsim.intake.survey.repeats import check_unmixed, tell_repeats
 from rovsim.intake.survey.sizes import Key, Unit, Units
 from rovsim.measurement.campaign_file import Mocap
@@ -123,7 +123,7 @@ def _track(path: Path) -> Track:
     return Track("", tidy_export(read_csv(path, mocap), path))
 
 
-def _unknown(others: Columns) -> str:
+def _unknown(others: TimedColumns) -> str:
     """List columns of unknown numbers that change, with their ranges and what they may be."""
     _, columns = find_numbers(others)
     moving = {name: v for name, v in columns.items() if np.nanmin(v) < np.nanmax(v)}
@@ -134,7 +134,7 @@ def _unknown(others: Columns) -> str:
     return _some(ranges) + (f". {suggestion}" if suggestion else "")
 
 
-def _drive(lines: Lines, others: Columns) -> CommandCandidate | None:
+def _drive(lines: Lines, others: TimedColumns) -> CommandCandidate | None:
     """Return the columns that look like commands, if there are any."""
     voltage = ("voltage",) if lines.names.count("voltage") == 1 else ()
     candidate = _commands(*find_numbers(others), voltage)

@@ -25,10 +25,10 @@ WATCHED = re.compile(
 )
 SOME = 0.5  # share of the lines in which a column of commands has a value
 FEWEST = 10  # lines of a series on lines of its own
-Columns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by their names
+TimedColumns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by their names
 
 
-def read_others(lines: Lines) -> Columns:
+def read_others(lines: Lines) -> TimedColumns:
     """Read columns of numbers that are neither channels nor `WATCHED`; none without times."""
     if TIME not in lines.names:
         return np.empty(0), {}
@@ -49,13 +49,13 @@ def read_others(lines: Lines) -> Columns:
     return times(table, places[0]), columns
 
 
-def find_numbers(others: Columns) -> Columns:
+def find_numbers(others: TimedColumns) -> TimedColumns:
     """Select the columns that have a value on at least half of the lines."""
     time, columns = others
     return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= SOME}
 
 
-def find_sparse(others: Columns) -> Columns:
+def find_sparse(others: TimedColumns) -> TimedColumns:
     """Select the longest series of columns that have values on the same few lines.
 
     A series is columns whose names differ in a number, or that are named after axes. Only the lines

@@ -115,14 +115,14 @@ def find_by_size(
     key = tuple(file_names)
 
     def decide() -> Unit:
-        return judge(_Columns(lines, key, names, value, time, stated))
+        return judge(_ColumnGroup(lines, key, names, value, time, stated))
 
     unit = units.settle(key, decide)
     return unit.factor, unit.said
 
 
 @dataclass(frozen=True, eq=False)
-class _Columns:
+class _ColumnGroup:
     """Columns of one group of channels.
 
     Attributes:
@@ -146,7 +146,7 @@ class _Columns:
         return UnknownUnit(found, self.lines, self.key, expected, large=large)
 
 
-def _metres(of: _Columns) -> Unit:
+def _metres(of: _ColumnGroup) -> Unit:
     """Tell the unit of positions by how far and how fast a vehicle would move in m."""
     low, high = usual_range(of.value)
     extent, speed = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
@@ -164,7 +164,7 @@ def _metres(of: _Columns) -> Unit:
     )
 
 
-def _radians(of: _Columns) -> Unit:
+def _radians(of: _ColumnGroup) -> Unit:
     """Tell the unit of angles by how large roll and pitch are, and how fast angles change."""
     size = np.nanmax(np.abs(of.value), axis=0)
     tilts = [s for n, s in zip(of.names, size, strict=True) if n != "yaw_rad"]
@@ -174,7 +174,7 @@ def _radians(of: _Columns) -> Unit:
     return _named_radians(of, tilted, degrees) if of.named else _free_radians(of, size, degrees)
 
 
-def _named_radians(of: _Columns, tilted: float, degrees: bool) -> Unit:
+def _named_radians(of: _ColumnGroup, tilted: float, degrees: bool) -> Unit:
     """Tell the unit of angles whose names say rad: rad, unless they turn too fast for a vehicle.
 
     Their size alone tells nothing: angles that count full turns may be large.
@@ -192,7 +192,7 @@ def _named_radians(of: _Columns, tilted: float, degrees: bool) -> Unit:
     )
 
 
-def _free_radians(of: _Columns, size: Array, degrees: bool) -> Unit:
+def _free_radians(of: _ColumnGroup, size: Array, degrees: bool) -> Unit:
     """Tell the unit of angles without a unit in their names.
 
     Args:

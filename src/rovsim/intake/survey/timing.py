@@ -11,7 +11,7 @@ JITTERY = 0.1  # share of the usual step; clocks of computers stay below
 
 
 @dataclass(frozen=True)
-class Timing:
+class RowTiming:
     """Timing of the rows of a file.
 
     Attributes:
@@ -31,12 +31,12 @@ class Timing:
     longest: float
 
     @staticmethod
-    def of(time: Array) -> "Timing":
+    def of(time: Array) -> "RowTiming":
         """Measure the timing of increasing times (n,) s, n > 1."""
         steps = np.diff(time)
         usual = float(np.median(steps))
         regular = steps[steps < LONG_STEP * usual]
-        return Timing(
+        return RowTiming(
             len(time),
             float(time[-1] - time[0]),
             1.0 / usual,
