@@ -28,7 +28,7 @@ class NoiseFloor(NamedTuple):
     """The error of a perfect model.
 
     Attributes:
-        error: in windows of 2 s, normalised by `scores.normalize`; None where no axis moved.
+        error: in windows of 2 s, normalised by `error_metrics.normalize`; None where no axis moved.
         windows: how many there were in the runs.
     """
 

@@ -48,7 +48,7 @@ def on_wrong_clock(motion: Motion) -> Motion:
 
 
 def replay_error(model: Model, motion: Motion, how: SimulationSettings) -> float | None:
-    """Normalised velocity RMSE of an open-loop replay (`scores.normalize`)."""
+    """Normalised velocity RMSE of an open-loop replay (`error_metrics.normalize`)."""
     prediction = replay(model, motion, how).horizons[OPEN_LOOP]
     return normalize(measured_spread([motion]), rms(subtract(motion, prediction).nu))
 
