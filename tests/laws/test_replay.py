@@ -20,7 +20,14 @@ from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.engine.modules import engine
 from rovsim.dynamics.engine.parallel import run_jobs
-from rovsim.dynamics.engine.types import Constants, Inputs, Jobs, SiteArrays, WrenchParameters
+from rovsim.dynamics.engine.types import (
+    Constants,
+    Inputs,
+    Jobs,
+    SiteArrays,
+    World,
+    WrenchParameters,
+)
 from rovsim.dynamics.model import zero_acceleration
 from rovsim.evaluation.error_metrics import rms, subtract
 from rovsim.evaluation.score_collector import score_replay
@@ -75,18 +82,14 @@ def drift(bodies, states, h, steps, how=lambda kernel, *given: kernel(*given)):
     """States (j, steps, 13) of bodies left alone."""
     jobs, inputs = arrange(bodies, states, steps)
     out = np.empty((len(jobs.first) * steps, 13))
-    how(
-        engine([]).integrate,
-        jobs,
-        h * np.arange(steps + 1),
-        1,
+    world = World(
         Constants.stacked([packed(body) for body in bodies]),
         inputs,
         WrenchParameters(np.empty((len(bodies), 0))),
         None,
         SiteArrays(np.full((3, 2), np.nan), np.ones(3)),
-        out,
     )
+    how(engine([]).integrate, jobs, h * np.arange(steps + 1), 1, world, out)
     return out.reshape(-1, steps, 13)
 
 

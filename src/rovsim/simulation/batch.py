@@ -1,12 +1,12 @@
 """The only way into the compiled engine: from models, drives and starts to trajectories.
 
 Replay, stepping, training pairs, the force budget, the observer, the tank and the benchmarks all
-use it. Only this module and the engine know which arguments the kernels take, and in which order.
+use it. Only this module and the engine know which arguments the kernels take.
 """
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import Any, Sequence, TypeVar
+from typing import Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -23,13 +23,12 @@ from rovsim.dynamics.engine.types import (
     Inputs,
     Jobs,
     SiteArrays,
+    World,
     WrenchParameters,
 )
 from rovsim.dynamics.model import Model
 from rovsim.simulation.correction import Correction
 from rovsim.simulation.drive import Drive, Reads
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +98,7 @@ class Batch:
             attached(extra, sum(len(cls.channels) for cls in compiled)) if extra else None,
         )
         self._constants = Constants.stacked([m.constants for m in models])
-        self._place = SiteArrays(
+        self._site = SiteArrays(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
         self.free = np.concatenate([np.ones(7), models[0].body.free])
@@ -125,14 +124,8 @@ class Batch:
         out = np.empty((int(rows.sum()), 13))
         starts = replace(starts, state=starts.state * self.free)
         out[stops - rows] = starts.state.reshape(-1, 13)
-        run_jobs(
-            self.engine.integrate,
-            starts.jobs(stops - rows + 1),
-            time,
-            stride,
-            *self._world(drives),
-            out,
-        )
+        jobs = starts.jobs(stops - rows + 1)
+        run_jobs(self.engine.integrate, jobs, time, stride, self._world(drives), out)
         paths = [out[a:b] for a, b in zip(stops - rows, stops, strict=True)]
         return [paths[k * count : (k + 1) * count] for k in range(models)]
 
@@ -151,27 +144,10 @@ class Batch:
         models, count = len(starts.state), int(starts.steps.sum())
         stops = np.cumsum(np.tile(starts.steps, models))
         out = np.empty((models * count, 6))
-        readings, row = _distinct(correction.readings)
         starts = replace(starts, state=starts.state * self.free)
         jobs = starts.jobs(stops - np.tile(starts.steps, models))
-        run_jobs(
-            self.engine.observe,
-            jobs,
-            correction.time,
-            correction.ends,
-            self._constants,
-            self._inputs(drives),
-            self._parameters,
-            self._place,
-            np.stack(readings),
-            row,
-            correction.seen,
-            correction.known,
-            correction.gains,
-            correction.decay,
-            correction.by_velocity,
-            out,
-        )
+        world = self._world(drives)._replace(residual=None)
+        run_jobs(self.engine.observe, jobs, world, correction, out)
         return out.reshape(models, count, 6)
 
     def accelerations(self, drive: Drive, times: Array, states: Array, memory: Array) -> Array:
@@ -184,25 +160,13 @@ class Batch:
             memory: state (n, 6) of the fluid memory, m/s and rad/s; empty without one.
         """
         out, states = np.empty((len(times), 6)), np.ascontiguousarray(states * self.free)
-        self.engine.accelerations(
-            times,
-            states,
-            memory,
-            *self._world([drive]),
-            out,
-        )
+        self.engine.accelerations(times, states, memory, self._world([drive]), out)
         return out
 
     def advance(self, drive: Drive, state: Array, memory: Array, t: float, h: float) -> None:
         """Integrate state (13,) and memory (6,) of the first model in place, in steps of h s."""
         state *= self.free
-        self.engine.advance(
-            state,
-            memory,
-            t,
-            h,
-            *self._world([drive]),
-        )
+        self.engine.advance(state, memory, t, h, self._world([drive]))
 
     def advance_by_heun(
         self, drive: Drive, pushes: Array, state: Array, memory: Array, t: float, h: float
@@ -213,21 +177,13 @@ class Batch:
         (k, 6) is an unlogged acceleration, m/s2 and rad/s2. `memory` (6,) is updated in place.
         """
         out = np.empty((len(pushes), 13))
-        self.engine.heun(
-            state,
-            memory,
-            t,
-            h,
-            pushes,
-            *self._world([drive]),
-            out,
-        )
+        self.engine.heun(state, memory, t, h, pushes, self._world([drive]), out)
         return out
 
-    def _world(self, drives: Sequence[Drive]) -> tuple[Any, ...]:
-        """Physics, drives, learned residual and walls, in the order of the kernels' arguments."""
+    def _world(self, drives: Sequence[Drive]) -> World:
+        """Physics, drives, learned residual and surroundings of all models."""
         inputs = self._inputs(drives)
-        return self._constants, inputs, self._parameters, self._residual, self._place
+        return World(self._constants, inputs, self._parameters, self._residual, self._site)
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
         """Stack the drives for the kernels; a drive that several models share is passed once."""
@@ -293,8 +249,8 @@ def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
     return Reads(actuators, tuple(name for cls in slots for name in cls.channels))
 
 
-def _distinct(values: Sequence[T]) -> tuple[list[T], Array]:
-    """The distinct objects (by identity) among m values, and the index (m,) of each value's own."""
-    by_id = {id(value): value for value in values}
+def _distinct(drives: Sequence[Drive]) -> tuple[list[Drive], Array]:
+    """The distinct ones (by identity) of m drives, and the index (m,) of each drive among them."""
+    by_id = {id(drive): drive for drive in drives}
     positions = {key: k for k, key in enumerate(by_id)}
-    return list(by_id.values()), np.array([positions[id(value)] for value in values], np.int64)
+    return list(by_id.values()), np.array([positions[id(drive)] for drive in drives], np.int64)

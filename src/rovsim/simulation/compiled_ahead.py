@@ -45,10 +45,11 @@ def _drive(model: Model) -> Drive:
 
 def _correction() -> Correction:
     """A correction by two equal readings, 0.01 s apart."""
-    readings = np.zeros((2, 13))
-    readings[:, 3] = 1.0
+    readings = np.zeros((1, 2, 13))
+    readings[..., 3] = 1.0
     return Correction(
-        [readings],
+        readings,
+        np.zeros(1, np.int64),
         np.ones((2, 6)),
         np.ones(5),
         np.array([0.0, 0.01]),

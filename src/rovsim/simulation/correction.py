@@ -1,18 +1,17 @@
 """Readings that correct models while they run along a recording."""
 
-from dataclasses import dataclass
-from typing import Sequence
+from typing import NamedTuple
 
 from numpy import ndarray as Array
 
 
-@dataclass(frozen=True, eq=False)
-class Correction:
-    """Readings, and the filters that correct models by them.
+class Correction(NamedTuple):
+    """Readings, and the filters that correct models by them, as the compiled engine reads them.
 
     Attributes:
-        readings: k readings (k, 13) for each model: pose in NED, and the mean body velocity since
+        readings: r series of k readings (r, k, 13): pose in NED, and the mean body velocity since
             the previous reading.
+        row: (m,) which of the r series belongs to each of m models.
         seen: (k, 6) 1 for the axes that each reading measures, else 0.
         known: (5,) which parts of a pose were measured, see `pose_error` of the engine.
         time: (s+1,) at which the steps begin and end, s.
@@ -20,10 +19,12 @@ class Correction:
         gains: filter gains (3, 6): corrections of pose, velocity and disturbance per unit of
             innovation of the same axis.
         decay: share (s, 6) of the estimated disturbance that remains after each of s steps.
-        by_velocity: whether innovations are those of velocities; poses are then taken as measured.
+        by_velocity: whether innovations are those of the mean velocity, and measured poses are
+            taken as true; otherwise innovations are those of the pose.
     """
 
-    readings: Sequence[Array]
+    readings: Array
+    row: Array
     seen: Array
     known: Array
     time: Array

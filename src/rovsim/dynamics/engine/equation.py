@@ -1,14 +1,15 @@
 """Fossen's equation of motion, compiled by Numba.
 
-`extra(at, p, body, acting)` returns the wrench (6) of all wrench effects of a model. This compiled
-function is passed down the calls, so that LLVM inlines the kernels of the effects.
+`extra(at, own, body, acting)` returns the wrench (6) of all wrench effects of a model. This
+compiled function is passed down the calls, so that LLVM inlines the kernels of the effects.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
         = tau_thrust + tau_extra                                      (Fossen 2021, eq. 6.1, 10.135)
 
 State: position in NED, quaternion (w, x, y, z) body to world, nu in body axes. SI, float64, FRD at
 CO. Vectors are tuples (`vectors`). Arguments in common: `body`, the `Constants` of one parameter
-set; `p`, its `WrenchParameters`; `acting`, see `types.Inputs`.
+set; `own`, its `WrenchParameters`; `step`, the present one; `acting`, see `types.Inputs`. They stay
+apart: taking one that holds arrays out of a further tuple costs half as much as a step (measured).
 """
 
 import numpy as np
@@ -125,14 +126,14 @@ def thrust_loss(acting, advance, B, directions, nu_r):
 
 
 @inline_anew
-def accelerate(extra, at, body, p, thrust, acting, level):
+def accelerate(extra, at, body, own, thrust, acting, level):
     """nu_dot (6) under a thruster wrench (6); level: z in NED where a floating vehicle rests."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
     tau = add6(tau, 1.0, at.drag)
     tau = add6(tau, 1.0, restoring(body.net_weight, body.restoring_lever, at.R))
     tau = add6(tau, 1.0, times6(body.M_A, at.nu_c_dot))
-    tau = add6(tau, 1.0, extra(at, p, body, acting))
+    tau = add6(tau, 1.0, extra(at, own, body, acting))
     if body.coupled != 0.0:
         tau = add6(tau, 1.0, coupled_damping(body.coupling, at.nu_r))
     if body.advance != 0.0:
@@ -159,7 +160,7 @@ def diagonal(a, b):
 
 
 @inline_anew
-def slope(extra, t, x, body, p, step, correction, site):
+def slope(extra, t, x, body, own, step, correction, surroundings):
     """Time derivative of the state x at time t.
 
     Args:
@@ -167,18 +168,29 @@ def slope(extra, t, x, body, p, step, correction, site):
         t: s since the start of the recording.
         x: the state.
         body: constants of the equation.
-        p: parameters of the wrench effects.
-        step: inputs of the present step, as `integration.step_of` returns them.
+        own: parameters of the wrench effects.
+        step: the present step.
         correction: (6) additional acceleration, m/s2 and rad/s2. It must be zero along axes that
             are held, as `M_inv` is, so that they stay at rest.
-        site: as `integration.site_of` returns it.
+        surroundings: walls, axes, level.
     """
-    thrust, acting, demand, duration = step
+    thrust, acting, level = step.thrust, step.acting, surroundings.level
     R = rotation(x.attitude)
     nu_r, nu_c_dot = flow(body.current, R, x.nu)
     drag, inertia = damping(body.linear, body.quadratic, nu_r), diagonal(body.M_RB, body.M_A)
     at = At(
-        t, duration, x.position, R, x.nu, nu_r, nu_c_dot, drag, inertia, demand, site[0], site[1]
+        t,
+        step.duration,
+        x.position,
+        R,
+        x.nu,
+        nu_r,
+        nu_c_dot,
+        drag,
+        inertia,
+        step.demand,
+        surroundings.tank,
+        surroundings.axes,
     )
-    nu_dot = add6(accelerate(extra, at, body, p, thrust, acting, site[2]), 1.0, correction)
+    nu_dot = add6(accelerate(extra, at, body, own, thrust, acting, level), 1.0, correction)
     return State(into_world(R, x.nu), quaternion_rate(x.attitude, x.nu), nu_dot)

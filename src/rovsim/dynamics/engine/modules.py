@@ -40,34 +40,28 @@ def extra(at, parameters, body, acting):
 
 
 @kept
-def integrate(jobs, time, stride, bodies, inputs, p, data, site, out):
-    integration.integrate(extra, jobs, time, stride, bodies, inputs, p, data, site, out)
+def integrate(jobs, time, stride, world, out):
+    integration.integrate(extra, jobs, time, stride, world, out)
 
 
 @kept
-def advance(state, memory, t, h, bodies, inputs, p, data, site):
-    integration.advance(extra, state, memory, t, h, bodies, inputs, p, data, site)
+def advance(state, memory, t, h, world):
+    integration.advance(extra, state, memory, t, h, world)
 
 
 @kept
-def heun(state, memory, t, h, pushes, bodies, inputs, p, data, site, out):
-    integration.heun(extra, state, memory, t, h, pushes, bodies, inputs, p, data, site, out)
+def heun(state, memory, t, h, pushes, world, out):
+    integration.heun(extra, state, memory, t, h, pushes, world, out)
 
 
 @kept
-def accelerations(times, states, memory, bodies, inputs, p, data, site, out):
-    integration.accelerations(extra, times, states, memory, bodies, inputs, p, data, site, out)
+def accelerations(times, states, memory, world, out):
+    integration.accelerations(extra, times, states, memory, world, out)
 
 
 @kept
-def observe(
-    jobs, time, ends, bodies, inputs, p, site, readings, row, seen, known, gains, decay,
-    by_velocity, out,
-):
-    observer.observe(
-        extra, jobs, time, ends, bodies, inputs, p, site, readings, row, seen, known, gains, decay,
-        by_velocity, out,
-    )
+def observe(jobs, world, correction, out):
+    observer.observe(extra, jobs, world, correction, out)
 '''
 ATTACHED_PUSH = """\
     tau = add6(tau, 1.0, parameters.attached(at, p[{count}:], layout, acting))

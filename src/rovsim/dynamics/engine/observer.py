@@ -8,23 +8,24 @@ with time constants T. Innovations are one-step prediction errors of the model.
 
 from math import atan2, cos, sin
 
+from rovsim.dynamics.engine.as_tuples import (
+    constants_of,
+    parameters_of,
+    state_of,
+    step_of,
+    surroundings_of,
+)
 from rovsim.dynamics.engine.compiled import entry, inline_internal
 from rovsim.dynamics.engine.equation import rotation
 from rovsim.dynamics.engine.integration import (
-    ZERO6,
-    constants_of,
     memory_after,
-    parameters_of,
     push_over_step,
-    ramp_of,
     renormalised,
     runge_kutta,
-    site_of,
-    state_of,
-    step_of,
 )
 from rovsim.dynamics.engine.types import State
 from rovsim.dynamics.engine.vectors import (
+    ZERO6,
     add3,
     add6,
     each6,
@@ -133,49 +134,24 @@ def corrected(x, y, e, known, gain_pose, gain_nu, by_velocity):
 
 
 @entry
-def observe(
-    extra,
-    jobs,
-    time,
-    ends,
-    bodies,
-    inputs,
-    p,
-    site,
-    readings,
-    row,
-    seen,
-    known,
-    gains,
-    decay,
-    by_velocity,
-    out,
-):
-    """Filter all jobs, and write their innovations to `out`.
+def observe(extra, jobs, world, correction, out):
+    """Filter all jobs, and write their innovations to `out`; no learned residual acts.
 
     Args:
         extra: wrench of the model's effects, see `equation`.
         jobs: each starts at the reading `first` and covers the `steps` readings that follow.
-        time: (s+1,) instants between the integration steps, s.
-        ends: (k,) index into `time` of each reading.
-        bodies: constants of m parameter sets.
-        inputs: actuation over the integration steps.
-        p: parameters of the wrench effects.
-        site: the surroundings.
-        readings: (r, k, 13) measured pose, and mean velocity since the reading before.
-        row: (m,) which of the r series of readings belongs to each parameter set.
-        seen: (k, 6) 1 for the axes that a reading measures; innovations of the others are 0.
-        known: (5,) see `pose_error`.
-        gains: (3, 6) of pose, velocity and disturbance, per unit of innovation.
-        decay: (s, 6) factor on the disturbance over each step.
-        by_velocity: innovations are those of the mean velocity, and measured poses are taken as
-            true; otherwise they are those of the pose.
+        world: of all parameter sets.
+        correction: the readings and the filters, a `rovsim.simulation.correction.Correction`.
         out: (.., 6) innovations, m or m/s and rad or rad/s.
     """
-    place = site_of(site)
+    inputs, time, ends, known = world.inputs, correction.time, correction.ends, correction.known
+    by_velocity, decay, gains = correction.by_velocity, correction.decay, correction.gains
+    constants, parameters = world.constants, world.parameters
+    surroundings = surroundings_of(world.site)
     for job in range(jobs.first.size):
         m, first, at = jobs.member[job], jobs.first[job], jobs.out[job]
-        x, body, own = state_of(jobs.state[job]), constants_of(bodies, m), parameters_of(p, m)
+        x, body = state_of(jobs.state[job]), constants_of(constants, m)
+        own = parameters_of(parameters, m)
         gain_pose, gain_nu = vector6(gains[0]), each6(body.free, vector6(gains[1]))
         gain_a = each6(body.free, vector6(gains[2]))
         a, n = ZERO6, ends[first]
@@ -186,16 +162,15 @@ def observe(
                 t, h, before, push = time[n], time[n + 1] - time[n], x, a
                 if body.memory_decay != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
-                step = step_of(inputs, inputs.row[m], n)
-                ramp = ramp_of(inputs, inputs.row[m], n, body)
-                x, average = runge_kutta(extra, t, x, h, body, own, step, push, ramp, place)
+                step = step_of(inputs, inputs.row[m], n, t, h, body)
+                x, average = runge_kutta(extra, x, body, own, step, push, surroundings)
                 if body.memory_decay != 0.0:
                     memory = memory_after(memory, before, x, h, body)
                 mean = add6(mean, h / lasts, average)
                 a, n = each6(vector6(decay[n]), a), n + 1
-            y = readings[row[m], k]
+            y = correction.readings[correction.row[m], k]
             e = velocity_error(mean, y) if by_velocity else pose_error(x, y, known)
-            e = each6(vector6(seen[k]), e)
+            e = each6(vector6(correction.seen[k]), e)
             x = renormalised(corrected(x, y, e, known, gain_pose, gain_nu, by_velocity))
             a = add6(a, 1.0, each6(gain_a, e))
             for i in range(6):

@@ -216,3 +216,64 @@ class SiteArrays(NamedTuple):
     tank: Array
     axes: Array
     level: float = 0.0
+
+
+class World(NamedTuple):
+    """What moves vehicles, for m parameter sets: all that does not belong to single trajectories.
+
+    Attributes:
+        constants: of the equation of motion.
+        inputs: actuation over the integration steps.
+        parameters: of the wrench effects.
+        residual: an exported learned residual; None if none acts.
+        site: the surroundings.
+    """
+
+    constants: Constants
+    inputs: Inputs
+    parameters: WrenchParameters
+    residual: Array | None
+    site: SiteArrays
+
+
+class Surroundings(NamedTuple):
+    """`SiteArrays` as tuples: walls (low, high) along each NED axis, MoCap axes, level of rest."""
+
+    tank: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    axes: Vector3
+    level: float
+
+
+class Step(NamedTuple):
+    """One integration step, with the inputs of one parameter set over it.
+
+    Attributes:
+        t: when it begins, s since the start of the recording.
+        h: how long it is, s.
+        thrust: (6) mean thruster wrench, N and N m.
+        acting: (n + s) mean forces and angles, see `Inputs`.
+        demand: (6) pilot demands in [-1, 1].
+        duration: length of the recording, s.
+        ramp: (6) change of the acceleration by the thrusters from its beginning to its end, m/s2
+            and rad/s2.
+    """
+
+    t: float
+    h: float
+    thrust: Vector6
+    acting: Array
+    demand: Vector6
+    duration: float
+    ramp: Vector6
+
+
+class Scratch(NamedTuple):
+    """Arrays that the evaluation of a learned residual writes to.
+
+    Attributes:
+        features: of one sample, as many as there can be.
+        a_res: (6,) its acceleration, m/s2 and rad/s2.
+    """
+
+    features: Array
+    a_res: Array

@@ -2,6 +2,8 @@
 
 from rovsim.dynamics.engine.compiled import inline_shared
 
+ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
 
 @inline_shared
 def cross(a, b):

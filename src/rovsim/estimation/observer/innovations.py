@@ -36,10 +36,11 @@ def observe(
         filters: that correct the models.
         pushed: further accelerations (m, n, 6) of the models at the readings, m/s2 and rad/s2.
     """
-    readings, starts = _read_as_modelled(models, run)
+    readings, row, starts = _read_as_modelled(models, run)
     time = run.since_start(run.edges)
     correction = Correction(
         readings,
+        row,
         run.reading_mask.astype(float),
         run.pose_measured,
         time,
@@ -150,17 +151,19 @@ def batch_of(models: Sequence[Model], run: ObservedRun) -> Batch:
     return Batch(models, run.motion.site, candidates=run.wrenches, learned=False)
 
 
-def _read_as_modelled(models: Sequence[Model], run: ObservedRun) -> tuple[list[Array], Starts]:
+def _read_as_modelled(models: Sequence[Model], run: ObservedRun) -> tuple[Array, Array, Starts]:
     """Readings and starts as each model interprets them.
 
     Models may differ in what they assume of the cameras, such as where the markers are.
 
     Returns:
-        For each model the readings (k, 13) of the vehicle itself, one array for all models that
-        assume the same; and where the models start.
+        Readings (r, k, 13) of the vehicle itself, one series for all models that assume the same;
+        which series (m,) is that of each model; and where the models start.
     """
     views = [m.mocap_view.inverse for m in models]
-    readings = {inverse.key: run.read(inverse) for inverse in {v.key: v for v in views}.values()}
+    distinct = {inverse.key: inverse for inverse in views}
+    readings = np.stack([run.read(inverse) for inverse in distinct.values()])
+    series = {key: k for k, key in enumerate(distinct)}
     begins = np.array([a for a, _ in run.segments], np.int64)
     steps = np.array([b - a for a, b in run.segments], np.int64)
     by_view = {m.mocap_view.key: m for m in models}
@@ -171,7 +174,7 @@ def _read_as_modelled(models: Sequence[Model], run: ObservedRun) -> tuple[list[A
     starts = Starts(
         states, begins, steps, find_fluid_memory(models, run, run.edges, run.reading_steps[begins])
     )
-    return [readings[inverse.key] for inverse in views], starts
+    return readings, np.array([series[inverse.key] for inverse in views], np.int64), starts
 
 
 def find_fluid_memory(
