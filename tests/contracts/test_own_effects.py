@@ -17,7 +17,7 @@ from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.dynamics.effects import base
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.trials import TRIALS, try_on
+from rovsim.dynamics.user_effects.trials import TRIALS, try_on
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.results.diagnosis import Diagnosis, ProposedEquation
 from said import unfolded
@@ -261,7 +261,7 @@ OTHER_KINDS = {  # kind, its method: what the message says
 OTHER_KIND = """
 import math
 from rovsim.dynamics.effects import base
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
 
 class Hose(base.KIND):
     "A hose drags behind."

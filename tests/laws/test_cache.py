@@ -9,8 +9,8 @@ import time
 import pytest
 from filelock import FileLock
 
-from rovsim.dynamics.engine.cache import UNUSED, cache_folder, prune
-from rovsim.dynamics.engine.compiled import lock_file
+from rovsim.dynamics.compilation.cache import UNUSED, cache_folder, prune
+from rovsim.dynamics.compilation.compiled import lock_file
 from rovsim.dynamics.engine.vectors import dot3
 
 DAY = 86400.0
@@ -42,7 +42,7 @@ def test_what_another_process_removes_first_is_no_error(folders, monkeypatch):
         rmtree(folder)
         rmtree(folder)
 
-    monkeypatch.setattr("rovsim.dynamics.engine.cache.shutil.rmtree", remove_twice)
+    monkeypatch.setattr("rovsim.dynamics.compilation.cache.shutil.rmtree", remove_twice)
     root = folders(1, 40, 50)
     prune(root)
     assert [folder.name for folder in root.iterdir()] == ["1"]

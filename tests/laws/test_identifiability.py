@@ -24,9 +24,9 @@ from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
-from rovsim.dynamics.effects.law import Law
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.thrusters import ThrusterGain
+from rovsim.dynamics.laws.law import Law
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.estimation.file_effects import free_terms

@@ -15,8 +15,8 @@ from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
 from rovsim.diagnosis.equations.products.targets import TARGETS
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
 from rovsim.diagnosis.equations.products.wording import write_equation
-from rovsim.dynamics.effects.law import COEFFICIENTS, Law, Product
 from rovsim.dynamics.engine.types import EXAMPLE
+from rovsim.dynamics.laws.law import COEFFICIENTS, Law, Product
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive

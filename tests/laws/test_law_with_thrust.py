@@ -15,8 +15,8 @@ from rovsim.diagnosis.equations.with_thrust import (
     list_thrust_terms,
     push_at,
 )
-from rovsim.dynamics.effects.thrust_law import OTHER, THRUSTERS
 from rovsim.dynamics.engine.reading import Actuators, example_reading
+from rovsim.dynamics.laws.thrust_law import OTHER, THRUSTERS
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from worlds import model, tank, write_and_read

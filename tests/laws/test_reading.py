@@ -10,8 +10,8 @@ from rovsim.core.run import Logged, Site
 from rovsim.dynamics.actuation import Thrust
 from rovsim.dynamics.catalogue import built_in, load_catalogue
 from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.effects.thrust_law import ThrustLaw
 from rovsim.dynamics.engine.types import NO_MEMORY
+from rovsim.dynamics.laws.thrust_law import ThrustLaw
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.batch import Batch
@@ -49,7 +49,7 @@ def probe(tmp_path):
 HELPED = """
 import numpy as np
 from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
 
 @inlined
 def actuator(at, i):

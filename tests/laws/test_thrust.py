@@ -12,7 +12,6 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.dynamics.effects.clocks import ClockDrift, InputDelay
 from rovsim.dynamics.effects.force_curve import CurveExponent
-from rovsim.dynamics.effects.thruster_play import ThrusterPlay
 from rovsim.dynamics.effects.thrusters import (
     AdvanceLoss,
     PropellerTorque,
@@ -22,6 +21,7 @@ from rovsim.dynamics.effects.thrusters import (
     ThrusterLag,
     VoltageSag,
 )
+from rovsim.dynamics.laws.thruster_play import ThrusterPlay
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from worlds import model, sticks

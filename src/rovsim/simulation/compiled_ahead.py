@@ -4,7 +4,7 @@ import numpy as np
 
 from rovsim.core.run import Site
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.engine.cache import cache_folder
+from rovsim.dynamics.compilation.cache import cache_folder
 from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.vehicle.load import load_vehicle
 from rovsim.simulation.batch import Batch, Starts

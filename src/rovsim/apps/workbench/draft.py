@@ -10,7 +10,7 @@ import numpy as np
 from rovsim.diagnosis.apply import add_uncertainty, choose_effects, extend
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import EffectEntry, Value, build_effects
-from rovsim.dynamics.effects.parameters import Parameter
+from rovsim.dynamics.effects.base import Parameter
 from rovsim.dynamics.model import Model
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect

@@ -12,8 +12,7 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.shipped import shipped
 from rovsim.core.signs import minus
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Effect, Signature
 from rovsim.reporting.catalogue.entries import PICTURES, chaptered
 from rovsim.reporting.units import unit
 

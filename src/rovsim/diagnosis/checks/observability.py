@@ -15,8 +15,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.effects.base import Requirement, StochasticCurrent
-from rovsim.dynamics.effects.parameters import REFERENCE_MASS
+from rovsim.dynamics.effects.base import REFERENCE_MASS, Requirement, StochasticCurrent
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.estimation.candidates import list_means
 from rovsim.estimation.observer.hypothesis import Hypothesis

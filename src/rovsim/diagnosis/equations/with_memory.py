@@ -16,8 +16,8 @@ from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law, stated
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
-from rovsim.dynamics.effects.thruster_play import ThrusterPlay
-from rovsim.dynamics.effects.wake_by_axis import WakeByAxis
+from rovsim.dynamics.laws.thruster_play import ThrusterPlay
+from rovsim.dynamics.laws.wake_by_axis import WakeByAxis
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 

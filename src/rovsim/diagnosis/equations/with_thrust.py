@@ -20,8 +20,8 @@ from rovsim.diagnosis.equations.products.products import KERNEL
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, Variable, write_unit
 from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.law_codes import NONE, SIZE
-from rovsim.dynamics.effects.thrust_law import OTHER, THRUSTERS, ThrustLaw
+from rovsim.dynamics.laws.codes import NONE, SIZE
+from rovsim.dynamics.laws.thrust_law import OTHER, THRUSTERS, ThrustLaw
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -43,8 +43,8 @@ class ThrustTerm:
         on: axis (0 to 5) of the push.
         thrust: axis (0 to 5) of the thrust.
         unsigned: whether the absolute value of that thrust is taken.
-        factor: code of a further factor: a velocity or its absolute value (`law_codes`), or `OTHER`
-            for a second thrust; `NONE` where there is no further factor.
+        factor: code of a further factor: a velocity or its absolute value (`laws.codes`), or
+            `OTHER` for a second thrust; `NONE` where there is no further factor.
         other: axis (0 to 5) of the second thrust; `NONE` where there is none.
     """
 

@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from rovsim.core.axes import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
-from rovsim.dynamics.effects.law import SMOOTH
+from rovsim.dynamics.laws.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 from rovsim.estimation.observer.sandwich import find_inflation

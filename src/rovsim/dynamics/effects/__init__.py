@@ -1,1 +1,1 @@
-"""The effects of the catalogue, one family a file, and what every effect is."""
+"""The effects of the catalogue, one family a file; `base` says what every effect is."""

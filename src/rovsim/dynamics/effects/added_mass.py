@@ -4,8 +4,7 @@ import numpy as np
 
 from rovsim.core.axes import AXES
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter
-from rovsim.dynamics.effects.parameters import Signature, per_axis
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Signature, per_axis
 
 PAIRS = [(i, j) for i in range(6) for j in range(i + 1, 6)]
 UNITS = ("kg", "kg m", "kg m2")  # of an entry, by how many of its two axes are rotations

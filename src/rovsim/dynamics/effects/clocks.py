@@ -2,8 +2,7 @@
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import CommandTiming, Parameter
-from rovsim.dynamics.effects.parameters import STAMP, Signature
+from rovsim.dynamics.effects.base import STAMP, CommandTiming, Parameter, Signature
 
 
 class InputDelay(CommandTiming):

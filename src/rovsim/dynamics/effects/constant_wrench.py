@@ -1,7 +1,6 @@
 """A trim that never changes."""
 
-from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.effects.parameters import Signature, per_axis
+from rovsim.dynamics.effects.base import Signature, Wrench, per_axis
 
 
 class ConstantWrench(Wrench):

@@ -2,8 +2,7 @@
 
 from rovsim.core.axes import AXES
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Signature
 
 PAIRS = [(i, j) for i in range(6) for j in range(6) if i != j]
 POWERS = (("", "d"), ("_quadratic", "d^q"))  # the rows of Body.coupling

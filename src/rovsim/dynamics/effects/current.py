@@ -4,8 +4,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter, StochasticCurrent
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Signature, StochasticCurrent
 
 
 class Current(Coefficients):

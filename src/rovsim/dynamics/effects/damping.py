@@ -1,8 +1,7 @@
 """Water resistance, axis by axis."""
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Wrench
-from rovsim.dynamics.effects.parameters import Signature, per_axis
+from rovsim.dynamics.effects.base import Coefficients, Signature, Wrench, per_axis
 
 
 class LinearDamping(Coefficients):

@@ -2,9 +2,8 @@
 
 from math import tanh
 
-from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.effects.parameters import Signature, per_axis
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
+from rovsim.dynamics.effects.base import Signature, Wrench, per_axis
 
 SMOOTH = 0.01  # m/s or rad/s: a convention of model files, as its equation says
 

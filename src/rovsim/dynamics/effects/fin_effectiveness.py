@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter, Signature
 
 
 def _gain(name: str) -> Parameter:

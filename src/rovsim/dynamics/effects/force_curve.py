@@ -3,8 +3,7 @@
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Parameter, ThrustCurveShape
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Parameter, Signature, ThrustCurveShape
 
 
 class CurveExponent(ThrustCurveShape):

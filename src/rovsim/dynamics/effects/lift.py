@@ -1,7 +1,6 @@
 """Lift of the hull at an angle of attack."""
 
-from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Parameter, Signature, Wrench
 
 
 class Lift(Wrench):

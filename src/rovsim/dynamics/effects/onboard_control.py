@@ -9,9 +9,8 @@ from numpy import ndarray as Array
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
-from rovsim.dynamics.effects.base import Autopilot, Parameter, Wrench
-from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
+from rovsim.dynamics.effects.base import Autopilot, Parameter, Signature, Wrench
 
 SPEEDS = ("m/s", "rad/s")
 # Where a fit of loops on all axes begins: gains, the speed of this vehicle at full stick (Blue

@@ -3,8 +3,7 @@
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
-from rovsim.dynamics.effects.base import DemandTransform, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import DemandTransform, Parameter, Signature
 
 
 class PilotGain(DemandTransform):

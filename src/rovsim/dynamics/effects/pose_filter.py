@@ -4,8 +4,7 @@ from math import pi
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import CommandTiming, MeasurementFilter, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import CommandTiming, MeasurementFilter, Parameter, Signature
 
 NONE = 1e3  # Hz, ten times what cameras see: no filter at all
 LATEST = 0.2  # s, two frames of the slowest cameras

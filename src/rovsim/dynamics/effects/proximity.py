@@ -2,9 +2,8 @@
 
 from math import exp
 
-from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
+from rovsim.dynamics.effects.base import Parameter, Signature, Wrench
 
 
 @inlined

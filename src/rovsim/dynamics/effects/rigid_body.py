@@ -5,8 +5,14 @@ from functools import cache
 import numpy as np
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Actuated, Coefficients, Effect, Parameter
-from rovsim.dynamics.effects.parameters import REFERENCE_MASS, Signature
+from rovsim.dynamics.effects.base import (
+    REFERENCE_MASS,
+    Actuated,
+    Coefficients,
+    Effect,
+    Parameter,
+    Signature,
+)
 
 # Where the fit of a payload begins on a BlueROV2 Heavy: kg, m from its middle.
 START, REACH = 0.3, 0.15

@@ -3,8 +3,7 @@
 import numpy as np
 
 from rovsim.core.rotations import Rigid
-from rovsim.dynamics.effects.base import FrameMisalignment, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import FrameMisalignment, Parameter, Signature
 
 
 class MarkerOffset(FrameMisalignment):

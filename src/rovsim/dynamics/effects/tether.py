@@ -4,9 +4,8 @@ from math import sqrt
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import CommandKind, Site
-from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.effects.parameters import Signature
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.compilation.compiled import inlined
+from rovsim.dynamics.effects.base import Parameter, Signature, Wrench
 from rovsim.dynamics.engine.vectors import cross, dot3, into_body
 
 ATTACHMENT = tuple(

@@ -8,8 +8,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Actuated, CommandTransform, Effect, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Actuated, CommandTransform, Effect, Parameter, Signature
 
 
 class ThrusterOrder(CommandTransform):

@@ -11,15 +11,16 @@ from rovsim.core.errors import BadInput
 from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import (
+    STAMP,
     Actuated,
     Coefficients,
     CommandTransform,
     Effect,
     Parameter,
+    Signature,
     ThrusterDynamics,
     ThrustScaling,
 )
-from rovsim.dynamics.effects.parameters import STAMP, Signature
 
 USUAL_COUNT = 8  # thrusters of the effect in the catalogue: those of a BlueROV2 Heavy
 

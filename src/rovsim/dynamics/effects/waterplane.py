@@ -1,8 +1,7 @@
 """Hydrostatic stiffness of a surface vehicle."""
 
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Parameter
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Signature
 
 
 class WaterplaneStiffness(Coefficients):

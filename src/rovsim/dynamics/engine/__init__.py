@@ -9,7 +9,5 @@ as_tuples        one parameter set, one step and one state, out of arrays of all
 integration      its integration over steps
 observer         a model along a measurement, corrected by it
 modules          written modules for lists of effects
-compiled         how functions are compiled, and kept
-cache            one folder for each state of the sources
 parallel         kernels on all cores, in threads
 """

@@ -1,6 +1,6 @@
 """One parameter set, one step and one state, as tuples out of the arrays of all of them."""
 
-from rovsim.dynamics.engine.compiled import inline_internal
+from rovsim.dynamics.compilation.compiled import inline_internal
 from rovsim.dynamics.engine.types import Constants, State, Step, Surroundings, WrenchParameters
 from rovsim.dynamics.engine.vectors import ZERO6, matrix6, times6, vector3, vector6
 

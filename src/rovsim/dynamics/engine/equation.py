@@ -14,7 +14,7 @@ apart: taking one that holds arrays out of a further tuple costs half as much as
 
 import numpy as np
 
-from rovsim.dynamics.engine.compiled import inline_anew, inline_internal, internal
+from rovsim.dynamics.compilation.compiled import inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.types import At, State
 from rovsim.dynamics.engine.uncommon_forces import further_forces
 from rovsim.dynamics.engine.vectors import (

@@ -10,6 +10,7 @@ from math import exp, sqrt
 
 import numpy as np
 
+from rovsim.dynamics.compilation.compiled import entry, inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.as_tuples import (
     constants_of,
     even_step_of,
@@ -19,7 +20,6 @@ from rovsim.dynamics.engine.as_tuples import (
     store,
     surroundings_of,
 )
-from rovsim.dynamics.engine.compiled import entry, inline_anew, inline_internal, internal
 from rovsim.dynamics.engine.equation import flow, rotation, slope
 from rovsim.dynamics.engine.types import Scratch, State
 from rovsim.dynamics.engine.vectors import ZERO6, add3, add4, add6, each6, times6, vector6

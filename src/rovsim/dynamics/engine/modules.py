@@ -19,7 +19,7 @@ from typing import Any, Sequence
 from filelock import FileLock
 
 from rovsim.core.files import write_text
-from rovsim.dynamics.engine.cache import DYNAMICS, cache_folder, digest
+from rovsim.dynamics.compilation.cache import DYNAMICS, cache_folder, digest
 
 ENGINE = '''\
 """The equation of motion with {names}.
@@ -28,7 +28,7 @@ Written by rovsim.dynamics.engine.modules, so that Numba can keep what it compil
 """
 
 from rovsim.dynamics.engine import integration, observer
-from rovsim.dynamics.engine.compiled import inline_anew, kept
+from rovsim.dynamics.compilation.compiled import inline_anew, kept
 {imports}{kernels}
 
 @inline_anew
@@ -72,7 +72,7 @@ ATTACHED = '''\
 Written by rovsim.dynamics.engine.modules, so that Numba can keep what it compiles.
 """
 
-from rovsim.dynamics.engine.compiled import MATHS, inline_anew, keep_address
+from rovsim.dynamics.compilation.compiled import MATHS, inline_anew, keep_address
 from rovsim.dynamics.engine.reading import BY_ADDRESS
 {imports}{kernels}
 

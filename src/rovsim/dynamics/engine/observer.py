@@ -8,6 +8,7 @@ with time constants T. Innovations are one-step prediction errors of the model.
 
 from math import atan2, cos, sin
 
+from rovsim.dynamics.compilation.compiled import entry, inline_internal
 from rovsim.dynamics.engine.as_tuples import (
     constants_of,
     parameters_of,
@@ -15,7 +16,6 @@ from rovsim.dynamics.engine.as_tuples import (
     step_of,
     surroundings_of,
 )
-from rovsim.dynamics.engine.compiled import entry, inline_internal
 from rovsim.dynamics.engine.equation import rotation
 from rovsim.dynamics.engine.integration import (
     memory_after,

@@ -13,7 +13,7 @@ import numpy as np
 from numba import typeof, types
 from numpy import ndarray as Array
 
-from rovsim.dynamics.engine.compiled import inline_anew, inline_internal
+from rovsim.dynamics.compilation.compiled import inline_anew, inline_internal
 from rovsim.dynamics.engine.types import EXAMPLE, Vector3, Vector6
 from rovsim.dynamics.engine.vectors import add3, cross, vector3
 

@@ -8,7 +8,7 @@ from math import atan2, pi, sin, sqrt
 
 import numpy as np
 
-from rovsim.dynamics.engine.compiled import inline_internal, internal
+from rovsim.dynamics.compilation.compiled import inline_internal, internal
 from rovsim.dynamics.engine.types import (
     CHORD,
     HALF,

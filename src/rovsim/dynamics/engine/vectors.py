@@ -1,6 +1,6 @@
 """Small vectors as tuples of floats: kept in registers, without an array's reference count."""
 
-from rovsim.dynamics.engine.compiled import inline_shared
+from rovsim.dynamics.compilation.compiled import inline_shared
 
 ZERO6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 

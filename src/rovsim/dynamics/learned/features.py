@@ -5,7 +5,7 @@ from numba import njit
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import unrotate
-from rovsim.dynamics.engine.compiled import FROM_PYTHON, UNSEEN
+from rovsim.dynamics.compilation.compiled import FROM_PYTHON, UNSEEN
 from rovsim.dynamics.learned.layout import BLOCKS
 from rovsim.dynamics.learned.settings import (
     ACCELERATION,

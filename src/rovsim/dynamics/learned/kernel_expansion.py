@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from rovsim.dynamics.engine.compiled import UNSEEN
+from rovsim.dynamics.compilation.compiled import UNSEEN
 from rovsim.dynamics.learned.layout import (
     COUNT,
     FADING_RANK,

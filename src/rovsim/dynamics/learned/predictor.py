@@ -7,7 +7,7 @@ file that are not consistent. Many threads may call the kernels: scratch lies on
 import numpy as np
 from numba import carray
 
-from rovsim.dynamics.engine.compiled import FROM_PYTHON, keep
+from rovsim.dynamics.compilation.compiled import FROM_PYTHON, keep
 from rovsim.dynamics.learned.kernel_expansion import faded, posterior
 from rovsim.dynamics.learned.layout import KIND, NEIGHBOURS, OUTPUTS
 from rovsim.dynamics.learned.neighbours import neighbours

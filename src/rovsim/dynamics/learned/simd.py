@@ -12,7 +12,7 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from rovsim.dynamics.engine.compiled import FROM_PYTHON, UNSEEN
+from rovsim.dynamics.compilation.compiled import FROM_PYTHON, UNSEEN
 from rovsim.dynamics.learned.layout import LANES, MOST_POINTS
 
 # 64 KiB for the values of kernels, and a little more for what each kernel keeps beside them

@@ -6,7 +6,7 @@ from typing import Collection, Iterator, Sequence
 import numpy as np
 
 from rovsim.core.axes import AXES
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Signature
 from rovsim.evaluation.error_conditions.bins import (
     BinnedErrors,
     bin_errors,

@@ -17,13 +17,13 @@ from rovsim.dynamics.effects.base import (
     FrameMisalignment,
     MeasurementFilter,
     Parameter,
+    Signature,
     StochasticCurrent,
     ThrustCurveShape,
     ThrusterDynamics,
     ThrustScaling,
     Wrench,
 )
-from rovsim.dynamics.effects.parameters import Signature
 from rovsim.reporting.units import unit
 from rovsim.reporting.words.symbols import explain_symbols
 

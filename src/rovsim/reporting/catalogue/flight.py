@@ -9,8 +9,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.errors import unlisted
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Effect, Signature
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.evaluation.error_conditions.bins import bin_errors, cut_bins, number_stretches

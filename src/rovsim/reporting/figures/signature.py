@@ -16,7 +16,7 @@ from PIL import Image
 
 from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.files import write_bytes
-from rovsim.dynamics.effects.parameters import Signature
+from rovsim.dynamics.effects.base import Signature
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import MM, WIDTH, styled

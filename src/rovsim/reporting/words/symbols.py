@@ -3,8 +3,7 @@
 import re
 from typing import Collection, Iterator
 
-from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.parameters import Parameter
+from rovsim.dynamics.effects.base import Effect, Parameter
 
 # Symbols that effects share; an effect that uses one otherwise declares it (`Effect.symbols`).
 COMMON = {

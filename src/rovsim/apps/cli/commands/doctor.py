@@ -20,7 +20,7 @@ from rovsim.apps.cli.output import say
 from rovsim.core.extras import PACKAGES, installed
 from rovsim.core.second_process import usable_cores
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.engine.cache import cache_folder
+from rovsim.dynamics.compilation.cache import cache_folder
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 Line = tuple[str, bool, str]  # what, whether it is there, and more of it

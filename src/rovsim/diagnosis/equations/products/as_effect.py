@@ -1,7 +1,7 @@
 """A law of products as an effect of a hypothesis: its parameters, and which of them are free.
 
 The effect is `Law`, whose parameters state the terms: for each a free coefficient, a fixed size,
-and codes (`law_codes`) of what the term acts on and of its factors. The coefficient is that of the
+and codes (`laws.codes`) of what the term acts on and of its factors. The coefficient is that of the
 equation times the RMS of the term, so that it is of the order of the force.
 """
 
@@ -15,8 +15,8 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
-from rovsim.dynamics.effects.law import COEFFICIENTS, Law, Product
-from rovsim.dynamics.effects.law_codes import DEEP, EAST, NEAR, NORTH, SWIRL
+from rovsim.dynamics.laws.codes import DEEP, EAST, NEAR, NORTH, SWIRL
+from rovsim.dynamics.laws.law import COEFFICIENTS, Law, Product
 from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 

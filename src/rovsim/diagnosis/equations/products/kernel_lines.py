@@ -6,7 +6,7 @@ from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import FLOWS, TARGETS, WORLD_FORCES
 from rovsim.diagnosis.equations.products.variables import IN_CODE, VARIABLES
-from rovsim.dynamics.effects.law_codes import (
+from rovsim.dynamics.laws.codes import (
     DEEP,
     DIRECTION,
     DOWN,

@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
 from rovsim.diagnosis.structure.regressors import earlier_states
-from rovsim.dynamics.effects.law_codes import (
+from rovsim.dynamics.laws.codes import (
     DEEP,
     DIRECTION,
     DOWN,
@@ -43,7 +43,7 @@ class LawTerm:
     """A candidate term: a product of factors that acts on something.
 
     Attributes:
-        on: code (`law_codes`) of what the term acts on.
+        on: code (`laws.codes`) of what the term acts on.
         factors: codes of the factors; none for a constant.
         place: m north and east in NED, of a term that fades away from a place.
     """

@@ -22,7 +22,7 @@ from rovsim.diagnosis.equations.products.wording import (
     write_equation,
 )
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.law import COEFFICIENTS
+from rovsim.dynamics.laws.law import COEFFICIENTS
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 PLACES = {  # unit, symbol and scale of a place's numbers

@@ -22,7 +22,7 @@ from rovsim.diagnosis.equations.products.library import (
 )
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
-from rovsim.dynamics.effects.law import TERMS
+from rovsim.dynamics.laws.law import TERMS
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 

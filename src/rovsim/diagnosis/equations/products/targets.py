@@ -5,7 +5,7 @@ from typing import Sequence
 
 from rovsim.core.axes import AXES, FORCE, FORCE_UNITS
 from rovsim.diagnosis.equations.products.variables import VARIABLES, write_unit
-from rovsim.dynamics.effects.law_codes import EAST, NORTH
+from rovsim.dynamics.laws.codes import EAST, NORTH
 
 WORLD_FORCES, FLOWS = ("Fn", "Fe", "Fd"), ("vn", "ve")  # in code
 
@@ -99,5 +99,5 @@ def _of_water() -> list[Target]:
     ]
 
 
-# In the order of `law_codes`, so that a code is an index.
+# In the order of `laws.codes`, so that a code is an index.
 TARGETS = (*_along_body(), *_along_world(), *_of_water())

@@ -1,6 +1,6 @@
 """The factors that terms of a law may be made of, with their units and mirror symmetry.
 
-Their order is that of `law_codes`. Nearly every vehicle is symmetric between port and starboard.
+Their order is that of `laws.codes`. Nearly every vehicle is symmetric between port and starboard.
 When these are exchanged, sway, roll and yaw change sign, with the factors that are odd in them.
 """
 
@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES, VELOCITY
 from rovsim.core.rotations import matrix
-from rovsim.dynamics.effects.law import SMOOTH, STILL, TILT
+from rovsim.dynamics.laws.law import SMOOTH, STILL, TILT
 
 IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # in kernels, where `p` are the parameters
 ODD = (1, 3, 5)  # axes that change sign when port and starboard are exchanged

@@ -6,7 +6,7 @@ from typing import Sequence
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import TARGETS
 from rovsim.diagnosis.equations.products.variables import VARIABLES
-from rovsim.dynamics.effects.law_codes import SWIRL
+from rovsim.dynamics.laws.codes import SWIRL
 
 
 def name_terms(terms: Sequence[LawTerm]) -> list[str]:

@@ -8,7 +8,7 @@ import numba
 from filelock import FileLock
 from numba.core.compiler_lock import global_compiler_lock
 
-from rovsim.dynamics.engine.cache import cache_folder
+from rovsim.dynamics.compilation.cache import cache_folder
 
 MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
 # Wrappers that make a function callable from outside take half of the time of its compilation.

@@ -7,8 +7,7 @@ from typing import Any, Iterator, Mapping, get_args
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.effects.base import Effect, Requirement, Wrench
-from rovsim.dynamics.effects.parameters import Parameter
+from rovsim.dynamics.effects.base import Effect, Parameter, Requirement, Wrench
 
 TEXTS = ("equation", "neglects", "source")
 GUIDE = "docs/your_own_effect.md shows a complete one."

@@ -31,8 +31,8 @@ from rovsim.dynamics.effects.base import (
     ThrustScaling,
     Wrench,
 )
-from rovsim.dynamics.effects.declarations import refused
-from rovsim.dynamics.effects.kernel_trials import Actuating, largest_push
+from rovsim.dynamics.user_effects.declarations import refused
+from rovsim.dynamics.user_effects.kernel_trials import Actuating, largest_push
 
 INSTANTS = 5  # number of samples that methods are tried with
 TIME = np.arange(INSTANTS) / 10.0  # s

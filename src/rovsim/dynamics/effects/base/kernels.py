@@ -15,7 +15,7 @@ def compiled_alone(cls: Any) -> Any:
     """
     import numba
 
-    from rovsim.dynamics.engine.compiled import MATHS
+    from rovsim.dynamics.compilation.compiled import MATHS
 
     return numba.njit(boundscheck=True, **MATHS)(cls.wrench)
 

@@ -5,9 +5,9 @@ matrix times the forces of the thrusters) or its absolute value, and perhaps one
 velocity, its absolute value, or the thrust along another axis.
 """
 
+from rovsim.dynamics.compilation.compiled import inlined
 from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.effects.law_codes import NONE, SIZE
-from rovsim.dynamics.engine.compiled import inlined
+from rovsim.dynamics.laws.codes import NONE, SIZE
 
 THRUSTERS = 12  # a vehicle with more has no such law
 FIRST, SECOND = 5, 5 + THRUSTERS  # where a row of the allocation begins among the parameters

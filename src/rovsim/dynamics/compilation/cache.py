@@ -2,7 +2,7 @@
 
 Numba's cache checks the file of a function, but not those of the functions that it calls. So the
 name of our folder is a digest of all sources that can be compiled into it: the engine, the kernels
-of effects and of learned residuals, and Numba's version. After any edit the next run uses a new,
+of effects, laws and learned residuals, and Numba's version. After any edit the next run uses a new,
 empty folder, so that the cache is never stale. Each process marks its folder as used when it
 starts, and removes folders that no process marked for 30 days.
 """
@@ -19,7 +19,8 @@ import numba
 from platformdirs import user_cache_path
 
 DYNAMICS = Path(__file__).parents[1]
-ROOMS = ("engine", "effects", "learned")  # packages of `dynamics` whose functions are compiled
+# Packages of `dynamics` whose functions are compiled.
+ROOMS = ("compilation", "engine", "effects", "laws", "learned")
 # s, 30 days; our choice. A longer process loses nothing: Numba compiles again what is missing.
 UNUSED = 30 * 86400.0
 
@@ -46,7 +47,7 @@ def prune(folders: Path) -> None:
 
 
 def _digest_sources() -> str:
-    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).glob("*.py"))
+    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).rglob("*.py"))
     return digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
 
 

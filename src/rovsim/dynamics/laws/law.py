@@ -1,7 +1,7 @@
 """Any law of up to three terms as one effect: its terms are data, so that nothing is recompiled.
 
 A term is a coefficient, what it acts on (an axis or the water), and up to three factors. Codes of
-these are among the effect's parameters (`law_codes`). A test compares this kernel with the effect
+these are among the effect's parameters (`laws.codes`). A test compares this kernel with the effect
 file that is written for a law.
 """
 
@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from math import exp, sqrt, tanh
 from typing import Sequence
 
+from rovsim.dynamics.compilation.compiled import inlined, internal
 from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.effects.law_codes import (
+from rovsim.dynamics.engine.vectors import into_body
+from rovsim.dynamics.laws.codes import (
     DEEP,
     DIRECTION,
     DOWN,
@@ -26,8 +28,6 @@ from rovsim.dynamics.effects.law_codes import (
     WATER,
     WORLD,
 )
-from rovsim.dynamics.engine.compiled import inlined, internal
-from rovsim.dynamics.engine.vectors import into_body
 
 TERMS, FACTORS = 3, 3
 STRIDE = 3 + FACTORS  # parameters of a term
@@ -124,7 +124,7 @@ class Product:
     Attributes:
         coefficient: fitted; of the order of what the term makes.
         size: fixed, by which the coefficient is multiplied.
-        on: code (`law_codes`) of what the term acts on.
+        on: code (`laws.codes`) of what the term acts on.
         factors: codes of its factors, up to three.
     """
 

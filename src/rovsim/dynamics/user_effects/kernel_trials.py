@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix, normalized
 from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.effects.kernels import compiled_alone
+from rovsim.dynamics.effects.base.kernels import compiled_alone
 from rovsim.dynamics.engine.types import EXAMPLE, At
 
 INSTANTS = 100  # number of random instants that kernels are tried at

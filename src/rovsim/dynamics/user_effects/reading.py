@@ -13,9 +13,9 @@ from typing import Any, Mapping
 
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
-from rovsim.dynamics.effects.declarations import TEXTS, find_faults, refused
-from rovsim.dynamics.effects.kernels import compiled_alone, line_that_raises, says
-from rovsim.dynamics.effects.trials import TRIALS
+from rovsim.dynamics.effects.base.kernels import compiled_alone, line_that_raises, says
+from rovsim.dynamics.user_effects.declarations import TEXTS, find_faults, refused
+from rovsim.dynamics.user_effects.trials import TRIALS
 
 
 def read_effects(path: Path, taken: Mapping[str, Any]) -> dict[str, type[Effect]]:

@@ -1,0 +1,8 @@
+"""Laws that a diagnosis may propose for what no effect of the catalogue explains, as effects.
+
+law            any law of up to three terms, its terms as data
+codes          codes of the factors of its terms
+thrust_law     a push that follows the thrust
+wake_by_axis   a fluid memory with a coefficient for each axis
+thruster_play  thrusters that do not answer small changes
+"""
