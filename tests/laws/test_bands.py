@@ -205,7 +205,7 @@ def test_where_nobody_knows_it_says_why():
     run = motion(sticks(), seconds=8.0)
     spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
     wanders = known()
-    wanders = replace(wanders, effects=(*wanders.effects, CurrentDrift(rate=0.01)))
+    wanders = replace(wanders, added=(*wanders.added, CurrentDrift(rate=0.01)))
     for world, why in [
         (model(), "rovsim add"),
         (known(FittedNoise()), "what noise"),

@@ -100,8 +100,8 @@ def check_fitted(name: str, effect: type[Effect]) -> None:
 def separate(model: Model) -> Hypothesis:
     """A model as a hypothesis whose free parameters are those that its file says were fitted."""
     fitted = [e for e in model.added if e.std]
-    fixed = tuple(e for e in model.effects if e not in fitted)
-    return Hypothesis(model.with_effects(fixed), tuple(Term(e, tuple(e.std)) for e in fitted))
+    fixed = model.with_added(e for e in model.added if e not in fitted)
+    return Hypothesis(fixed, tuple(Term(e, tuple(e.std)) for e in fitted))
 
 
 def _free(
@@ -131,9 +131,7 @@ def _without(h: Hypothesis, *names: str) -> Hypothesis:
 
     Effects that the vehicle has by itself stay.
     """
-    nominal = h.base.vehicle.effects()
-    added = [e for e in h.base.effects[len(nominal) :] if e.id not in names]
-    base = h.base.with_effects((*h.base.effects[: len(nominal)], *added))
+    base = h.base.with_added(e for e in h.base.added if e.id not in names)
     return Hypothesis(base, tuple(t for t in h.terms if t.id not in names))
 
 

@@ -148,6 +148,6 @@ def extend(base: Model, effects: Sequence[Effect]) -> Model:
     Raises:
         BadInput: no model can have these values.
     """
-    model = base.with_effects((*base.effects, *effects)).called("new")
+    model = base.with_added((*base.added, *effects)).called("new")
     _ = model.M  # raises if the inertia matrix is impossible
     return model

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Sequence
+from typing import Iterable
 
 import numpy as np
 from numpy import ndarray as Array
@@ -35,8 +35,8 @@ class Model:
     Attributes:
         name: of the model.
         vehicle: the vehicle.
-        effects: all effects: the nominal ones of the vehicle first, as `nominal` puts them, then
-            the added ones in order.
+        vehicle_effects: the nominal physics, see `Vehicle.effects`.
+        added: effects that were added to it, in order.
         residual: learned acceleration residual; None if there is none.
         inert: whether the body velocity is constant whatever the forces: the baseline.
         uncertainty: of the added effects; None where they were not fitted.
@@ -44,17 +44,25 @@ class Model:
 
     name: str
     vehicle: Vehicle
-    effects: tuple[Effect, ...]
+    vehicle_effects: tuple[Effect, ...]
+    added: tuple[Effect, ...] = ()
     residual: Residual | None = None
     inert: bool = False
     uncertainty: Uncertainty | None = None
 
     def __add__(self, added: Effect) -> "Model":
-        return self.with_effects((*self.effects, added))
+        return self.with_added((*self.added, added))
 
-    def with_effects(self, effects: Sequence[Effect]) -> "Model":
-        """The same model with other effects, of unknown uncertainty."""
-        return replace(self, effects=tuple(effects), uncertainty=None)
+    def with_added(self, effects: Iterable[Effect]) -> "Model":
+        """The same model with other added effects, of unknown uncertainty."""
+        return replace(self, added=tuple(effects), uncertainty=None)
+
+    def with_effect(self, k: int, effect: Effect) -> "Model":
+        """The same model with another effect in the place of number k of all `effects`."""
+        effects, count = [*self.effects], len(self.vehicle_effects)
+        effects[k] = effect
+        vehicle_effects = tuple(effects[:count])
+        return replace(self, vehicle_effects=vehicle_effects).with_added(effects[count:])
 
     def draw(self, random: np.random.Generator) -> "Model":
         """Draw the added effects from the model's uncertainty; unchanged where that is not known.
@@ -64,8 +72,7 @@ class Model:
         if self.uncertainty is None:
             return self
         for _ in range(TRIES):
-            nominal, added = self.vehicle.effects(), self.uncertainty.draw(random)
-            model = self.with_effects((*nominal, *added))
+            model = self.with_added(self.uncertainty.draw(random))
             if model.possible:
                 return model
         return self
@@ -75,9 +82,9 @@ class Model:
         return replace(self, name=name)
 
     @cached_property
-    def added(self) -> tuple[Effect, ...]:
-        """The effects that were added to the nominal ones of the vehicle."""
-        return self.effects[len(self.vehicle.effects()) :]
+    def effects(self) -> tuple[Effect, ...]:
+        """All effects: those of the vehicle, then the added ones."""
+        return (*self.vehicle_effects, *self.added)
 
     @cached_property
     def body(self) -> Body:

@@ -177,7 +177,7 @@ def build_model(content: Any, path: Path, catalogue: Catalogue) -> Model:
     effects = catalogue.on(vehicle)
     with located(path):
         added = build_effects(file.effects, effects)
-        model = Model(name_of(path), vehicle, (*vehicle.effects(), *added), residual)
+        model = Model(name_of(path), vehicle, vehicle.effects(), added, residual)
         _ = model.M  # refuse a model that cannot move
     if file.uncertainty is None or residual is not None:
         return model

@@ -11,7 +11,7 @@ product counts as force of the later one.
 """
 
 from dataclasses import replace
-from typing import Iterator, Sequence
+from typing import Iterator
 
 import numpy as np
 from numpy import ndarray as Array
@@ -75,23 +75,26 @@ def _cumulative(
 
     Forces are in N and N m, FRD at CO.
     """
-    neutral = [effect.neutral() for effect in model.effects]
-    inertia_only = _with(model, neutral)
-    no_thrust = drive_as_measured(inertia_only, motion, settings).idle()
+    so_far = replace(
+        model,
+        vehicle_effects=tuple(effect.neutral() for effect in model.vehicle_effects),
+        added=tuple(effect.neutral() for effect in model.added),
+        residual=None,
+    )
+    no_thrust = drive_as_measured(so_far, motion, settings).idle()
     at_rest = replace(motion, state_nu=0 * motion.state_nu)
-    yield RESTORING, _force(inertia_only, at_rest, no_thrust)
-    yield CORIOLIS, _force(inertia_only, motion, no_thrust)
-    vehicle_count = len(model.effects) - len(model.added)
-    for k in sorted(range(vehicle_count), key=lambda k: _place(model.effects[k])):
-        effect = model.effects[k]
-        if neutral[k] is not effect:  # else every vehicle has it, so it is in from the start
-            neutral[k] = effect
-            name = NOMINAL.get(effect.id, effect.id)
-            yield name, _force(_with(model, neutral), motion, no_thrust)
-    yield THRUSTERS, _at(_with(model, neutral), motion, settings)
-    for k in range(vehicle_count, len(neutral)):
-        neutral[k] = model.effects[k]
-        yield f"+{neutral[k].id}", _at(_with(model, neutral), motion, settings)
+    yield RESTORING, _force(so_far, at_rest, no_thrust)
+    yield CORIOLIS, _force(so_far, motion, no_thrust)
+    parts = list(enumerate(model.effects))
+    of_vehicle, added = parts[: len(model.vehicle_effects)], parts[len(model.vehicle_effects) :]
+    for k, effect in sorted(of_vehicle, key=lambda part: _place(part[1])):
+        if so_far.effects[k] is not effect:  # else every vehicle has it: in from the start
+            so_far = so_far.with_effect(k, effect)
+            yield NOMINAL.get(effect.id, effect.id), _force(so_far, motion, no_thrust)
+    yield THRUSTERS, _at(so_far, motion, settings)
+    for k, effect in added:
+        so_far = so_far.with_effect(k, effect)
+        yield f"+{effect.id}", _at(so_far, motion, settings)
     if model.residual is not None:
         yield RESIDUAL, _at(model, motion, settings)
 
@@ -99,11 +102,6 @@ def _cumulative(
 def _place(effect: Effect) -> int:
     """Position of an effect of the vehicle in the order of parts."""
     return list(NOMINAL).index(effect.id) if effect.id in NOMINAL else len(NOMINAL)
-
-
-def _with(model: Model, effects: Sequence[Effect]) -> Model:
-    """The model with these effects alone, without a learned residual."""
-    return replace(model, effects=tuple(effects), residual=None)
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:

@@ -134,20 +134,18 @@ def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
         model: that is exported.
         hold: returns what the target can hold of an effect, and why not all; empty: it is all.
     """
-    effects = list(model.effects)
+    held = model
     for k, effect in enumerate(model.effects):
         remainder, reason = hold(effect)
         if reason and acts(effect):
-            before = model.with_effects(tuple(effects))
-            effects[k] = remainder
-            yield Left(effect.id, reason, before, model.with_effects(tuple(effects)))
+            before, held = held, held.with_effect(k, remainder)
+            yield Left(effect.id, reason, before, held)
     if model.residual is not None:
-        before = model.with_effects(tuple(effects))
         yield Left(
             RESIDUAL,
             "a trained residual is arrays, no term",
-            before,
-            replace(before, residual=None),
+            held,
+            replace(held, residual=None),
         )
 
 

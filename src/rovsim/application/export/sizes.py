@@ -77,13 +77,9 @@ def typical_flight(model: Model) -> Motion:
     demands per axis where an effect acts on these.
     """
     demands = any(isinstance(effect, Autopilot | DemandTransform) for effect in model.effects)
-    plant = replace(
-        model,
-        residual=None,
-        effects=tuple(
-            e.neutral() if isinstance(e, FrameMisalignment | MeasurementFilter) else e
-            for e in model.effects
-        ),
+    plant = replace(model, residual=None).with_added(
+        e.neutral() if isinstance(e, FrameMisalignment | MeasurementFilter) else e
+        for e in model.added
     )
     settings = _calm(model.vehicle, demands)
     try:

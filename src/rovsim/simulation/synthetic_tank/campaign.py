@@ -54,7 +54,7 @@ def true_model(
     vehicle = load_vehicle(settings.vehicle)
     effects = catalogue.on(vehicle)
     hidden = build_effects(settings.effects, effects)
-    return Model("truth", vehicle, (*vehicle.effects(), *hidden, *unlisted))
+    return Model("truth", vehicle, vehicle.effects(), (*hidden, *unlisted))
 
 
 def make_campaign(
