@@ -9,7 +9,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.simulation.synthetic_tank import true_run
 from rovsim.simulation.synthetic_tank.campaign import true_model
 from rovsim.simulation.synthetic_tank.settings import TankSettings, Turbulence
-from rovsim.simulation.synthetic_tank.true_run import every_step, fly_run
+from rovsim.simulation.synthetic_tank.true_run import Flight, every_step, fly_run
 from rovsim.simulation.synthetic_tank.turbulence import draw_turbulence
 
 HIDDEN = [
@@ -21,9 +21,7 @@ HIDDEN = [
 def fly(seconds, choose):
     settings = TankSettings(duration=seconds, effects=HIDDEN)
     model = true_model(settings, built_in())
-    return fly_run(
-        model, settings, "6dof", settings.tank.ned, np.random.default_rng(3), choose=choose
-    )
+    return fly_run(model, settings, Flight("6dof"), np.random.default_rng(3), choose)
 
 
 def frames(total, step):

@@ -21,7 +21,7 @@ from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.settings import Log, TankSettings
-from rovsim.simulation.synthetic_tank.true_run import fly_run
+from rovsim.simulation.synthetic_tank.true_run import Flight, fly_run
 from worlds import SHARED, needed
 
 ROOT = Path(__file__).parents[2]
@@ -45,9 +45,8 @@ RATES = ("p_rad_s", "q_rad_s", "r_rad_s")
 def tank_in_bins(folder):
     """A run of the tank as that laboratory published its own: means over uneven bins, demands."""
     settings = TankSettings(duration=30.0, log=Log(kind="demand"))
-    box = np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]])
     world = nominal(load_vehicle("bluerov2_heavy"))
-    truth = fly_run(world, settings, "3dof", box, np.random.default_rng(0))
+    truth = fly_run(world, settings, Flight("3dof"), np.random.default_rng(0))
     begin = np.cumsum(np.tile([0.15, 0.16, 0.14, 0.18], 45))
     found = np.hstack([truth.state[:, :3], to_euler(truth.state[:, 3:7]), truth.state[:, 7:]])
     held = np.searchsorted(truth.commands.time, truth.time, side="right") - 1

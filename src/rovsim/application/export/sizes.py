@@ -26,7 +26,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.measured_states import accelerate_as_logged, undo_mocap_view
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import SUITABLE, Box, Log, TankSettings, Turbulence
-from rovsim.simulation.synthetic_tank.true_run import LeftTank, fly_run
+from rovsim.simulation.synthetic_tank.true_run import Flight, LeftTank, fly_run
 
 SEED = 20260101  # of the typical flight; any will do
 STRIDE = 10  # of its steps of 1 ms: samples at the 100 Hz of a motion capture
@@ -101,9 +101,9 @@ def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
 
 
 def _fly(model: Model, settings: TankSettings) -> Motion:
+    truth = fly_run(model, settings, Flight("6dof"), np.random.default_rng(SEED))
+    state, time = truth.state[::STRIDE], np.round(truth.time[::STRIDE], 9)
     tank = settings.tank.ned
-    flight = fly_run(model, settings, "6dof", tank, np.random.default_rng(SEED))
-    state, time = flight.state[::STRIDE], np.round(flight.time[::STRIDE], 9)
     site = Site(tank, HALF_TURN_X, float(tank[2, 0]))
     return Motion(
         RunInfo("flight", "6dof", "train"),
@@ -114,7 +114,7 @@ def _fly(model: Model, settings: TankSettings) -> Motion:
         np.gradient(state[:, 7:], time, axis=0),
         state[:, 7:],
         np.ones(len(time), bool),
-        flight.commands,
+        truth.commands,
         False,
         float(time[-1]),
     )

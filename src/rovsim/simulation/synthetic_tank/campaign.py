@@ -40,7 +40,7 @@ from rovsim.simulation.synthetic_tank.sensors import (
 )
 from rovsim.simulation.synthetic_tank.sent_log import SentLog, read_sent_log
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
-from rovsim.simulation.synthetic_tank.true_run import fly_run
+from rovsim.simulation.synthetic_tank.true_run import Flight, fly_run
 
 
 def true_model(
@@ -169,8 +169,8 @@ def _record(
         readings.extend(draw_readings(settings.sensors, total, step, random))
         return needed_steps(readings, total)
 
-    sent_log = _read_sent(settings, run) if run.fly else None
-    truth = fly_run(model, settings, run.control, tank, random, run.release, sent_log, choose)
+    flight = Flight(run.control, run.release, _read_sent(settings, run) if run.fly else None)
+    truth = fly_run(model, settings, flight, random, choose)
     with text_appearing(folder / motion_file(settings, run)) as file:
         if settings.sensors:
             gravity = model.vehicle.fluid.gravity

@@ -64,14 +64,26 @@ def every_step(total: int, step: float) -> Array:
     return np.arange(total + 1)
 
 
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """Who commands a flight: a pilot; or nobody, after a release; or a log.
+
+    Attributes:
+        control: 3dof or 6dof: the axes that a pilot moves.
+        release: initial state of a vehicle that is let go.
+        sent: commands that are sent in place of a pilot's.
+    """
+
+    control: str
+    release: Release | None = None
+    sent: SentLog | None = None
+
+
 def fly_run(
     model: Model,
     settings: TankSettings,
-    control: str,
-    tank: Array,
+    flight: Flight,
     random: np.random.Generator,
-    release: Release | None = None,
-    sent: SentLog | None = None,
     choose: Choose = every_step,
 ) -> TrueRun:
     """Fly one run.
@@ -79,11 +91,8 @@ def fly_run(
     Args:
         model: the true vehicle, hidden effects included.
         settings: of the campaign.
-        control: 3dof or 6dof.
-        tank: walls (3, 2) in NED, m.
+        flight: who commands it.
         random: generator of this run.
-        release: initial state of a vehicle that is let go, without a pilot.
-        sent: commands that are sent in place of a pilot's.
         choose: gets the number of steps and their length in s, and returns the indices (n,),
             rising, of those after which states are kept. It is called after all other draws from
             `random`, and may use it.
@@ -92,36 +101,47 @@ def fly_run(
         LeftTank: the vehicle reached a wall, because the hidden effects overpower the pilot.
     """
     h, tick = 1.0 / settings.steps_per_second, 1.0 / settings.log.rate
-    duration = sent.seconds if sent else settings.duration
+    duration = flight.sent.seconds if flight.sent else settings.duration
     ticks, per_tick = round(duration / tick), round(tick / h)
     total = ticks * per_tick
-    vehicle = _TrueVehicle(model, tank, settings, tick, h, duration)
-    pilot = vehicle.pilot(control, tank, ticks, tick, random)
+    vehicle = _TrueVehicle(model, settings, tick, h, duration)
+    # Drawn for every flight: what is drawn later does not depend on who commands.
+    pilot = vehicle.pilot(flight.control, settings.tank.ned, ticks, tick, random)
     turbulence = draw_turbulence(settings.turbulence, total, h, random, PUSHED * per_tick)
     currents = draw_currents(model, ticks, tick, random)
-    state = (sent.start(tank, random) if sent else pilot.choose_start(random)) * vehicle.free
-    if model.vehicle.floats:
-        state[2] = vehicle.site.level
-        tank = tank - [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # its middle is at the surface
-    if release is not None:
-        state = _let_go(state, release) * vehicle.free
+    state = _begin(flight, vehicle, pilot, random)
     steps = choose(total, h)
     record = _Kept(steps, state)
     for k in range(ticks):
         if k % PUSHED == 0:
             pushes = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
-        if sent:
-            command = sent.at(k * tick)
-        else:
-            command = vehicle.log(np.zeros(6) if release else pilot.steer(k, state))
         rows = slice(k % PUSHED * per_tick, (k % PUSHED + 1) * per_tick)
         vehicle.set_current(currents[k])
+        command = _command(flight, vehicle, pilot, k, state)
         path = vehicle.advance(k, command, state, pushes[rows])
         record.take(path)
         state = path[-1]
-        _stay_inside(state, tank, (k + 1) * tick)
+        _stay_inside(state, vehicle.room, (k + 1) * tick)
     commands = Commands(vehicle.times, vehicle.commands, vehicle.kind)
     return TrueRun(steps, record.state, commands, h, total)
+
+
+def _begin(
+    flight: Flight, vehicle: "_TrueVehicle", pilot: Pilot, random: np.random.Generator
+) -> Array:
+    """Draw the initial state (13,) of a flight."""
+    sent, tank = flight.sent, vehicle.site.tank
+    state = (sent.start(tank, random) if sent else pilot.choose_start(random)) * vehicle.free
+    if vehicle.model.vehicle.floats:
+        state[2] = vehicle.site.level
+    return _let_go(state, flight.release) * vehicle.free if flight.release else state
+
+
+def _command(flight: Flight, vehicle: "_TrueVehicle", pilot: Pilot, k: int, state: Array) -> Array:
+    """The command (c,) of tick k, as it is logged."""
+    if flight.sent:
+        return flight.sent.at(k * vehicle.tick)
+    return vehicle.log(np.zeros(6) if flight.release else pilot.steer(k, state))
 
 
 class _Kept:
@@ -161,7 +181,6 @@ class _TrueVehicle:
 
     Args:
         model: the true model.
-        tank: walls (3, 2) in NED, m.
         settings: of the campaign.
         tick: time between two commands, s.
         h: length of an integration step, s.
@@ -169,15 +188,10 @@ class _TrueVehicle:
     """
 
     def __init__(
-        self,
-        model: Model,
-        tank: Array,
-        settings: TankSettings,
-        tick: float,
-        h: float,
-        duration: float,
+        self, model: Model, settings: TankSettings, tick: float, h: float, duration: float
     ) -> None:
         self.model, self.duration, self.tick, self.h = model, duration, tick, h
+        tank = settings.tank.ned
         site = Site(tank, HALF_TURN_X, float(tank[2, 0]))  # what floats rests at the surface
         self.free = np.concatenate([np.ones(7), model.body.free])
         self.allocation = Allocation(model.vehicle)
@@ -191,6 +205,8 @@ class _TrueVehicle:
         self.lag: list | None = None
         self.memory = np.zeros(6)
         self.site, self.batch = site, Batch([model], site)
+        above = [[0.0, 0.0], [0.0, 0.0], [np.inf, 0.0]]  # the middle of what floats is at 0
+        self.room = tank - above if model.vehicle.floats else tank
 
     def set_current(self, current: Array) -> None:
         """Add a current (3,) in NED, m/s, to the one of the model, from now on."""
