@@ -107,6 +107,16 @@ def test_of_the_file_only_that_is_named_without_which_a_replay_is_worse(flown, b
     assert "added_mass.surge" in scale.parameters
 
 
+def test_an_accepted_gain_that_only_stood_in_for_the_rest_of_the_file_is_set_back(tmp_path):
+    base, runs, off = fly_off(tmp_path, 1.0)
+    other = FilterBank.design(runs, base, FIRST_NOISE)
+    found = fitted(other, ("surge", "sway"), (*COEFFICIENTS, "thruster_gain"))
+    assert found.z_scores[-1] < -5.0  # without the drag of other axes, it seems sure
+    final, _ = settle_whole_file(fit_whole(found, other), found.hypothesis, other)
+    assert {term.id for term in final.hypothesis.terms} == set(COEFFICIENTS)
+    assert np.abs(miss(final, off)).max() < 3.0
+
+
 def test_a_gain_that_is_surely_off_stays_though_no_replay_would_miss_it(tmp_path):
     """Else all values are off by its inverse, and each with the narrow interval of the scale."""
     base, runs, off = fly_off(tmp_path, WEAKER)

@@ -5,9 +5,11 @@ and values that were not fitted pull the fitted ones away: thrust, inertia and d
 that hardly anything else determines. So in the end all values of the file are fitted, with what is
 known of such files as a prior (`estimation/file_effects.py`). Then values are set back to the
 file's if they are not surely different, or if replays do not become worse. The other values follow,
-at the gain that was found, and their intervals stay those of the fit of all values. The gain itself
+at the gain that is kept, and their intervals stay those of the fit of all values. The gain itself
 is kept if it surely differs from the file's, although replays without it are as good: all other
-values would then be wrong by one factor.
+values would then be wrong by one factor. An accepted file effect that no longer differs surely is
+set back as well, if replays do not become worse: it stood in for values that were not fitted. Where
+all drag and added mass are 5 % off, that is a gain of the thrusters.
 
 A file may also be wrong in a few values alone. If the runs find all other drag and added mass to be
 what the file says, far closer than such files usually are, the rest of the file is right, and the
@@ -33,7 +35,7 @@ from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_n
 from rovsim.diagnosis.structure.residual import FALSE_ALARM
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale, describe_scale
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
-from rovsim.estimation.file_effects import mark_gain, share_of_file
+from rovsim.estimation.file_effects import FILE_EFFECT_IDS, mark_gain, share_of_file
 from rovsim.estimation.fit import Fit, fit_noise_only
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
@@ -82,12 +84,13 @@ def settle_whole_file(
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
     undetermined = new & (whole.std > TOLD * know_file(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
-    ids = {term.id for term in selected.terms} | _name_gain(whole)
-    significant = {
-        name for name in set(owner) - ids if _is_sure(whole, (owner == name) & ~undetermined)
-    }
+    accepted = {term.id for term in selected.terms}
+    sure_gain = _name_gain(whole)
+    offset = _measure_offset(whole, keeps_gain=bool(sure_gain))
+    significant = {n for n in owner if _is_sure(whole, offset, (owner == n) & ~undetermined)}
+    ids = (accepted & significant) | (accepted - FILE_EFFECT_IDS) | sure_gain
     dropped = undetermined | ~np.isin(owner, list(ids))
-    while candidates := sorted(significant - ids):
+    while candidates := sorted((significant | accepted) - ids):
         trials = [
             _leave_out(whole, dropped & ((owner != name) | undetermined)) for name in candidates
         ]
@@ -136,14 +139,29 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
     return drop_parameters(h.at(h.x + step), gone)
 
 
-def _is_sure(whole: Fit, own: Array) -> bool:
-    """Whether the parameters of a mask (k,) surely differ from the file, at the gain found."""
-    h, V = whole.hypothesis, whole.covariance
-    own = own & ~mark_gain(h)
-    cross = V[np.ix_(own, mark_gain(h))]
-    conditional = V[np.ix_(own, own)] - cross @ cross.T / V[np.ix_(mark_gain(h), mark_gain(h))]
-    offset = (h.x - h.absence)[own]
-    return bool(offset @ solve(conditional, offset) > chi2.isf(FALSE_ALARM, max(1, own.sum())))
+def _measure_offset(whole: Fit, keeps_gain: bool) -> Array:
+    """How far the values (k,) are from the file's, at the gain that was found or at the file's."""
+    h, V, gain = whole.hypothesis, whole.covariance, mark_gain(whole.hypothesis)
+    offset = h.x - h.absence
+    if keeps_gain:
+        return offset
+    return np.asarray(offset - V[:, gain] @ solve(V[np.ix_(gain, gain)], offset[gain]))
+
+
+def _is_sure(whole: Fit, offset: Array, own: Array) -> bool:
+    """Whether the parameters of a mask (k,) surely differ from the file, at a given gain.
+
+    Args:
+        whole: fit of all values of the file.
+        offset: how far they are from the file's (k,) at that gain.
+        own: the mask.
+    """
+    V, gain = whole.covariance, mark_gain(whole.hypothesis)
+    own = own & ~gain
+    cross = V[np.ix_(own, gain)]
+    conditional = V[np.ix_(own, own)] - cross @ cross.T / V[np.ix_(gain, gain)]
+    distance = offset[own] @ solve(conditional, offset[own])
+    return bool(distance > chi2.isf(FALSE_ALARM, max(1, own.sum())))
 
 
 def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
