@@ -12,10 +12,10 @@ from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.ranking import OrderedEffect
 from rovsim.diagnosis.selection.withdrawn_probability import (
+    find_leading,
+    find_small,
     find_stand_ins,
-    without_probability_of,
-    without_probability_of_leads,
-    without_probability_of_small,
+    withdraw_probability,
 )
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.diagnosis.uncertainty.identifiability import find_doubtful, group_joint_parameters
@@ -190,7 +190,7 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
     found = fit(alike())
     drag, thrust = (AcceptedEffect(term, {}, 1.0) for term in found.hypothesis.terms[:2])
     doubted = find_stand_ins([drag, thrust], [drag])
-    kept, idle = without_probability_of([drag, thrust], doubted)
+    kept, idle = withdraw_probability([drag, thrust], doubted)
     assert doubted == {thrust.term.id}
     assert (kept.probability, idle.probability) == (1.0, None)
 
@@ -203,7 +203,8 @@ def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
     """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
     drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
     named = [OrderedEffect(drag, {}, 1.0, 0.6), OrderedEffect(gain, {}, 1.0, 0.05)]
-    assert tuple(one.probability for one in without_probability_of_small(named, fraction)) == sure
+    told = withdraw_probability(named, find_small(named, fraction))
+    assert tuple(one.probability for one in told) == sure
 
 
 @pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])
@@ -220,7 +221,7 @@ def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted)
 def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(delay, doubted):
     smooths = AcceptedEffect(Term(PoseFilter(cutoff=6.0), ("cutoff",)), {"cutoff": 0.1}, 1.0)
     late = AcceptedEffect(Term(InputDelay(delay=delay), ("delay",)), {"delay": 1e-3}, 1.0)
-    (named,) = without_probability_of_leads([late])
+    (named,) = withdraw_probability([late], find_leading([late]))
     assert (named.probability is None) == doubted
     selected = [OrderedEffect(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
     found = TrainDiagnosis(

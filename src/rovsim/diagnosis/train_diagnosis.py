@@ -46,10 +46,10 @@ from rovsim.diagnosis.selection.ranking import (
 )
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.withdrawn_probability import (
+    find_leading,
+    find_small,
     find_stand_ins,
-    without_probability_of,
-    without_probability_of_leads,
-    without_probability_of_small,
+    withdraw_probability,
 )
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.structure.residual import Structure
@@ -187,9 +187,10 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     law = _propose(answer, validated, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals
     terms = name_terms(wide_fit, rivals)
-    effects = [*camera, *(without_probability_of_leads(terms) if camera else terms)]
+    effects = [*camera, *terms]
     stand_ins = find_stand_ins(effects, law.beside) if law else set()
-    effects = without_probability_of(effects, stand_ins)
+    leading = find_leading(terms) if camera else set()
+    effects = withdraw_probability(effects, stand_ins | leading)
     proposed = law if law and law.complete else None
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
@@ -197,7 +198,8 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
             effects.append(name_drift(drift, answer.leaves_physics))
     selected = order_accepted(base, effects, usable.runs)
     if answer.structures and not proposed:
-        selected = without_probability_of_small(selected, answer.structures[0].share)
+        small = find_small(selected, answer.structures[0].share)
+        selected = withdraw_probability(selected, small)
     start = validated.start
     return TrainDiagnosis(
         base,

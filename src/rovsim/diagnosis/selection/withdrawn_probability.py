@@ -1,7 +1,7 @@
 """Withdraw the probability of accepted effects that may only stand in for something else."""
 
 from dataclasses import replace
-from typing import Collection, Sequence
+from typing import Collection, Iterable, Sequence, TypeVar
 
 import numpy as np
 
@@ -12,26 +12,24 @@ from rovsim.results.diagnosis import bound_unexplained
 
 CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside something else
 
-
-def without_probability_of_leads(effects: Sequence[AcceptedEffect]) -> list[AcceptedEffect]:
-    """The same without a probability for a negative delay, where the cameras smooth.
-
-    Their filter may use later frames as well, and such a filter was not among the rivals.
-    """
-    return [replace(e, probability=None) if e.leads else e for e in effects]
+E = TypeVar("E", bound=AcceptedEffect)
 
 
-def without_probability_of(
-    effects: Sequence[AcceptedEffect], doubted: Collection[str]
-) -> list[AcceptedEffect]:
-    """The same, without a probability for the effects whose ids are `doubted`."""
+def withdraw_probability(effects: Iterable[E], doubted: Collection[str]) -> list[E]:
+    """The same effects, without a probability for those whose ids are `doubted`."""
     return [replace(e, probability=None) if e.term.id in doubted else e for e in effects]
 
 
-def without_probability_of_small(
-    effects: Sequence[OrderedEffect], fraction: float | None
-) -> list[OrderedEffect]:
-    """The same, without a probability for effects that remove less error than what is left causes.
+def find_leading(effects: Iterable[AcceptedEffect]) -> set[str]:
+    """Ids of negative delays, which are doubtful where the cameras smooth.
+
+    Their filter may use later frames as well, and such a filter was not among the rivals.
+    """
+    return {e.term.id for e in effects if e.leads}
+
+
+def find_small(effects: Sequence[OrderedEffect], fraction: float | None) -> set[str]:
+    """Ids of effects that remove less error than what is left causes.
 
     Likelihoods weigh effects rightly only where all else is noise. Where unknown physics is left,
     they favour the effect that happens to resemble it a little.
@@ -41,7 +39,7 @@ def without_probability_of_small(
         fraction: share of the remaining disturbance's power that follows the largest structure.
     """
     bound = bound_unexplained(fraction, [e.error_reduction for e in effects])
-    return [replace(e, probability=None) if e.error_reduction < bound else e for e in effects]
+    return {e.term.id for e in effects if e.error_reduction < bound}
 
 
 def find_stand_ins(effects: Sequence[AcceptedEffect], beside: Sequence[AcceptedEffect]) -> set[str]:
