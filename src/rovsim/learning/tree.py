@@ -1,4 +1,4 @@
-"""Build the packed tree of bounding boxes that `rovsim.dynamics.learned.neighbours` searches.
+"""Build the packed tree of bounding boxes that `rovsim.dynamics.learned.tree_search` searches.
 
 Points are split in two along the feature with the largest variance, so that the first part fills
 whole subtrees (White & Jain 1996, the VAMSplit R-tree). Then all leaves but the last are full, and

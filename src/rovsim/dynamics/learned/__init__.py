@@ -5,6 +5,7 @@ features          assembles features of samples: velocity, thrust, acceleration,
 layout            order of the numbers in the array that holds an exported residual
 predictor         evaluates a residual at one sample or at many
 neighbours        mean of the k nearest training points
+tree_search       finds these in a tree of bounding boxes
 kernel_expansion  mean and variance of a Gaussian process
 simd              arithmetic on several points side by side
 residual          writes and reads trained residuals
