@@ -134,7 +134,7 @@ def test_a_weight_is_named_by_depth_and_attitude_alone(tmp_path):
     data = measure(open_campaign(settings.campaign), settings.signals)
     base = load_one_model("nominal", data.vehicle, built_in())
     asked = select(settings, DiagnosisSettings)
-    answer = diagnose_campaign(data.runs, base, asked, built_in())
+    answer = diagnose_campaign(data.runs, {}, base, asked, built_in())
     found, where = answer.diagnosis, answer.where.models["nominal"]
     assert [one.effect for one in found.selected] == ["net_buoyancy"]
     value = found.selected[0].parameters["force"]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Iterator, Sequence
+from typing import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -60,6 +60,7 @@ class CampaignDiagnosis:
 
 def diagnose_campaign(
     runs: Runs,
+    recordings: Mapping[str, str],
     base: Model,
     settings: DiagnosisSettings,
     catalogue: Catalogue,
@@ -71,6 +72,7 @@ def diagnose_campaign(
 
     Args:
         runs: of the campaign.
+        recordings: digests of the files that the runs were read from, by path.
         base: the model that is diagnosed.
         settings: how the diagnosis decides, and how runs are filtered and replayed.
         catalogue: the effects that may be missing.
@@ -89,7 +91,9 @@ def diagnose_campaign(
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
     ladder, diverged_runs = _climb(diagnosis, runs, settings, catalogue)
-    context = CampaignContext(shares, ladder, train.looked_at, standstills, diverged_runs)
+    context = CampaignContext(
+        recordings, shares, ladder, train.looked_at, standstills, diverged_runs
+    )
     document = assemble_diagnosis(diagnosis, context, catalogue)
     return CampaignDiagnosis(
         document, conditions, diagnosis.proposed.source if diagnosis.proposed else None

@@ -51,6 +51,7 @@ class CampaignContext:
     """What is reported beside the diagnosis of the train runs.
 
     Attributes:
+        recordings: digests of the files that the runs were read from, by path.
         where: conditions under which the base fails.
         ladder: errors on the test runs: of the base, with one effect more each, and of a perfect
             model.
@@ -60,6 +61,7 @@ class CampaignContext:
         away: ids of the test runs in which the base diverges.
     """
 
+    recordings: Mapping[str, str]
     where: Sequence[ConditionShare]
     ladder: Ladder
     looked_at: LookedAt | None = None
@@ -110,6 +112,7 @@ def assemble_diagnosis(
         runs_away_in=tuple(context.away),
         standstills=tuple(context.standstills),
         thrusters=diagnosis.base.vehicle.thruster_names,
+        recordings=dict(context.recordings),
         base=describe_model(diagnosis.base),
         ladder=context.ladder,
     )

@@ -1,6 +1,5 @@
 """Diagnose which effects a model lacks."""
 
-from dataclasses import replace
 from typing import Callable
 
 from rovsim.application.pipeline.models import require_physics
@@ -39,6 +38,4 @@ def diagnose(
     require_physics(base, "diagnose")
     recordings = digest_recordings(campaign)
     with staged("diagnosing", STAGES):
-        diagnosed = diagnose_campaign(runs, base, settings, catalogue, failing)
-    diagnosis = diagnosed.diagnosis.model_copy(update={"recordings": recordings})
-    return replace(diagnosed, diagnosis=diagnosis)
+        return diagnose_campaign(runs, recordings, base, settings, catalogue, failing)
