@@ -25,7 +25,7 @@ from rovsim.simulation.step_grid import StepGrid
 from rovsim.simulation.stepper import Stepper
 from worlds import at_rest, model, motion, sticks
 
-HOW = SimulationSettings()
+SETTINGS = SimulationSettings()
 NOISE = FittedNoise(
     disturbance=(0.02,) * 3 + (0.05,) * 3,
     memory_s=(0.8,) * 6,
@@ -51,16 +51,16 @@ SURE = replace(model(DRAG, LAG), uncertainty=Uncertainty(SILENT, Draws((DRAG, LA
 def flown(world, random, seconds=60.0):
     """A run of a vehicle under sticks: as a perfect model predicts it, disturbed and misread."""
     still = motion(sticks(3, 60), seconds=seconds)
-    clean = predict(world, still, [(0, len(still.time) - 1)], HOW)
+    clean = predict(world, still, [(0, len(still.time) - 1)], SETTINGS)
     noise = NoiseDraws.of(NOISE, random)
-    (pushed,) = noise.draw_disturbance(np.diff(StepGrid.over(still, HOW.replay.step).edges), 1)
+    (pushed,) = noise.draw_disturbance(np.diff(StepGrid.over(still, SETTINGS.replay.step).edges), 1)
     whole = [(0, len(still.time) - 1)]
-    (happened,) = predict_all([ReplayCase(world, still, pushed)], whole, HOW)
+    (happened,) = predict_all([ReplayCase(world, still, pushed)], whole, SETTINGS)
     eta, nu = happened.eta.copy(), happened.nu.copy()
     eta[0], nu[0] = still.eta[0], still.nu[0]
     true = replace(still, eta=eta, nu=nu, state_nu=nu, nu_dot=np.nan_to_num(happened.nu_dot))
     assert np.abs(happened.nu[1:] - clean.nu[1:]).max() > 0.01
-    return noise.resample_measurement_noise(true, world.mocap_view, HOW.signals, 1)[0]
+    return noise.resample_measurement_noise(true, world.mocap_view, SETTINGS.signals, 1)[0]
 
 
 def test_a_band_holds_its_share_of_what_happens_to_such_a_vehicle():
@@ -68,8 +68,8 @@ def test_a_band_holds_its_share_of_what_happens_to_such_a_vehicle():
     shares = []
     for _ in range(3):
         run = flown(world.draw(random), random)
-        spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
-        found = cover(run, predict_band(world, run, spans, HOW), spans)
+        spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
+        found = cover(run, predict_band(world, run, spans, SETTINGS), spans)
         assert found.windows == len(spans)
         shares.append(found.at_end.array())
     # 29 windows of 2 s, 6 axes, 3 runs: half a thousand points that are nearly independent
@@ -80,16 +80,16 @@ def test_a_band_that_is_too_narrow_is_found_out():
     random = np.random.default_rng(4)
     run = flown(known(), random)
     calm = NOISE.model_copy(update={"disturbance": (0.005,) * 3 + (0.0125,) * 3})
-    spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
-    found = cover(run, predict_band(known(calm), run, spans, HOW), spans)
+    spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
+    found = cover(run, predict_band(known(calm), run, spans, SETTINGS), spans)
     assert np.mean(found.at_end.array()) < LEVEL - 0.1
 
 
 def test_where_nothing_is_left_to_chance_the_band_is_the_prediction():
     run = motion(sticks(), seconds=8.0)
-    spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
-    band = predict_band(SURE, run, spans, HOW)
-    found = predict(SURE, run, spans, HOW)
+    spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
+    band = predict_band(SURE, run, spans, SETTINGS)
+    found = predict(SURE, run, spans, SETTINGS)
     np.testing.assert_allclose(band.nu[0], found.nu, atol=1e-9)
     np.testing.assert_allclose(band.nu[1], found.nu, atol=1e-9)
     np.testing.assert_allclose(band.place[0, :, :3], found.eta[:, :3], atol=1e-9)
@@ -97,8 +97,8 @@ def test_where_nothing_is_left_to_chance_the_band_is_the_prediction():
 
 def test_a_band_begins_at_what_was_measured_and_opens():
     run = motion(sticks(), seconds=8.0)
-    spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
-    band = predict_band(known(), run, spans, HOW)
+    spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
+    band = predict_band(known(), run, spans, SETTINGS)
     width = band.place[1] - band.place[0]
     first, last = spans[0][0] + 1, spans[0][1]
     assert np.isnan(width[spans[0][0]]).all()
@@ -108,12 +108,12 @@ def test_a_band_begins_at_what_was_measured_and_opens():
 
 def test_a_long_run_is_done_in_parts_that_do_not_show(monkeypatch):
     run = motion(sticks(), seconds=24.0)
-    spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
-    whole = predict_band(SURE, run, spans, HOW)
+    spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
+    whole = predict_band(SURE, run, spans, SETTINGS)
     monkeypatch.setattr("rovsim.simulation.bands.LONGEST", 4.0)
-    parts = predict_band(SURE, run, spans, HOW)
+    parts = predict_band(SURE, run, spans, SETTINGS)
     np.testing.assert_allclose(parts.nu, whole.nu, atol=1e-5)
-    assert np.isnan(predict_band(SURE, run, [(0, 2400)], HOW).nu).all()
+    assert np.isnan(predict_band(SURE, run, [(0, 2400)], SETTINGS).nu).all()
 
 
 def test_draws_spread_and_hang_together_as_the_file_says():
@@ -203,7 +203,7 @@ def test_a_file_that_says_it_wrongly_is_refused(text, said, tmp_path):
 
 def test_where_nobody_knows_it_says_why():
     run = motion(sticks(), seconds=8.0)
-    spans = find_spans(run, HOW.replay.only(2.0), open_loop=False)["2"]
+    spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
     wanders = known()
     wanders = replace(wanders, added=(*wanders.added, CurrentDrift(rate=0.01)))
     for world, why in [
@@ -212,7 +212,7 @@ def test_where_nobody_knows_it_says_why():
         (wanders, "wanders"),
     ]:
         assert why in why_without_bands(world, run)
-        assert predict_band(world, run, spans, HOW) is None
+        assert predict_band(world, run, spans, SETTINGS) is None
     assert why_without_bands(known(), run) is None
 
 
@@ -238,7 +238,7 @@ def test_an_ensemble_spreads_as_wide_as_the_band_of_a_replay(monkeypatch):
     world, run = known(), motion(sticks(), seconds=4.0)
     quiet = NOISE.model_copy(update={"reading": (0.0,) * 6})
     world = replace(world, uncertainty=replace(world.uncertainty, noise=quiet))
-    band = predict_band(world, run, [(0, 200)], HOW)
+    band = predict_band(world, run, [(0, 200)], SETTINGS)
     ensemble = Ensemble(world, draws=79, seed=3)
     states, log = ensemble.start(at_rest()), run.commands
     for k in range(200):

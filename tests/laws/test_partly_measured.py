@@ -84,9 +84,9 @@ def test_the_growth_of_the_error_is_that_of_measured_axes(runs):
 @pytest.mark.parametrize("horizons", [(0.5, 2.0), (2.0, 5.0), (2.0, 4.0, 8.0)])
 def test_the_growth_of_the_error_is_seen_in_the_longest_windows(runs, horizons):
     motion, _ = runs[0]
-    how = SimulationSettings().only(*horizons)
-    replayed = replay(model(), motion, how)
-    scored = ScoreCollector(["nominal"], how.replay.longest)
+    settings = SimulationSettings().only(*horizons)
+    replayed = replay(model(), motion, settings)
+    scored = ScoreCollector(["nominal"], settings.replay.longest)
     scored.add_replay(motion, replayed)
     seen = scored.growth.models["nominal"].horizon_s
     assert seen[-1] == pytest.approx(max(horizons))

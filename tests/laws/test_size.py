@@ -116,8 +116,8 @@ def test_a_step_of_two_runs_is_that_of_all_their_samples(flown):
 
 def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, monkeypatch):
     motion = replace(flown.motion, run=replace(flown.motion.run, split="test"))
-    how = SimulationSettings()
-    whole = replay(model(), motion, how)
+    settings = SimulationSettings()
+    whole = replay(model(), motion, settings)
     made, held, predict = [], [], replaying.predict
 
     def watched(*given):
@@ -127,8 +127,8 @@ def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, 
         return found
 
     monkeypatch.setattr(replaying, "predict", watched)
-    scored = ScoreCollector(["nominal"], how.replay.longest)
-    kept = score_run(scored, model(), motion, how, "2")
+    scored = ScoreCollector(["nominal"], settings.replay.longest)
+    kept = score_run(scored, model(), motion, settings, "2")
     assert held == [0, 0, 0, 1]  # when the open loop, 0.5, 2 and 5 s are made
     np.testing.assert_array_equal(kept.horizons["2"].nu, whole.horizons["2"].nu)
     assert scored.comparison.models["nominal"].runs["a"] == score_replay(motion, whole)

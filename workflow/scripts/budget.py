@@ -10,5 +10,5 @@ if __name__ == "__main__":
         balance_forces(
             model=rule.model("nominal"),
             motion=motion,
-            how=rule.section(SimulationSections),
+            settings=rule.section(SimulationSections),
         ).write(rule.output())

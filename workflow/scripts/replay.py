@@ -6,6 +6,6 @@ from rovsim.simulation.replay import replay
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
-        how, model = rule.section(SimulationSections), rule.model(rule.wildcards.model)
+        settings, model = rule.section(SimulationSections), rule.model(rule.wildcards.model)
         for k, motion in enumerate(rule.motions()):
-            replay(model, motion, how).write(rule.output(k))
+            replay(model, motion, settings).write(rule.output(k))

@@ -49,18 +49,18 @@ NOMINAL = {
 }
 
 
-def balance_forces(model: Model, motion: Motion, how: SimulationSettings) -> ForceBudget:
+def balance_forces(model: Model, motion: Motion, settings: SimulationSettings) -> ForceBudget:
     """Compute the forces of a model's parts at the measured states of a run.
 
     Args:
         model: the model.
         motion: the run.
-        how: settings of the filter of the measurement, and of how commands are held.
+        settings: of the filter of the measurement, and of how commands are held.
     """
-    samples = sample_run(model, motion, how)
+    samples = sample_run(model, motion, settings)
     parts: dict[str, Array] = {}
     previous = np.zeros((len(motion.time), 6))
-    for name, force in _cumulative(model, undo_mocap_view(model, motion), how.replay):
+    for name, force in _cumulative(model, undo_mocap_view(model, motion), settings.replay):
         parts[name] = parts.get(name, 0.0) + force - previous
         previous = force
     missing = np.full((len(motion.time), 6), np.nan)

@@ -107,7 +107,7 @@ def gather_pairs(
     motions: Iterable[Motion],
     control: str,
     features: FeatureSettings,
-    how: SimulationSettings,
+    settings: SimulationSettings,
     seed: int,
 ) -> Gathered:
     """Gather the pairs from which a residual on top of a model learns.
@@ -117,7 +117,7 @@ def gather_pairs(
         motions: the runs of a campaign, of which train runs with this control are used.
         control: `3dof`, `6dof` or `all`.
         features: settings of the features.
-        how: filter and derivative of the measurement, step length, and how commands are held.
+        settings: filter and derivative of the measurement, step length, and how commands are held.
         seed: of the choice of rows.
 
     Raises:
@@ -132,5 +132,5 @@ def gather_pairs(
         )
     gathered = Gathered(features, seed)
     for motion in training_runs(motions, control):
-        gathered.take(motion.run.id, sample_run(model, motion, how))
+        gathered.take(motion.run.id, sample_run(model, motion, settings))
     return gathered

@@ -49,7 +49,7 @@ def predict_band(
     model: Model,
     motion: Motion,
     spans: Spans,
-    how: SimulationSettings,
+    settings: SimulationSettings,
 ) -> Band | None:
     """Predict the band of a model in some windows of a run.
 
@@ -57,7 +57,7 @@ def predict_band(
         model: with its uncertainty.
         motion: the run, as the motion capture reported it.
         spans: first sample or bin of each window, and its last one.
-        how: filter and derivative of the measurement, step length, and how commands are held.
+        settings: filter and derivative of the measurement, step length, and how commands are held.
 
     Returns:
         The band at all times of the run, NaN outside the windows and in windows longer than
@@ -74,9 +74,9 @@ def predict_band(
     band, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
     for group in _divide(spans, round(LONGEST / period)):
         first = max(group[0][0] - round(LEAD_IN / period), 0)
-        part = slice(first, group[-1][1] + round(how.signals.reach / period) + 1)
+        part = slice(first, group[-1][1] + round(settings.signals.reach / period) + 1)
         windows = [(a - first, b - first) for a, b in group]
-        group_band = _draw_band(model, motion.part(part), windows, noise, how)
+        group_band = _draw_band(model, motion.part(part), windows, noise, settings)
         finite = np.isfinite(group_band.nu).all(axis=(0, 2))
         band.nu[:, part][:, finite] = group_band.nu[:, finite]
         band.place[:, part][:, finite] = group_band.place[:, finite]
@@ -101,14 +101,16 @@ def _draw_band(
     motion: Motion,
     spans: Spans,
     noise: NoiseDraws,
-    how: SimulationSettings,
+    settings: SimulationSettings,
 ) -> Band:
     """Replay `DRAWS` draws of a model and its noise in some windows of a run."""
-    wrenches = noise.draw_disturbance(np.diff(StepGrid.over(motion, how.replay.step).edges), DRAWS)
-    motions = noise.resample_measurement_noise(motion, model.mocap_view, how.signals, DRAWS)
+    wrenches = noise.draw_disturbance(
+        np.diff(StepGrid.over(motion, settings.replay.step).edges), DRAWS
+    )
+    motions = noise.resample_measurement_noise(motion, model.mocap_view, settings.signals, DRAWS)
     models = [model.draw(noise.random) for _ in range(DRAWS)]
     cases = [ReplayCase(*draw) for draw in zip(models, motions, wrenches, strict=True)]
-    predictions = predict_all(cases, spans, how)
+    predictions = predict_all(cases, spans, settings)
     as_measured = [_misread(p, motion, m) for p, m in zip(predictions, motions, strict=True)]
     places = np.array([_place(p, motion, spans) for p in as_measured])
     return Band(band_ends(np.array([p.nu for p in as_measured])), band_ends(places))

@@ -36,7 +36,7 @@ Spans = Sequence[tuple[int, int]]  # first sample or bin of each window, and its
 def replay(
     model: Model,
     motion: Motion,
-    how: SimulationSettings,
+    settings: SimulationSettings,
     open_loop: bool = True,
 ) -> Replay:
     """Replay one run in windows, and in open loop as well unless told otherwise.
@@ -47,21 +47,21 @@ def replay(
     Args:
         model: the model to drive.
         motion: the run.
-        how: filter and derivative of the measurement, horizons, step length, and how commands are
-            held.
+        settings: filter and derivative of the measurement, horizons, step length, and how commands
+            are held.
         open_loop: whether to replay the whole run in one go, too.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    horizons = dict(by_horizon(model, motion, how, open_loop))
+    horizons = dict(by_horizon(model, motion, settings, open_loop))
     return Replay(model.name, motion.run, motion.time, horizons)
 
 
 def by_horizon(
     model: Model,
     motion: Motion,
-    how: SimulationSettings,
+    settings: SimulationSettings,
     open_loop: bool = True,
 ) -> Iterator[tuple[str, Prediction]]:
     """Yield the predictions of `replay` one by one, each with the name of its horizon.
@@ -69,8 +69,8 @@ def by_horizon(
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    for name, spans in find_spans(motion, how.replay, open_loop).items():
-        yield name, predict(model, motion, spans, how)
+    for name, spans in find_spans(motion, settings.replay, open_loop).items():
+        yield name, predict(model, motion, spans, settings)
 
 
 def find_spans(
@@ -83,13 +83,13 @@ def find_spans(
     return spans
 
 
-def predict(model: Model, motion: Motion, spans: Spans, how: SimulationSettings) -> Prediction:
+def predict(model: Model, motion: Motion, spans: Spans, settings: SimulationSettings) -> Prediction:
     """Predict what the motion capture would report of one model; see `predict_all`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
     """
-    return predict_all([ReplayCase(model, motion)], spans, how)[0]
+    return predict_all([ReplayCase(model, motion)], spans, settings)[0]
 
 
 class ReplayCase(NamedTuple):
@@ -121,14 +121,14 @@ class Anchor(NamedTuple):
 
 
 def predict_all(
-    cases: Sequence[ReplayCase], spans: Spans, how: SimulationSettings
+    cases: Sequence[ReplayCase], spans: Spans, settings: SimulationSettings
 ) -> list[Prediction]:
     """Predict what the motion capture would report of several models in windows of a run.
 
     Args:
         cases: models and runs; the runs have the same clock.
         spans: first sample or bin of each window, and its last one.
-        how: filter and derivative of the measurement, step length, how commands are held.
+        settings: filter and derivative of the measurement, step length, how commands are held.
 
     Raises:
         BadInput: the run lacks what an effect of a model needs.
@@ -136,8 +136,8 @@ def predict_all(
     if not spans:
         return [Prediction.empty(len(case.motion.time)) for case in cases]
     if cases[0].motion.binned:
-        return [_predict_bins(case, spans, how.replay) for case in cases]
-    return _predict_samples(cases, spans, how)
+        return [_predict_bins(case, spans, settings.replay) for case in cases]
+    return _predict_samples(cases, spans, settings)
 
 
 def simulate(
@@ -179,13 +179,13 @@ def simulate(
 
 
 def _predict_samples(
-    cases: Sequence[ReplayCase], spans: Spans, how: SimulationSettings
+    cases: Sequence[ReplayCase], spans: Spans, settings: SimulationSettings
 ) -> list[Prediction]:
     """Predict at the samples of a uniform clock, through the filter of the measurement."""
     first = cases[0].motion
-    signals = how.signals.suited(first)
+    signals = settings.signals.suited(first)
     windows = embed(first, spans, round(signals.reach / time_step(first.time)))
-    paths = [path for case in cases for path in _report_samples(case, windows, how.replay)]
+    paths = [path for case in cases for path in _report_samples(case, windows, settings.replay)]
     motions = [case.motion for case in cases for _ in windows]
     derived = iter(zip(paths, derive(paths, windows * len(cases), motions, signals), strict=True))
     return [_gather(len(first.time), windows, islice(derived, len(windows))) for _ in cases]

@@ -55,7 +55,7 @@ class Samples:
         return assemble(settings, self.nu, self.a_sim, self.wrench, self.attitude)
 
 
-def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
+def sample_run(model: Model, motion: Motion, settings: SimulationSettings) -> Samples:
     """Compare a model with the measured acceleration at all usable instants of a run.
 
     Everything is in true body axes at CO. Where the model says that the motion capture sees another
@@ -64,15 +64,15 @@ def sample_run(model: Model, motion: Motion, how: SimulationSettings) -> Samples
     """
     motion = undo_mocap_view(model, motion)
     make = _of_bins if motion.binned else _of_samples
-    samples = make(model, motion, how)
+    samples = make(model, motion, settings)
     return replace(samples, a_res=blank(motion.measured, samples.a_res, 0.0))
 
 
-def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
+def _of_samples(model: Model, motion: Motion, settings: SimulationSettings) -> Samples:
     """Compare at samples: the model's acceleration passes the filter of the measurement."""
-    drive = drive_as_measured(model, motion, how.replay)
+    drive = drive_as_measured(model, motion, settings.replay)
     a_sim = accelerate_as_measured(model, motion, drive)
-    smoothing, period = how.signals.suited(motion).filter, time_step(motion.time)
+    smoothing, period = settings.signals.suited(motion).filter, time_step(motion.time)
     stretches = [np.arange(a, b) for a, b in motion.segments()]
     filtered = np.concatenate(
         [smoothing.smoothed(a_sim[k], period) for k in stretches] or [np.empty((0, 6))]
@@ -88,12 +88,12 @@ def _of_samples(model: Model, motion: Motion, how: SimulationSettings) -> Sample
     )
 
 
-def _of_bins(model: Model, motion: Motion, how: SimulationSettings) -> Samples:
+def _of_bins(model: Model, motion: Motion, settings: SimulationSettings) -> Samples:
     """Compare at bins: both accelerations are backward differences of the means of two bins."""
     usable = motion.usable[1:] & motion.usable[:-1] & np.isfinite(motion.nu_dot[1:]).all(axis=1)
-    index, drive = 1 + np.flatnonzero(usable), drive_as_measured(model, motion, how.replay)
+    index, drive = 1 + np.flatnonzero(usable), drive_as_measured(model, motion, settings.replay)
     a_sim = accelerate_as_measured(model, motion, drive)[index]
-    a_real_like = _differences_of_bins(model, motion, how.replay, index)
+    a_real_like = _differences_of_bins(model, motion, settings.replay, index)
     return Samples(
         index,
         motion.state_nu[index],

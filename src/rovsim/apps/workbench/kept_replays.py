@@ -26,11 +26,11 @@ class KeptReplays:
 
     Attributes:
         runs: what was measured.
-        how: settings of the replays.
+        settings: of the replays.
     """
 
     runs: Runs
-    how: SimulationSettings
+    settings: SimulationSettings
     _replays: Recent[Replay] = field(default_factory=Recent)
     _bands: Recent[Band | None] = field(default_factory=Recent)
     _steps: dict[Model, Step] = field(default_factory=dict)
@@ -41,7 +41,7 @@ class KeptReplays:
         """Return the replay of a run, restarted every `horizon` s, or open loop (None)."""
         key = (model, run, horizon)
         spans = () if horizon is None else (horizon,)
-        settings = self.how.only(*spans)
+        settings = self.settings.only(*spans)
         return self._replays.get(
             key,
             lambda: replay(model, self.runs.motions[run], settings, not spans),
@@ -55,7 +55,7 @@ class KeptReplays:
     def band(self, model: Model, run: str, horizon: float | None) -> Band | None:
         """Return the probability band of a prediction; None for a model without one."""
         spans = () if horizon is None else (horizon,)
-        motion, settings = self.runs.motions[run], self.how.only(*spans)
+        motion, settings = self.runs.motions[run], self.settings.only(*spans)
         (windows,) = find_spans(motion, settings.replay, open_loop=not spans).values()
         return self._bands.get(
             (model, run, horizon),
@@ -64,7 +64,7 @@ class KeptReplays:
 
     def thrust(self, model: Model, run: str) -> Array:
         """Return the thrust (n, 6) that commands cause at samples or bins of a run, N and N m."""
-        motion, settings = self.runs.motions[run], self.how.replay
+        motion, settings = self.runs.motions[run], self.settings.replay
         return self._thrusts.get(
             (model, run), lambda: drive_as_measured(model, motion, settings).wrench
         )
@@ -94,5 +94,5 @@ class KeptReplays:
     def searched(self, model: Model) -> SearchedModel:
         """Return the search for conditions under which a model fails."""
         if model not in self._searched:
-            self._searched[model] = search_runs(model, self.runs, self.how)
+            self._searched[model] = search_runs(model, self.runs, self.settings)
         return self._searched[model]

@@ -50,11 +50,11 @@ class ConditionSearch:
     Args:
         model: the model.
         splits: those of the runs that will be taken in.
-        how: settings of the filter of the measurement, and of how commands are held.
+        settings: of the filter of the measurement, and of how commands are held.
     """
 
-    def __init__(self, model: Model, splits: Collection[str], how: SimulationSettings) -> None:
-        self._model, self._how = model, how
+    def __init__(self, model: Model, splits: Collection[str], settings: SimulationSettings) -> None:
+        self._model, self._settings = model, settings
         self.split = choose_split(model, splits)
         self._runs: list[str] = []
         self._parts: list[Blocks] = []
@@ -62,7 +62,7 @@ class ConditionSearch:
     def add_run(self, motion: Motion) -> None:
         """Take in a run; ignore a run of the other split."""
         if motion.run.split == self.split:
-            self.add_samples(motion, sample_run(self._model, motion, self._how))
+            self.add_samples(motion, sample_run(self._model, motion, self._settings))
 
     def add_samples(self, motion: Motion, samples: Samples) -> None:
         """Take in a run that was sampled already; ignore a run of the other split."""
@@ -83,15 +83,15 @@ class ConditionSearch:
         return SearchedModel(self._model.name, self.split, tuple(self._runs), explanation)
 
 
-def search_runs(model: Model, runs: Runs, how: SimulationSettings) -> SearchedModel:
+def search_runs(model: Model, runs: Runs, settings: SimulationSettings) -> SearchedModel:
     """Search the runs of a campaign for conditions in which a model fails.
 
     Args:
         model: the model.
         runs: of the campaign.
-        how: settings of the filter of the measurement, and of how commands are held.
+        settings: of the filter of the measurement, and of how commands are held.
     """
-    search = ConditionSearch(model, set(runs.splits.values()), how)
+    search = ConditionSearch(model, set(runs.splits.values()), settings)
     for name in runs.of(search.split):
         search.add_run(runs.motions[name])
     return search.found

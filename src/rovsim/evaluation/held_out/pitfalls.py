@@ -47,9 +47,9 @@ def on_wrong_clock(motion: Motion) -> Motion:
     )
 
 
-def replay_error(model: Model, motion: Motion, how: SimulationSettings) -> float | None:
+def replay_error(model: Model, motion: Motion, settings: SimulationSettings) -> float | None:
     """Normalised velocity RMSE of an open-loop replay (`error_metrics.normalize`)."""
-    prediction = replay(model, motion, how).horizons[OPEN_LOOP]
+    prediction = replay(model, motion, settings).horizons[OPEN_LOOP]
     return normalize(measured_spread([motion]), rms(subtract(motion, prediction).nu))
 
 
@@ -71,7 +71,7 @@ def measure_pitfalls(
     runs: Sequence[Motion],
     test: Motion,
     learners: dict[str, LearnerSettings],
-    how: SimulationSettings,
+    settings: SimulationSettings,
 ) -> dict[str, Cost]:
     """Measure the cost of each mistake that can be made on one held-out run.
 
@@ -84,13 +84,13 @@ def measure_pitfalls(
         runs: the training runs, of both controls.
         test: the held-out run.
         learners: settings of `knn` and `gp`.
-        how: settings of the filter of the measurement, and of replays.
+        settings: of the filter of the measurement, and of replays.
 
     Returns:
         The number without the mistake (`right`) and with it (`wrong`), by name of the mistake.
     """
-    samples = {m.run.id: sample_run(model, m, how) for m in runs}
-    test_samples = sample_run(model, test, how)
+    samples = {m.run.id: sample_run(model, m, settings) for m in runs}
+    test_samples = sample_run(model, test, settings)
 
     def taught(kind: str, names: Sequence[str], control: Control) -> tuple[Residual, Array]:
         residual = _trained([samples[name] for name in names], learners[kind], control)
@@ -103,8 +103,8 @@ def measure_pitfalls(
     costs: dict[str, Cost] = {}
     if test.binned:
         costs["wrong clock"] = Cost(
-            right=replay_error(model, test, how),
-            wrong=replay_error(model, on_wrong_clock(test), how),
+            right=replay_error(model, test, settings),
+            wrong=replay_error(model, on_wrong_clock(test), settings),
         )
     right = explained(gp.predict, X, test_samples.a_res)
     far, twice = (
