@@ -16,7 +16,7 @@ from rovsim.diagnosis.apply import add_effects
 from rovsim.dynamics.catalogue import built_in
 from rovsim.evaluation.ladder import score_step
 from rovsim.results.diagnosis import Diagnosis
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from said import unfolded
 
 
@@ -271,8 +271,8 @@ def corrected(campaign, tmp_path_factory):
 
 
 def test_the_ladder_of_a_study_puts_the_effects_where_their_model_stands():
-    models = [Step(model=m) for m in ("nominal", "refitted", "effects", "knn_6dof")]
-    found = [Step(model=m) for m in ("nominal", "+lift", "+payload", "noise_floor")]
+    models = [LadderStep(model=m) for m in ("nominal", "refitted", "effects", "knn_6dof")]
+    found = [LadderStep(model=m) for m in ("nominal", "+lift", "+payload", "noise_floor")]
     steps = [s.model for s in Ladder.with_diagnosis(models, found).steps]
     assert steps == ["nominal", "refitted", "+lift", "+payload", "knn_6dof", "noise_floor"]
     steps = [s.model for s in Ladder.with_diagnosis(models, [found[0], found[-1]]).steps]

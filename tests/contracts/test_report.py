@@ -19,7 +19,7 @@ from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Picture
 from rovsim.reporting.pages import against_published, leave_one_run_out
 from rovsim.reporting.pages.marked import BEGIN, END
-from rovsim.reporting.report_data import ReportData, describe
+from rovsim.reporting.report_data import ReportData, describe_figure
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.reporting.wording import explain_model, several, significant, title
 from rovsim.reporting.words import published_errors, terminal
@@ -350,7 +350,7 @@ def test_mistakes_are_said_run_by_run(content, tmp_path):
 
 def test_figures_of_the_first_run_are_shown_and_those_of_others_unfold():
     drawn = (("error_growth", ""), ("velocities", "a"), ("velocities", "b"), ("path_3d", "a"))
-    pictures = [Picture(name, b"\x89PNG", describe(name, run), run) for name, run in drawn]
+    pictures = [Picture(name, b"\x89PNG", describe_figure(name, run), run) for name, run in drawn]
     compared = ReportData(comparison=Comparison(models={}))
     html = report.render(report.Report("x", compared, pictures))
     before, of_a, of_b = html.split("<details")

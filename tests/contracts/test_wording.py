@@ -30,7 +30,7 @@ from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
 from rovsim.results.diagnosis import ProposedEquation
 from rovsim.results.fitted import FittedEffect, FittedValue
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from synthetic_study import study
 
 TURNED_OVER = re.compile(r"\b(dark|light|bright)er\b|\b(black|white|gr[ae]y|pale)\b", re.I)
@@ -203,7 +203,7 @@ def test_a_sure_effect_whose_values_may_each_be_absent_is_told(content):
 
 
 def test_the_ladder_says_which_rows_build_on_each_other(content):
-    steps = (Step(model="nominal", windows_2s=0.2), Step(model="+lift", windows_2s=0.1))
+    steps = (LadderStep(model="nominal", windows_2s=0.2), LadderStep(model="+lift", windows_2s=0.1))
     assert LADDER in tabulate_ladder(Ladder(steps=steps)).caption
     assert LADDER not in tabulate_ladder(Ladder(steps=steps[:1])).caption
 
@@ -225,7 +225,7 @@ def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
 
 
 def test_a_comparison_shows_the_error_that_ranks_without_a_ladder(content):
-    steps = (Step(model="nominal", windows_2s=0.2), Step(model="mine", windows_2s=0.1))
+    steps = (LadderStep(model="nominal", windows_2s=0.2), LadderStep(model="mine", windows_2s=0.1))
     data = ReportData(comparison=content["comparison"], steps=steps)
     page = report.render(report.Report("x", data))
     assert "<h2>2 s error</h2>" in page

@@ -26,7 +26,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ConditionShare
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from said import unfolded
 
 
@@ -39,7 +39,10 @@ def test_its_errors_are_those_of_the_comparison(bench, horizon):
 
 
 def test_its_ladder_holds_the_diagnosis_the_models_and_the_floor_last(bench, monkeypatch):
-    found = (Step(model="+lag", windows_2s=0.1), Step(model="noise_floor", windows_2s=0.05))
+    found = (
+        LadderStep(model="+lag", windows_2s=0.1),
+        LadderStep(model="noise_floor", windows_2s=0.05),
+    )
     ladder = Ladder(steps=(bench.replays.step(bench.base), *found))
     monkeypatch.setattr(
         bench, "diagnosis", synthetic_study.a_lag().model_copy(update={"ladder": ladder})

@@ -11,7 +11,7 @@ from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.traces import beside, panels
 from rovsim.core.rotations import short_way, to_euler
 from rovsim.dynamics.catalogue import built_in
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from rovsim.simulation.bands import Band
 
 
@@ -180,7 +180,7 @@ STEPS = {"zero_acceleration": 1.0, "nominal": 0.2, "+thruster_lag": 0.05, "noise
 
 def a_ladder(**errors):
     steps = (STEPS | errors).items()
-    return Ladder(steps=tuple(Step(model=name, windows_2s=error) for name, error in steps))
+    return Ladder(steps=tuple(LadderStep(model=name, windows_2s=error) for name, error in steps))
 
 
 def test_the_line_of_the_noise_floor_stands_where_its_number_says():

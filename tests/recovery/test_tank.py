@@ -21,7 +21,7 @@ from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
-from rovsim.simulation.synthetic_tank.description import SEALED, describe
+from rovsim.simulation.synthetic_tank.description import SEALED, describe_campaign
 from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 
 RUN = TankRun(id="6dof-1", control="6dof", split="test")
@@ -185,7 +185,7 @@ def test_same_seed_same_bytes_and_runs_do_not_depend_on_each_other(tmp_path):
         make_campaign(TankSettings(runs=runs, duration=4.0, seed=9), tmp_path / name, built_in())
     for file in sorted(path.name for path in (tmp_path / "a").iterdir()):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
-    names = {run.mocap for run in describe(TankSettings(runs=two)).runs}
+    names = {run.mocap for run in describe_campaign(TankSettings(runs=two)).runs}
     assert names <= {path.name for path in (tmp_path / "a").iterdir()}
 
 

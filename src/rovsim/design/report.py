@@ -25,7 +25,7 @@ from rovsim.results.experiment import (
 )
 
 
-def report(plan: Plan, model: str, question: Question, site: Site) -> Experiment:
+def report_plan(plan: Plan, model: str, question: Question, site: Site) -> Experiment:
     """What is written of a plan.
 
     Args:

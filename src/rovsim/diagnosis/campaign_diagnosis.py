@@ -26,7 +26,7 @@ from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.diagnosis import Diagnosis, Standstill, law_beside
 from rovsim.results.error_conditions import ErrorConditions
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run
 
@@ -141,7 +141,7 @@ def _climb(
             score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
     steps = [score.step for score in scores]
     floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
-    return Ladder(steps=(*steps, Step(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
+    return Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
 
 
 def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:

@@ -8,7 +8,7 @@ import numpy as np
 from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.evaluation.error_metrics import Errors, ErrorSums, VelocityMoments, normalize, subtract
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.ladder import Step
+from rovsim.results.ladder import LadderStep
 from rovsim.simulation.prediction import Replay
 
 
@@ -39,12 +39,12 @@ class StepScore:
         self._measured += VelocityMoments.of(motion)
 
     @property
-    def step(self) -> Step:
+    def step(self) -> LadderStep:
         """The step of the ladder; its numbers are None where there was no run."""
         if not self._errors.samples.any():
-            return Step(model=self.model, split=self.split)
+            return LadderStep(model=self.model, split=self.split)
         metrics = self._errors.metrics()
-        return Step(
+        return LadderStep(
             model=self.model,
             split=self.split,
             acceleration_rmse=metrics.acceleration_rmse,
@@ -53,7 +53,9 @@ class StepScore:
         )
 
 
-def score_step(name: str, pairs: Iterable[tuple[Motion, Replay]], split: str = "test") -> Step:
+def score_step(
+    name: str, pairs: Iterable[tuple[Motion, Replay]], split: str = "test"
+) -> LadderStep:
     """The step of a model, from runs and their replays."""
     score = StepScore(name, split)
     for motion, replay in pairs:

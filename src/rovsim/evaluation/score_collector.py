@@ -9,7 +9,7 @@ from rovsim.evaluation.ladder import StepScore
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison, Metrics, ModelErrors, RunErrors
 from rovsim.results.growth import Growth
-from rovsim.results.ladder import Step
+from rovsim.results.ladder import LadderStep
 from rovsim.simulation.prediction import Prediction, Replay
 
 
@@ -60,7 +60,7 @@ class ScoreCollector:
         return Growth(models={name: s.growth.curve for name, s in self._models.items()})
 
     @property
-    def steps(self) -> list[Step]:
+    def steps(self) -> list[LadderStep]:
         """The step of each model on the ladder, on the test runs."""
         return [s.step.step for s in self._models.values()]
 

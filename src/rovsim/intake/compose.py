@@ -9,7 +9,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
 from rovsim.intake import checks, sections
 from rovsim.intake.axes import BODY
 from rovsim.intake.collect_files import collect_files
-from rovsim.intake.draft import Draft
+from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts, find_facts
 from rovsim.intake.places import Places
 from rovsim.intake.proposal import CampaignProposal
@@ -34,7 +34,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
         RovsimError: files that cannot be used, a message for each.
     """
     collected = collect_files(paths, scratch)
-    facts, places, draft = find_facts(collected), Places.beside(collected, out), Draft()
+    facts, places, draft = find_facts(collected), Places.beside(collected, out), CampaignDraft()
     draft.content["name"] = places.name
     sections.vehicle(facts, draft)
     if places.folder:

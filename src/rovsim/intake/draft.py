@@ -10,7 +10,7 @@ from rovsim.intake.proposal import ANSWER, OpenQuestion
 
 
 @dataclass
-class Draft:
+class CampaignDraft:
     """What has been put together so far.
 
     Attributes:

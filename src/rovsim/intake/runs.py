@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.intake.draft import Draft
+from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts
 from rovsim.intake.names import said_control
 from rovsim.intake.pairing import Pair
@@ -26,7 +26,7 @@ PART = "guess: a run of its own, for nothing was recorded for {:.0f} s before it
 FIRST = "guess: several runs are in this file, one after the other; 'use' says where each is"
 
 
-def runs(facts: Facts, places: Places, draft: Draft) -> None:
+def runs(facts: Facts, places: Places, draft: CampaignDraft) -> None:
     """Write the section `runs` into the draft, with comments and questions."""
     entries = list_run_entries(facts)
     controls = [_control(facts, entry) for entry in entries]
@@ -87,7 +87,7 @@ def _measured(facts: Facts, k: int, places: Places) -> str | list[str]:
     return files if len(files) > 1 else files[0]
 
 
-def _log(facts: Facts, run: RunEntry, place: str, places: Places, draft: Draft) -> str:
+def _log(facts: Facts, run: RunEntry, place: str, places: Places, draft: CampaignDraft) -> str:
     """Return the path of a run's commands, `none`, or the placeholder of a question."""
     pair = facts.pairs[run.file]
     if pair.log is not None:

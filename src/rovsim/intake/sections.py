@@ -6,7 +6,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.robust import usual_range
 from rovsim.core.shipped import conf_names
-from rovsim.intake.draft import Draft
+from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts
 from rovsim.intake.survey.contents import CommandCandidate
 from rovsim.measurement.recording.readers import mocap_readers
@@ -31,7 +31,7 @@ WALLS = (
 )
 
 
-def vehicle(facts: Facts, draft: Draft) -> None:
+def vehicle(facts: Facts, draft: CampaignDraft) -> None:
     """Write the key `vehicle` into the draft, as a guess or as a question."""
     choice = facts.choice
     if choice.fit is not None:
@@ -43,7 +43,7 @@ def vehicle(facts: Facts, draft: Draft) -> None:
     draft.content["vehicle"] = draft.ask("vehicle", asks, names, free=True)
 
 
-def mocap(facts: Facts, draft: Draft) -> None:
+def mocap(facts: Facts, draft: CampaignDraft) -> None:
     """Write the section `mocap`: what measured the motion, of which body, along which axes."""
     motion, track = facts.motions[0], facts.pairs[0].motion.track
     section: dict[str, Any] = {"format": motion.format}
@@ -71,7 +71,7 @@ def _extent(position: Array) -> str:
     return ", ".join(f"{n} {a:.2f} to {b:.2f}" for n, a, b in zip("xyz", low, high, strict=True))
 
 
-def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
+def _axes(facts: Facts, draft: CampaignDraft, section: dict[str, Any]) -> None:
     axes = facts.axes
     file_axes = mocap_readers()[section["format"]].axes
     if axes.body and axes.world:
@@ -90,7 +90,7 @@ def _axes(facts: Facts, draft: Draft, section: dict[str, Any]) -> None:
         section[key] = answer or draft.ask(f"mocap.{key}", asks, meanings)
 
 
-def commands(facts: Facts, draft: Draft) -> None:
+def commands(facts: Facts, draft: CampaignDraft) -> None:
     """Write the section `commands`: how the commands were logged; nothing without a log."""
     if facts.log is None:
         return
@@ -126,7 +126,7 @@ def _kinds(facts: Facts) -> dict[str, str]:
     return {name: KINDS[name] for name in (of_axes if named_by_axis else KINDS)}
 
 
-def _columns(facts: Facts, draft: Draft) -> list[str] | str:
+def _columns(facts: Facts, draft: CampaignDraft) -> list[str] | str:
     """Return all columns of the log if every vehicle that fits takes all of them; else ask."""
     assert facts.log is not None
     drive = facts.log.drive

@@ -4,7 +4,7 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Sequence
 
-from rovsim.intake.draft import Draft
+from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts
 from rovsim.intake.pairing import Pair
 from rovsim.intake.spans import list_run_entries
@@ -13,7 +13,7 @@ from rovsim.intake.survey.contents import Contents
 MOST = 20  # names of columns or files in a sentence
 
 
-def list_unread(facts: Facts, draft: Draft) -> list[str]:
+def list_unread(facts: Facts, draft: CampaignDraft) -> list[str]:
     """List unused columns: a sentence for all files whose unused columns are the same."""
     files: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for contents in _every(facts):
@@ -22,7 +22,7 @@ def list_unread(facts: Facts, draft: Draft) -> list[str]:
     return [f"not used: {_named(columns)} (in {_named(names)})" for columns, names in files.items()]
 
 
-def tell_unread(facts: Facts, draft: Draft) -> None:
+def tell_unread(facts: Facts, draft: CampaignDraft) -> None:
     """Write unused columns as comments above the first run of each file."""
     by_path = {item.named: item for item in _every(facts)}
     first_run = {item.file: n for n, item in reversed([*enumerate(list_run_entries(facts))])}
@@ -43,7 +43,7 @@ def _log(pair: Pair) -> list[Path]:
     return [] if pair.log is None else [pair.log.path]
 
 
-def _left(one: Contents, facts: Facts, draft: Draft) -> tuple[str, ...]:
+def _left(one: Contents, facts: Facts, draft: CampaignDraft) -> tuple[str, ...]:
     """List columns of a file that are neither measurements nor commands of a run."""
     section = draft.content.get("commands", {})
     used: set[str] = set()

@@ -20,7 +20,7 @@ from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.force_budget import BudgetTotals, ForceBudget
 from rovsim.results.growth import Growth
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.quality import Quality
@@ -56,7 +56,7 @@ class ReportData:
     comparison: Comparison | None = None
     coverage: Bands | None = None
     growth: Growth | None = None
-    steps: tuple[Step, ...] = ()
+    steps: tuple[LadderStep, ...] = ()
     forces: BudgetTotals | None = None
     drawn: tuple[str, ...] = ()
     ladder: Ladder | None = None
@@ -239,7 +239,7 @@ def _is_of_run(figure: FigureKind) -> bool:
     return False
 
 
-def describe(figure: str, run: str, data: ReportData | None = None) -> str:
+def describe_figure(figure: str, run: str, data: ReportData | None = None) -> str:
     """Say in a few words what a figure of one run shows; empty for a figure of all runs."""
     if not run:
         return ""

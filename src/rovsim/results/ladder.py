@@ -9,7 +9,7 @@ from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 
 
-class Step(Section):
+class LadderStep(Section):
     """Errors of one model in 2 s windows, all runs of the split pooled; None where unknown.
 
     `windows_2s` is the velocity RMSE in units of the measured velocity's standard deviation, mean
@@ -35,10 +35,10 @@ class Ladder(Result):
     command: ClassVar[str] = "the study"
 
     schema_: Literal["rovsim.ladder/1"] = Field(default="rovsim.ladder/1", alias="schema")
-    steps: tuple[Step, ...]
+    steps: tuple[LadderStep, ...]
 
     @property
-    def models(self) -> list[Step]:
+    def models(self) -> list[LadderStep]:
         """The steps but the noise floor."""
         return [step for step in self.steps if step.model != NOISE_FLOOR]
 
@@ -48,7 +48,7 @@ class Ladder(Result):
         return next((s.windows_2s for s in self.steps if s.model == NOISE_FLOOR), None)
 
     @staticmethod
-    def with_diagnosis(models: Sequence[Step], diagnosed: Sequence[Step]) -> "Ladder":
+    def with_diagnosis(models: Sequence[LadderStep], diagnosed: Sequence[LadderStep]) -> "Ladder":
         """Models and a diagnosis: its effects one by one, its noise floor last.
 
         The effects stand where the model that has all of them would.

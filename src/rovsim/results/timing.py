@@ -46,7 +46,7 @@ class Timing(Result):
     inference: dict[str, BothWays]
 
 
-class Left(Section):
+class RemainingRms(Section):
     """RMS of what a correction leaves over that of the residual: mean and worst of the axes."""
 
     mean: float
@@ -60,8 +60,8 @@ class Accuracy(Section):
     points: int
     fades: bool
     median_us: float
-    seen: Left
-    unseen: Left
+    seen: RemainingRms
+    unseen: RemainingRms
 
 
 class Bench(Result):

@@ -49,7 +49,7 @@ Missing = Callable[[Model, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
-class Left:
+class OmittedPart:
     """A part of a model that a target leaves out.
 
     Attributes:
@@ -124,7 +124,7 @@ def fixed(thrusters: Thrusters) -> tuple[Thrusters, str]:
     return Fixed(converted.layout), f"{note}; {reason}" if reason else note
 
 
-def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
+def leave_out(model: Model, hold: Hold) -> Iterator[OmittedPart]:
     """List what a target leaves out of a model, one part after the other.
 
     The target can hold the last `after` as a whole. Effects that are left out stay in the model at
@@ -139,9 +139,9 @@ def leave_out(model: Model, hold: Hold) -> Iterator[Left]:
         remainder, reason = hold(effect)
         if reason and acts(effect):
             before, held = held, held.with_effect(k, remainder)
-            yield Left(effect.id, reason, before, held)
+            yield OmittedPart(effect.id, reason, before, held)
     if model.residual is not None:
-        yield Left(
+        yield OmittedPart(
             RESIDUAL,
             "a trained residual is arrays, no term",
             held,

@@ -10,7 +10,7 @@ from typing import Iterable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.application.export.holding import Left
+from rovsim.application.export.holding import OmittedPart
 from rovsim.core.axes import AXES
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import RunInfo, Site
@@ -53,7 +53,7 @@ class Sized:
         return any(self.rms)
 
 
-def size_all(left: Sequence[Left], motions: Sequence[Motion]) -> list[Sized]:
+def size_all(left: Sequence[OmittedPart], motions: Sequence[Motion]) -> list[Sized]:
     """Measure the force of each part over some true motions."""
     return [Sized(part.name, part.why, _rms(part, motions)) for part in left]
 
@@ -120,14 +120,14 @@ def _fly(model: Model, settings: TankSettings) -> Motion:
     )
 
 
-def _rms(left: Left, motions: Sequence[Motion]) -> tuple[float, ...]:
+def _rms(left: OmittedPart, motions: Sequence[Motion]) -> tuple[float, ...]:
     force = np.concatenate([_force(left, motion)[motion.usable] for motion in motions])
     force = force[np.isfinite(force).all(axis=1)]
     size = np.sqrt(np.mean(force**2, axis=0)) if len(force) else np.zeros(len(AXES))
     return tuple(float(v) if v > 1e-12 else 0.0 for v in size)
 
 
-def _force(left: Left, motion: Motion) -> Array:
+def _force(left: OmittedPart, motion: Motion) -> Array:
     """Compute the wrench (n, 6), N and N m, that is left out at the states of a motion."""
     models = (left.before, left.after)
     full, reduced = (accelerate_as_logged(model, motion, ReplaySettings()) for model in models)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Callable, Sequence
 
 from rovsim.application.export.equation import Equation
-from rovsim.application.export.holding import Left, leave_out
+from rovsim.application.export.holding import OmittedPart, leave_out
 from rovsim.application.export.sizes import Sized, size_all
 from rovsim.application.export.targets import Target
 from rovsim.core.axes import AXES
@@ -19,7 +19,7 @@ WRITTEN = "written by rovsim for"  # stands in every file
 
 
 @dataclass(frozen=True, eq=False)
-class Export:
+class ExportedModel:
     """A model as a target can hold it.
 
     Attributes:
@@ -31,7 +31,7 @@ class Export:
     left: tuple[Sized, ...]
 
 
-def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
+def represent(model: Model, target: Target) -> tuple[Model, list[OmittedPart]]:
     """Reduce a model to what a target can hold.
 
     Returns:
@@ -63,7 +63,7 @@ def represent(model: Model, target: Target) -> tuple[Model, list[Left]]:
 
 def export_model(
     model: Model, target: Target, flights: Callable[[], Sequence[Motion]], over: str, origin: str
-) -> Export:
+) -> ExportedModel:
     """Convert a model to a target's file, and measure what is left out.
 
     Args:
@@ -81,7 +81,7 @@ def export_model(
     sized = size_all(parts, flights()) if parts else []
     notes = [f"{model.name}, {WRITTEN} {target.title}.", f"Model: {origin}"]
     notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
-    return Export(target.text(Equation(reduced), notes), tuple(sized))
+    return ExportedModel(target.text(Equation(reduced), notes), tuple(sized))
 
 
 def model_parts(model: Model) -> str:
@@ -90,7 +90,7 @@ def model_parts(model: Model) -> str:
     return " + ".join(parts + (["a learned residual"] if model.residual else []))
 
 
-def write_export(export: Export, out: Path) -> None:
+def write_export(export: ExportedModel, out: Path) -> None:
     """Write the file, whole or not at all.
 
     Raises:

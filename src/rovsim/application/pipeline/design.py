@@ -14,7 +14,7 @@ from rovsim.core.progress import staged
 from rovsim.core.run import Commands
 from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.plan import STAGES, Plan, plan
-from rovsim.design.report import report
+from rovsim.design.report import report_plan
 from rovsim.design.settings import Question
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
@@ -74,7 +74,7 @@ def design(
     with staged("designing", STAGES):
         flight_plan = plan(model, data.runs, question, columns, catalogue)
     site = next(iter(data.motions.values())).site
-    experiment = report(flight_plan, model.name, question, site)
+    experiment = report_plan(flight_plan, model.name, question, site)
     warnings = warn_of_wider(model, {n: std.now for n, std in experiment.expects.std.items()})
     experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *warnings)})
     commands = flight_plan.best.flight.commands

@@ -7,7 +7,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.figures import list_figures
 from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Picture
-from rovsim.reporting.report_data import ReportData, describe
+from rovsim.reporting.report_data import ReportData, describe_figure
 from rovsim.reporting.tables import tabulate_errors, tabulate_ladder
 from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import Ladder
@@ -50,4 +50,4 @@ def write_report(
 def _read_picture(path: Path) -> Picture:
     """Read a figure's file, which is named after the figure, or `figure-run`."""
     name, _, run = (path.stem, "", "") if path.stem in list_figures() else path.stem.partition("-")
-    return Picture.read(path, name, describe(name, run), run)
+    return Picture.read(path, name, describe_figure(name, run), run)

@@ -15,7 +15,12 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.measurement.loading import load_campaign
 from rovsim.reporting.report_data import list_run_figures
-from rovsim.simulation.synthetic_tank.description import SEALED, VEHICLE, describe, own_vehicle
+from rovsim.simulation.synthetic_tank.description import (
+    SEALED,
+    VEHICLE,
+    describe_campaign,
+    own_vehicle,
+)
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,7 @@ class Study:
     def campaign(self) -> Campaign | CampaignFile:
         """The user's campaign, or the description of a synthetic one that is yet to be made."""
         path = self.snakemake.campaign_path
-        return describe(self.settings.tank) if path is None else load_campaign(path)
+        return describe_campaign(self.settings.tank) if path is None else load_campaign(path)
 
     @property
     def name(self) -> str:

@@ -7,7 +7,7 @@ from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.runs import TrackedRun, track
 from rovsim.core.mappings import leaves
 from rovsim.results.diagnosis import Diagnosis
-from rovsim.results.ladder import Step
+from rovsim.results.ladder import LadderStep
 
 OF_STEPS = ("diagnosis", "ladder")  # files, without their endings, that say what a step is
 
@@ -76,7 +76,7 @@ def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
     return {name: value for name, value in metrics.items() if value is not None}
 
 
-def step_metrics(step: Step) -> dict[str, float]:
+def step_metrics(step: LadderStep) -> dict[str, float]:
     """Return the numbers of one step of a ladder, named as those of a comparison."""
     metrics = {"windows_2s": step.windows_2s}
     for quantity in ("acceleration_rmse", "velocity_mae"):

@@ -12,7 +12,7 @@ from rovsim.evaluation.error_metrics import compute_metrics, subtract
 from rovsim.evaluation.ladder import score_step
 from rovsim.measurement.runs import Runs
 from rovsim.results.comparison import Metrics
-from rovsim.results.ladder import Step
+from rovsim.results.ladder import LadderStep
 from rovsim.simulation.bands import Band, predict_band
 from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.prediction import Prediction, Replay
@@ -33,7 +33,7 @@ class KeptReplays:
     settings: SimulationSettings
     _replays: Recent[Replay] = field(default_factory=Recent)
     _bands: Recent[Band | None] = field(default_factory=Recent)
-    _steps: dict[Model, Step] = field(default_factory=dict)
+    _steps: dict[Model, LadderStep] = field(default_factory=dict)
     _searched: dict[Model, SearchedModel] = field(default_factory=dict)
     _thrusts: Recent[Array] = field(default_factory=Recent)
 
@@ -81,7 +81,7 @@ class KeptReplays:
         replayed = self.replayed(model, run, STANDARD_WINDOW)
         return score_step(model.name, [(motion, replayed)], motion.run.split).windows_2s
 
-    def step(self, model: Model) -> Step:
+    def step(self, model: Model) -> LadderStep:
         """Return the ladder's step of a model, its errors on the test runs; this opens these."""
         if model not in self._steps:
             tests = self.runs.of("test")

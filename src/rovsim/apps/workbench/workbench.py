@@ -25,7 +25,7 @@ from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 from rovsim.dynamics.model import Model, zero_acceleration
 from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.results.diagnosis import Diagnosis, law_beside
-from rovsim.results.ladder import Ladder, Step
+from rovsim.results.ladder import Ladder, LadderStep
 
 OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
 
@@ -234,7 +234,7 @@ class Workbench:
         references = [self.baseline, self.base]
         others = [m for m in self.models.values() if m.name not in {r.name for r in references}]
         steps = [self.replays.step(m) for m in references]
-        steps += [Step(model=EFFECTS)] if self.diagnosis else []
+        steps += [LadderStep(model=EFFECTS)] if self.diagnosis else []
         steps += [self.replays.step(m) for m in others]
         return Ladder.with_diagnosis(steps, self.diagnosis.ladder.steps if self.diagnosis else ())
 

@@ -28,7 +28,7 @@ EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
 
 
 @dataclass(frozen=True)
-class Column:
+class LibraryColumn:
     """One column of the library.
 
     Attributes:
@@ -50,7 +50,7 @@ class Problem:
         matrix: change of the acceleration (n, 6, c) by each column, in the same units.
     """
 
-    columns: tuple[Column, ...]
+    columns: tuple[LibraryColumn, ...]
     target: Array
     matrix: Array
 
@@ -80,14 +80,19 @@ def _residual(model: Model, motion: Motion) -> Array:
     return sample_run(model, motion, SimulationSettings()).a_res[::EVERY]
 
 
-def steps(site: Site, effects: Mapping[str, type[Effect]]) -> Iterator[tuple[Column, Effect]]:
+def steps(
+    site: Site, effects: Mapping[str, type[Effect]]
+) -> Iterator[tuple[LibraryColumn, Effect]]:
     """Yield every column, and the effect at the values of its step."""
     included = ((n, e) for n, e in effects.items() if not issubclass(e, MeasurementFilter))
     for name, cls in included:
         for start in cls.starts_at(site):
             if start:
-                yield Column(name, start), cls(**start)
+                yield LibraryColumn(name, start), cls(**start)
                 continue
             for p in cls.parameters:
                 if p.fitted:
-                    yield Column(name, {p.name: p.scale}), cls(**{p.name: p.default + p.scale})
+                    yield (
+                        LibraryColumn(name, {p.name: p.scale}),
+                        cls(**{p.name: p.default + p.scale}),
+                    )

@@ -27,7 +27,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
-class Job:
+class PendingCase:
     """A case, and the methods that have not answered it yet.
 
     Attributes:
@@ -78,7 +78,7 @@ class Benchmark:
         """Reduce the run to one case, given by the name of its files."""
         return replace(self, cases=tuple(case for case in self.cases if file_name(case) == name))
 
-    def pending(self) -> list[Job]:
+    def pending(self) -> list[PendingCase]:
         """List jobs for answers that are missing or were given by other code."""
         return list(pending(self.cases, self.methods, self.answers, self.asked.simulator))
 
@@ -106,7 +106,7 @@ def fingerprint(case: Case, code: str) -> str:
 
 def pending(
     cases: Sequence[Case], methods: Sequence[Method], folder: Path, simulator: str = "tank"
-) -> Iterator[Job]:
+) -> Iterator[PendingCase]:
     """Yield jobs for answers that are missing or were given by other code.
 
     Args:
@@ -122,14 +122,14 @@ def pending(
         answers = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
         unanswered = tuple(w for w in answers if not _answered(w[1], w[2]))
         if unanswered:
-            yield Job(case, unanswered, simulator)
+            yield PendingCase(case, unanswered, simulator)
 
 
 def _answered(path: Path, mark: str) -> bool:
     return path.is_file() and read_json(path).get("digest") == mark
 
 
-def work(job: Job) -> None:
+def work(job: PendingCase) -> None:
     """Fly a case once, ask every method, and write each answer as soon as it is given."""
     with tempfile.TemporaryDirectory() as folder:
         campaign = Path(folder, "campaign")
@@ -168,7 +168,7 @@ def _cover(method: Method, campaign: Path, found: Diagnosis | Answer | None) -> 
     return method.bands(campaign, found)
 
 
-def run(jobs: Sequence[Job], progress: Progress = lambda done, total: None) -> None:
+def run(jobs: Sequence[PendingCase], progress: Progress = lambda done, total: None) -> None:
     """Do jobs one after the other; `progress` is called with how many are done, and of how many."""
     for done, job in enumerate(jobs):
         progress(done, len(jobs))

@@ -19,7 +19,7 @@ HALF = 0.5 - 1e-12  # one half, whichever way the mean of shares is rounded
 
 
 @dataclass(frozen=True)
-class Judged:
+class ScoredCase:
     """A case and the score of its answer.
 
     Attributes:
@@ -45,20 +45,20 @@ class Judged:
     worse: bool | None = None
 
 
-def judge(answers: Sequence[KeptAnswer]) -> list[Judged]:
+def judge(answers: Sequence[KeptAnswer]) -> list[ScoredCase]:
     """Score the stored answers of one method."""
     return [_judge(answer) for answer in answers]
 
 
-def _judge(one: KeptAnswer) -> Judged:
+def _judge(one: KeptAnswer) -> ScoredCase:
     if one.diagnosis is None:
-        return Judged(
+        return ScoredCase(
             one.case, one.redrawn, one.seconds, None, "", "error", one.error, one.cpu_seconds
         )
     selected, verdict = one.diagnosis.selected, one.diagnosis.verdict
     first = selected[0].effect if selected else ""
     worth = score(one.case, one.diagnosis)
-    return Judged(
+    return ScoredCase(
         one.case,
         one.redrawn,
         one.seconds,
@@ -94,22 +94,22 @@ def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
 
 
 def _grouped(
-    found: Sequence[Judged], key: Callable[[Judged], str]
-) -> Iterable[tuple[str, list[Judged]]]:
+    found: Sequence[ScoredCase], key: Callable[[ScoredCase], str]
+) -> Iterable[tuple[str, list[ScoredCase]]]:
     """Group cases; groups are in the order of their first member."""
-    groups: dict[str, list[Judged]] = {}
+    groups: dict[str, list[ScoredCase]] = {}
     for judged in found:
         groups.setdefault(key(judged), []).append(judged)
     return groups.items()
 
 
-def _by_effect(found: Sequence[Judged]) -> Iterable[tuple[str, list[Judged]]]:
+def _by_effect(found: Sequence[ScoredCase]) -> Iterable[tuple[str, list[ScoredCase]]]:
     """Group by effect the cases that hide one effect alone, with usual noise and length."""
     single = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
     return _grouped(single, lambda j: j.case.hidden[0].effect)
 
 
-def rate(found: Sequence[Judged]) -> Rates:
+def rate(found: Sequence[ScoredCase]) -> Rates:
     """Return the shares of cases in which answers are right.
 
     A crash is wrong in every respect, except that it names nothing false.
@@ -157,7 +157,7 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if values else None
 
 
-def _rate_effect(found: Sequence[Judged]) -> EffectRates:
+def _rate_effect(found: Sequence[ScoredCase]) -> EffectRates:
     """Rate the cases that hide one effect alone, and find its detection limit.
 
     The rates are those at strength 1.

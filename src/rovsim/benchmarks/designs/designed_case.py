@@ -11,7 +11,7 @@ from rovsim.application.settings import Settings
 from rovsim.benchmarks.blind.case import Range
 from rovsim.benchmarks.designs.cases import ask, hide
 from rovsim.design.plan import Plan, plan
-from rovsim.design.report import report
+from rovsim.design.report import report_plan
 from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import Question
 from rovsim.dynamics.catalogue import built_in
@@ -41,7 +41,7 @@ class DesignedCase:
     @cached_property
     def experiment(self) -> Experiment:
         """What `rovsim design` would write of the plan."""
-        return report(self.plan, "nominal", self.question, self.plan.problem.setup.site)
+        return report_plan(self.plan, "nominal", self.question, self.plan.problem.setup.site)
 
     @cached_property
     def best_usual(self) -> CandidateFlight | None:

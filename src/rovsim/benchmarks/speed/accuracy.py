@@ -12,7 +12,7 @@ from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
 from rovsim.benchmarks.speed.inference import ours
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.evaluation.latency import time_calls
-from rovsim.results.timing import Accuracy, Left
+from rovsim.results.timing import Accuracy, RemainingRms
 
 SEEN, UNSEEN = "3dof", "6dof"
 CALLS = 2_000
@@ -56,7 +56,7 @@ def _processes(taught: Pairs) -> Iterator[tuple[str, Residual]]:
         yield "svgp", fitted("svgp", taught, inducing=inducing)
 
 
-def measure_left(residual: Residual, pairs: Pairs, control: str) -> Left:
+def measure_left(residual: Residual, pairs: Pairs, control: str) -> RemainingRms:
     """Measure the RMS of prediction errors over the RMS of the residual, on test runs.
 
     Args:
@@ -70,4 +70,4 @@ def measure_left(residual: Residual, pairs: Pairs, control: str) -> Left:
     rows = pairs.query_control == control
     error = residual.predict(pairs.queries[rows]) - pairs.answers[rows]
     share = np.sqrt((error**2).mean(0) / (pairs.answers[rows] ** 2).mean(0))
-    return Left(mean=float(share.mean()), worst=float(share.max()))
+    return RemainingRms(mean=float(share.mean()), worst=float(share.max()))

@@ -31,7 +31,7 @@ from rovsim.dynamics.learned.simd import add_squares, exponentials, products, sc
 plain = njit(error_model="numpy", **UNSEEN)
 
 
-class Part(NamedTuple):
+class KernelArrays(NamedTuple):
     """Views of the arrays of one kernel of an expansion, see `layout`.
 
     Attributes:
@@ -75,7 +75,7 @@ def _part(data, part):
     spectrum = points + length * wide
     weights = spectrum + rank
     vectors = weights + rows * length
-    return Part(
+    return KernelArrays(
         part * share,
         share,
         data[at],

@@ -33,7 +33,7 @@ class Quadratic(Section):
         return np.where(command < 0.0, -self.reverse, self.forward) * share * share
 
 
-class Table(Section):
+class ForceTable(Section):
     """Forces, N, at some commands; linear between them, constant beyond the first and the last."""
 
     command: tuple[float, ...] = Field(min_length=2)
@@ -52,7 +52,7 @@ class Table(Section):
         return np.interp(command, self.command, self.force_)
 
 
-class Tables(Section):
+class ForceTables(Section):
     """A table for each of some battery voltages, V; linear between them, constant beyond.
 
     Attributes:
@@ -60,7 +60,7 @@ class Tables(Section):
         nominal: voltage where none was logged, V; None: the highest of the tables, a full battery.
     """
 
-    volts: dict[PositiveFloat, Table] = Field(min_length=1)
+    volts: dict[PositiveFloat, ForceTable] = Field(min_length=1)
     nominal: PositiveFloat | None = None
 
     @property
@@ -69,11 +69,11 @@ class Tables(Section):
         return self.nominal or max(self.volts)
 
     @property
-    def at_usual(self) -> Table:
+    def at_usual(self) -> ForceTable:
         """The table at the usual voltage."""
         command = sorted({c for table in self.volts.values() for c in table.command})
         force = self.force(np.array(command), None)
-        return Table(command=tuple(command), force=tuple(force.tolist()))
+        return ForceTable(command=tuple(command), force=tuple(force.tolist()))
 
     def force(self, command: Array, voltage: Array | None) -> Array:
         """Forces (m, ...), N, of commands (m, ...) at battery voltages (m,), V; None: nominal."""
@@ -101,8 +101,8 @@ class ForceCurve(Section):
 
     odd_polynomial: tuple[float, ...] | None = Field(default=None, min_length=1)
     quadratic: Quadratic | None = None
-    table: Table | None = None
-    tables: Tables | None = None
+    table: ForceTable | None = None
+    tables: ForceTables | None = None
 
     @model_validator(mode="after")
     def _one(self) -> Self:

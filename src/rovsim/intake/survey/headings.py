@@ -32,7 +32,7 @@ HALF_TURN = 180.0  # degrees
 
 
 @dataclass(frozen=True)
-class Column:
+class ChannelColumn:
     """A column of the file that is one of our channels.
 
     Attributes:
@@ -79,7 +79,7 @@ def _without_unit(ours: str) -> str:
     return re.sub(r"_(s|m|rad)(_s2?)?$", "", ours)
 
 
-def _text(lines: Lines, columns: dict[int, Column]) -> str:
+def _text(lines: Lines, columns: dict[int, ChannelColumn]) -> str:
     names = [columns[k].ours if k in columns else name for k, name in enumerate(lines.names)]
     rows = [",".join(names)]
     fillers = {k: find_filler(_raw(lines, k)) for k in columns}
@@ -89,7 +89,7 @@ def _text(lines: Lines, columns: dict[int, Column]) -> str:
     return "\n".join(rows) + "\n"
 
 
-def _cell(text: str, column: Column | None, filler: float | None) -> str:
+def _cell(text: str, column: ChannelColumn | None, filler: float | None) -> str:
     text = text.strip()
     if column is None or not text:
         return text
@@ -104,7 +104,7 @@ def _cell(text: str, column: Column | None, filler: float | None) -> str:
     return text if column.factor == 1.0 else repr(value * column.factor)
 
 
-def _columns(lines: Lines, units: Units) -> list[Column]:
+def _columns(lines: Lines, units: Units) -> list[ChannelColumn]:
     """Find the columns that are our channels, under any name or unit; none without times."""
     unit_at = [split_unit(name)[1] for name in lines.names]
     places = find_columns(lines)
@@ -122,7 +122,7 @@ def _columns(lines: Lines, units: Units) -> list[Column]:
         value = _values(lines, place)
         factor, reason = find_time_unit(lines, place, value, unit_at[place], units)
         seconds = value * factor
-    columns = [Column("time_s", place, factor, reason)]
+    columns = [ChannelColumn("time_s", place, factor, reason)]
     for group in (POSITION, EULER, QUATERNION, LINEAR, ANGULAR, ["depth_m"]):
         present = {ours: places[ours] for ours in group if ours in places}
         columns += _group(lines, present, {k: unit_at[k] for k in present.values()}, seconds, units)
@@ -182,7 +182,7 @@ def _raw(lines: Lines, place: int) -> Array:
 
 def _group(
     lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
-) -> list[Column]:
+) -> list[ChannelColumn]:
     """Make the columns of one group of channels; a unit that is not named is found by size.
 
     Args:
@@ -199,12 +199,12 @@ def _group(
     numbers(without_cut_line(lines, columns)[0], columns)
     value = np.stack([_values(lines, place) for place in here.values()], axis=1)
     if names[0] in QUATERNION:
-        return [Column(n, p, 1.0, "") for n, p in here.items()]
+        return [ChannelColumn(n, p, 1.0, "") for n, p in here.items()]
     if names[0] == "depth_m":
         return [_depth(lines, here, units, value[:, 0], told)]
     factor, reason = find_by_size(lines, here, value, time, told)
     return [
-        Column(
+        ChannelColumn(
             n, p, FACTORS[units[p]] if units[p] and not reason else factor, reason or _of(units[p])
         )
         for n, p in here.items()
@@ -213,7 +213,7 @@ def _group(
 
 def _depth(
     lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, told: Units
-) -> Column:
+) -> ChannelColumn:
     """Make the column of a depth; its sign is turned where it is a height, here or elsewhere."""
     ((ours, place),) = here.items()
 
@@ -224,7 +224,7 @@ def _depth(
 
     sign = told.settle((lines.names[place],), decide)
     factor = sign.factor * FACTORS.get(units[place], 1.0)
-    return Column(ours, place, factor, f"{_of(units[place])}{sign.said}")
+    return ChannelColumn(ours, place, factor, f"{_of(units[place])}{sign.said}")
 
 
 def _of(unit: str) -> str:

@@ -10,7 +10,7 @@ from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.html import report
 from rovsim.reporting.html.picture import Drawn, Picture, Wanted
-from rovsim.reporting.report_data import ReportData, describe, list_run_figures
+from rovsim.reporting.report_data import ReportData, describe_figure, list_run_figures
 
 
 def present(
@@ -51,7 +51,7 @@ def draw(
     pending = [figure for figure in list_wanted(data) if figure not in finished]
     try:
         for k, figure in enumerate(counted(pending, "drawing")):
-            content = describe(*figure, data), data.select(*figure)
+            content = describe_figure(*figure, data), data.select(*figure)
             if other is not None and k % 2:
                 elsewhere[figure] = other.submit(draw_selected, out, *figure, *content)
             else:
@@ -72,7 +72,9 @@ def list_wanted(data: ReportData) -> list[Wanted]:
 
 def draw_one(out: Path, figure: str, run: str, data: ReportData) -> Drawn:
     """Draw one figure of the results, or of one run, into `out`/figures."""
-    return draw_selected(out, figure, run, describe(figure, run, data), data.select(figure, run))
+    return draw_selected(
+        out, figure, run, describe_figure(figure, run, data), data.select(figure, run)
+    )
 
 
 def draw_selected(

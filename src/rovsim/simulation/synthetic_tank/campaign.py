@@ -22,7 +22,7 @@ from rovsim.simulation.synthetic_tank.description import (
     VEHICLE,
     SealedTruth,
     commands_file,
-    describe,
+    describe_campaign,
     motion_file,
     own_vehicle,
     seal,
@@ -82,7 +82,7 @@ def make_campaign(
     """
     out = Path(os.path.abspath(out))  # '.' has neither name nor parent
     _refuse_other_files(out)
-    check_ids(describe(settings).runs, "tank")  # before the flights, which take long
+    check_ids(describe_campaign(settings).runs, "tank")  # before the flights, which take long
     model = true_model(settings, catalogue, unlisted)
     with folder_beside(out) as folder:
         _record_all(settings, model, unlisted, folder, progress)
@@ -115,7 +115,7 @@ def _list_written(out: Path) -> set[str]:
     """Names of the files that a tank wrote into a folder, according to its `truth.yaml`."""
     try:
         settings = checked(SealedTruth, read_yaml(out / SEALED), out / SEALED).settings
-        describe(settings)  # no run leaves the folder
+        describe_campaign(settings)  # no run leaves the folder
     except (RovsimError, OSError):
         return set()
     recordings = (
@@ -149,7 +149,7 @@ def _record_all(
         progress(k, len(runs))
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
-    campaign, truth = describe(settings), seal(settings, model.added[:count], unlisted)
+    campaign, truth = describe_campaign(settings), seal(settings, model.added[:count], unlisted)
     write_yaml(folder / CAMPAIGN, campaign.model_dump(mode="json", exclude_unset=True))
     if vehicle := own_vehicle(settings):
         copy_file(Path(vehicle), folder / VEHICLE)
@@ -184,7 +184,7 @@ def _record(
 
 def _read_sent(settings: TankSettings, run: TankRun) -> SentLog:
     """Read the log of commands that prescribes a run."""
-    log = describe(settings).commands
+    log = describe_campaign(settings).commands
     assert run.fly is not None
     assert log is not None
     return read_sent_log(Path(run.fly), log, up=not settings.sensors)

@@ -62,7 +62,7 @@ def own_vehicle(settings: TankSettings) -> Path | None:
     return None if known_vehicle(settings.vehicle) else vehicle_file(settings.vehicle)
 
 
-def describe(settings: TankSettings) -> CampaignFile:
+def describe_campaign(settings: TankSettings) -> CampaignFile:
     """Describe a synthetic campaign as `campaign.yaml` does, without simulating anything.
 
     Raises:

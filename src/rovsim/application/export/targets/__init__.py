@@ -5,7 +5,7 @@ and its equations are documented), `TAKES` (what drives the vehicle there, one s
 functions (without `further`, what `hold` leaves out is all):
 
     hold(effect) -> (effect, why)    what it can hold of an effect; why not the rest (empty: all)
-    further(model) -> [Left, ...]    what else it leaves out of a model whose effects it can hold
+    further(model) -> [OmittedPart]  what else it leaves out of a model whose effects it can hold
     text(equation, notes) -> str     the file; `notes` are lines that stand in it as comments
 """
 
@@ -17,7 +17,7 @@ from pkgutil import iter_modules
 from typing import Callable, Sequence
 
 from rovsim.application.export.equation import Equation
-from rovsim.application.export.holding import Hold, Left
+from rovsim.application.export.holding import Hold, OmittedPart
 from rovsim.core.errors import unlisted
 from rovsim.dynamics.model import Model
 
@@ -32,7 +32,7 @@ class Target:
     source: str
     takes: str
     hold: Hold
-    further: Callable[[Model], Sequence[Left]]
+    further: Callable[[Model], Sequence[OmittedPart]]
     text: Callable[[Equation, Sequence[str]], str]
 
 
@@ -49,7 +49,7 @@ def _target(name: str) -> Target:
     return Target(name, m.TITLE, m.SUFFIX, m.SOURCE, m.TAKES, m.hold, further, m.text)
 
 
-def _leave_nothing(model: Model) -> Sequence[Left]:
+def _leave_nothing(model: Model) -> Sequence[OmittedPart]:
     """Stand in where what a target's `hold` leaves out is all."""
     return ()
 

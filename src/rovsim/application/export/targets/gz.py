@@ -22,7 +22,7 @@ from rovsim.application.export.holding import (
     INERTIA,
     RIGID,
     STATIC,
-    Left,
+    OmittedPart,
     fixed,
     nothing,
     whole,
@@ -61,13 +61,13 @@ def hold(effect: Effect) -> tuple[Effect, str]:
     return whole(effect) if effect.id in WHOLE else nothing(effect)
 
 
-def further(model: Model) -> Sequence[Left]:
+def further(model: Model) -> Sequence[OmittedPart]:
     """Return what a current does to added mass: the plugin applies a current to damping only."""
     if not model.body.current.any():
         return []
     water = next(e for e in model.effects if isinstance(e, Current) and e.given())
     reason = "it acts on the damping; added mass moves as in still water"
-    return [Left(f"{water.id} on added mass", reason, model, model, still_added_mass)]
+    return [OmittedPart(f"{water.id} on added mass", reason, model, model, still_added_mass)]
 
 
 def still_added_mass(model: Model, state: Array) -> Array:

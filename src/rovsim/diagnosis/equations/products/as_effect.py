@@ -24,7 +24,7 @@ MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little ap
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class CoveredRegion:
     """The region that the runs covered.
 
     Attributes:
@@ -36,11 +36,11 @@ class Surroundings:
     site: Site
 
     @staticmethod
-    def of(runs: Sequence[ObservedRun]) -> "Surroundings":
+    def of(runs: Sequence[ObservedRun]) -> "CoveredRegion":
         """Find the region that runs covered; the site is that of the first."""
         path = np.concatenate([run.motion.state[run.motion.usable, :3] for run in runs])
         reach = np.array([path.min(axis=0), path.max(axis=0)])
-        return Surroundings(reach, runs[0].motion.site)
+        return CoveredRegion(reach, runs[0].motion.site)
 
     @property
     def bounds(self) -> dict[str, Bounds]:
@@ -70,7 +70,7 @@ def add_term(
     known: Sequence[LawTerm],
     more: LawTerm,
     columns: Columns,
-    around: Surroundings,
+    around: CoveredRegion,
 ) -> Hypothesis:
     """Add a term to the law of a hypothesis, with the coefficient that the regression gives.
 

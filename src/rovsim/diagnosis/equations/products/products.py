@@ -16,9 +16,9 @@ from rovsim.diagnosis.equations.products.kernel_lines import write_body
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import TARGETS
 from rovsim.diagnosis.equations.products.wording import (
-    describe,
     list_quantities,
-    name_terms,
+    name_coefficients,
+    tell_law,
     write_equation,
 )
 from rovsim.dynamics.effects.base import Effect
@@ -61,12 +61,12 @@ class Products(Form):
     @property
     def meaning(self) -> str:
         """The law in a sentence."""
-        return describe(self.terms)
+        return tell_law(self.terms)
 
     def list_numbers(self, law: Term, std: Mapping[str, float]) -> list[Number]:
         """List the coefficients in the units of their terms, then the place and its width."""
         numbers = []
-        terms = zip(name_terms(self.terms), self.terms, effect_of(law).terms, strict=True)
+        terms = zip(name_coefficients(self.terms), self.terms, effect_of(law).terms, strict=True)
         for k, (name, term, fitted) in enumerate(terms):
             value = fitted.coefficient * fitted.size
             value_std = std[COEFFICIENTS[k]] * fitted.size
@@ -92,7 +92,7 @@ class Products(Form):
 
     def write(self, name: str, law: Term, numbers: Sequence[Number], story: str) -> str:
         """Write an effect whose kernel states the law as plain arithmetic."""
-        code = "\n".join(write_body(name_terms(self.terms), self.terms, law))
+        code = "\n".join(write_body(name_coefficients(self.terms), self.terms, law))
         maths = [f for f in ("exp", "sqrt", "tanh") if f"{f}(" in code]
         placed = any(n.default is not None for n in numbers)
         return write_effect(

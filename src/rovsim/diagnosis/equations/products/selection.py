@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.products.as_effect import (
-    Surroundings,
+    CoveredRegion,
     add_term,
     list_moved,
     place_of,
@@ -83,7 +83,7 @@ def fit_products(
     Returns:
         The fitted laws by their additional terms, without those that stay far behind.
     """
-    surroundings = Surroundings.of(fits.runs)
+    surroundings = CoveredRegion.of(fits.runs)
     starts = {k: add_term(fit.hypothesis, terms, k, columns, surroundings) for k in more}
     return fits.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
 

@@ -28,7 +28,7 @@ class Head:
 
 
 @dataclass(frozen=True)
-class Target:
+class TermTarget:
     """What a term acts on.
 
     Attributes:
@@ -65,27 +65,27 @@ class Target:
         return write_unit(powers, self.newtons)
 
 
-def _along_body() -> list[Target]:
+def _along_body() -> list[TermTarget]:
     """Forces and moments along the six body axes."""
     kinds = ("force",) * 3 + ("moment",) * 3
     return [
-        Target(axis, axis, (Head(letter, letter),), f"a {axis} {kind}", newtons=unit)
+        TermTarget(axis, axis, (Head(letter, letter),), f"a {axis} {kind}", newtons=unit)
         for axis, letter, kind, unit in zip(AXES, FORCE, kinds, FORCE_UNITS, strict=True)
     ]
 
 
-def _along_world() -> list[Target]:
+def _along_world() -> list[TermTarget]:
     """Forces along the NED axes."""
     latex, towards = ("F_n", "F_e", "F_d"), ("towards north", "towards east", "downwards")
     return [
-        Target(name, "force", (Head(symbol, code),), f"a force {direction}", newtons="N")
+        TermTarget(name, "force", (Head(symbol, code),), f"a force {direction}", newtons="N")
         for name, symbol, code, direction in zip(
             ("north", "east", "down"), latex, WORLD_FORCES, towards, strict=True
         )
     ]
 
 
-def _of_water() -> list[Target]:
+def _of_water() -> list[TermTarget]:
     """Flows north and east, and water that turns about a vertical axis."""
     vn, ve = (Head(f"v_{code[1]}", code) for code in FLOWS)
     turning = (
@@ -93,9 +93,9 @@ def _of_water() -> list[Target]:
         Head(ve.latex, ve.code, VARIABLES[NORTH].latex, " * north"),
     )
     return [
-        Target("water north", "water", (vn,), "water that moves north", meters=1, seconds=-1),
-        Target("water east", "water", (ve,), "water that moves east", meters=1, seconds=-1),
-        Target("swirl", "water", turning, "water that turns about a place", seconds=-1),
+        TermTarget("water north", "water", (vn,), "water that moves north", meters=1, seconds=-1),
+        TermTarget("water east", "water", (ve,), "water that moves east", meters=1, seconds=-1),
+        TermTarget("swirl", "water", turning, "water that turns about a place", seconds=-1),
     ]
 
 

@@ -9,7 +9,7 @@ from rovsim.diagnosis.equations.products.variables import VARIABLES
 from rovsim.dynamics.laws.codes import SWIRL
 
 
-def name_terms(terms: Sequence[LawTerm]) -> list[str]:
+def name_coefficients(terms: Sequence[LawTerm]) -> list[str]:
     """Name the coefficient of each term after what it acts on, numbered where terms share that."""
     heads = [TARGETS[t.on].name.replace(" ", "_") for t in terms]
     count, names = Counter(heads), []
@@ -47,7 +47,7 @@ def _powers(factors: Sequence[int]) -> list[str]:
     return texts
 
 
-def describe(terms: Sequence[LawTerm]) -> str:
+def tell_law(terms: Sequence[LawTerm]) -> str:
     """Write a law as a sentence."""
     parts = []
     for term in terms:

@@ -21,7 +21,7 @@ KF_POSITION = ("PN", "PE", "PD")
 
 
 @dataclass(frozen=True)
-class Source:
+class ChannelSource:
     """Where a channel stands: fields of a type of message, and their factor to SI units."""
 
     series: str
@@ -32,20 +32,20 @@ class Source:
 # Kind of channel -> where it stands, the first that the log has. Altitudes are up.
 SOURCES = {
     "dataflash": {
-        "attitude": [Source("ATT", ("Roll", "Pitch", "Yaw"), DEGREE)],
-        "rates": [Source("IMU", ("GyrX", "GyrY", "GyrZ"))],
-        "specific_force": [Source("IMU", ("AccX", "AccY", "AccZ"))],
-        "depth": [Source("CTUN", ("BAlt",), -1.0), Source("BARO", ("Alt",), -1.0)],
-        "position": [Source("XKF1", KF_POSITION), Source("NKF1", KF_POSITION)],
-        "voltage": [Source("BAT", ("Volt",)), Source("CURR", ("Volt",))],
+        "attitude": [ChannelSource("ATT", ("Roll", "Pitch", "Yaw"), DEGREE)],
+        "rates": [ChannelSource("IMU", ("GyrX", "GyrY", "GyrZ"))],
+        "specific_force": [ChannelSource("IMU", ("AccX", "AccY", "AccZ"))],
+        "depth": [ChannelSource("CTUN", ("BAlt",), -1.0), ChannelSource("BARO", ("Alt",), -1.0)],
+        "position": [ChannelSource("XKF1", KF_POSITION), ChannelSource("NKF1", KF_POSITION)],
+        "voltage": [ChannelSource("BAT", ("Volt",)), ChannelSource("CURR", ("Volt",))],
     },
     "telemetry": {
-        "attitude": [Source("ATTITUDE", ("roll", "pitch", "yaw"))],
-        "rates": [Source("ATTITUDE", ("rollspeed", "pitchspeed", "yawspeed"))],
-        "specific_force": [Source("RAW_IMU", ("xacc", "yacc", "zacc"), MILLI_G)],
-        "depth": [Source("VFR_HUD", ("alt",), -1.0)],
-        "position": [Source("LOCAL_POSITION_NED", ("x", "y", "z"))],
-        "voltage": [Source("SYS_STATUS", ("voltage_battery",), 1e-3)],
+        "attitude": [ChannelSource("ATTITUDE", ("roll", "pitch", "yaw"))],
+        "rates": [ChannelSource("ATTITUDE", ("rollspeed", "pitchspeed", "yawspeed"))],
+        "specific_force": [ChannelSource("RAW_IMU", ("xacc", "yacc", "zacc"), MILLI_G)],
+        "depth": [ChannelSource("VFR_HUD", ("alt",), -1.0)],
+        "position": [ChannelSource("LOCAL_POSITION_NED", ("x", "y", "z"))],
+        "voltage": [ChannelSource("SYS_STATUS", ("voltage_battery",), 1e-3)],
     },
 }
 # Where the autopilot's Kalman filter states its status, with the same bits in both kinds of log
@@ -89,7 +89,7 @@ def _check_axes(mocap: Mocap, path: Path) -> None:
         )
 
 
-def _read(log: ArduPilotLog, sources: list[Source]) -> Channel | None:
+def _read(log: ArduPilotLog, sources: list[ChannelSource]) -> Channel | None:
     source = next((s for s in sources if s.series in log.series), None)
     if source is None:
         return None
