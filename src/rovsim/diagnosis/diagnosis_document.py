@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from rovsim.core.odds import share_odds
 from rovsim.diagnosis.advice import advise
@@ -20,7 +19,7 @@ from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
-from rovsim.diagnosis.uncertainty.identifiability import group_joint_parameters
+from rovsim.diagnosis.uncertainty.identifiability import group_connected, group_joint_parameters
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model_file import describe_model
 from rovsim.dynamics.uncertainty import correlate
@@ -172,9 +171,7 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
     adjacency = np.zeros((len(names), len(names)), bool)
     for a, b in pairs:
         adjacency[names.index(a), names.index(b)] = True
-    _, label = connected_components(adjacency, directed=False)
-    groups = [[n for n, k in zip(names, label, strict=True) if k == g] for g in np.unique(label)]
-    return sorted(groups)
+    return sorted([names[k] for k in group] for group in group_connected(adjacency))
 
 
 def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:

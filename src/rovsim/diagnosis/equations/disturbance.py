@@ -132,11 +132,10 @@ def smooth_stretch(e: Array, f: AxisFilter, period: float, std: float, lasts: fl
     """
     count = next_fast_len(2 * len(e))  # zero padding: the FFT is periodic
     z = np.exp(2j * np.pi * np.fft.rfftfreq(count))
-    b, a = f.response
     fade = np.exp(-period / lasts)
     spectrum = std**2 * (1.0 - fade**2) / np.abs(1.0 - fade / z) ** 2
-    response = np.polyval(b, z) / np.polyval(a, z)
-    return np.fft.irfft(spectrum * np.conj(response) * np.fft.rfft(e, count), count)[: len(e)]
+    smoother = spectrum * np.conj(f.respond_at(z))
+    return np.fft.irfft(smoother * np.fft.rfft(e, count), count)[: len(e)]
 
 
 def _gather(

@@ -14,6 +14,7 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import score_windows
+from rovsim.results.base import or_nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,4 +97,4 @@ def rank_alone(workspace: SearchWorkspace, base_fit: Fit, fit: Fit) -> list[Rank
 
 def _score(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Array:
     errors = score_windows(models, runs).normalised
-    return np.array([np.nan if e is None else e for e in errors])
+    return np.array([or_nan(e) for e in errors])

@@ -112,21 +112,21 @@ class AxisResidual:
 
 
 def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
-    """Filter a push on one axis as the innovations of a run would show it.
+    """Filter pushes on one axis as the innovations of a run would show them.
 
     Args:
-        push: acceleration (n,) at all readings of the run, m/s2 or rad/s2.
+        push: accelerations (..., n) at all readings of the run, m/s2 or rad/s2.
         f: filter of that axis.
         run: the run.
 
     Returns:
-        The response (m,) in the whitened innovations of the settled readings.
+        The response (..., m) in the whitened innovations of the settled readings.
     """
     b, a = f.response
-    out = np.empty(len(run.time))
+    out = np.empty(push.shape)
     for begin, end in run.innovation_segments:
-        out[begin:end] = lfilter(b, a, push[begin:end])
-    return out[run.settled]
+        out[..., begin:end] = lfilter(b, a, push[..., begin:end])
+    return out[..., run.settled]
 
 
 def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:

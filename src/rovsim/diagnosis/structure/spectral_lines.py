@@ -124,8 +124,7 @@ def _push_power(spectrum: Periodogram, lines: Sequence[int], residual: AxisResid
     total = 0.0
     for power, f, run in zip(spectrum.power, residual.filters, residual.runs, strict=True):
         z = np.exp(2j * np.pi * spectrum.frequency[lines] * run.period)
-        b, a = f.response
-        total += np.sum(power[lines] / abs(np.polyval(b, z) / np.polyval(a, z)) ** 2)
+        total += np.sum(power[lines] / abs(f.respond_at(z)) ** 2)
     return float(total / spectrum.samples)
 
 

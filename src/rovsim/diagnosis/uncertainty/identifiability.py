@@ -1,6 +1,7 @@
 """Which fitted values are only known together with others, and which may as well be absent."""
 
 import numpy as np
+from numpy import ndarray as Array
 from scipy.sparse.csgraph import connected_components
 from scipy.stats import chi2
 
@@ -19,9 +20,14 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
     names = fit.hypothesis.parameter_names
     unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
     joint = np.abs(fit.correlation[np.ix_(unsure, unsure)]) > ALIKE
-    _, label = connected_components(joint, directed=False)
-    groups = [[names[k] for k in unsure[label == g]] for g in range(label.max(initial=-1) + 1)]
+    groups = [[names[k] for k in unsure[group]] for group in group_connected(joint)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
+
+
+def group_connected(adjacency: Array) -> list[Array]:
+    """Indices of the members of each connected group of n things, of which (n, n) are adjacent."""
+    _, label = connected_components(adjacency, directed=False)
+    return [np.flatnonzero(label == group) for group in range(label.max(initial=-1) + 1)]
 
 
 def find_doubtful(fit: Fit) -> int | None:

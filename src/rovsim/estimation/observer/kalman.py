@@ -115,6 +115,11 @@ class AxisFilter:
         b = characteristic(A - np.outer(B, self.C)) - self.denominator
         return b / np.sqrt(self.variance), self.denominator
 
+    def respond_at(self, z: Array) -> Array:
+        """Frequency response (k,), complex, of `response` at z = exp(i w h) (k,)."""
+        b, a = self.response
+        return np.asarray(np.polyval(b, z) / np.polyval(a, z))
+
 
 def design_filter(kind: int, h: float, dynamics: AxisErrorDynamics, noise: AxisNoise) -> AxisFilter:
     """Design the filter of one axis for readings of a `kind` (`axis_kernels`) every h s."""

@@ -10,8 +10,8 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
+from rovsim.diagnosis.structure.residual import respond
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
@@ -104,16 +104,11 @@ def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters)
     """
     accelerations = pushes @ model.body.M_inv.T
     out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
-    response = np.empty(pushes.shape[:2])
     for i in np.flatnonzero(run.axes):
         acceleration = accelerations[:, :, i]
         acts = np.flatnonzero(np.abs(acceleration).max(axis=1) > NEGLIGIBLE)
-        if not len(acts):
-            continue
-        b, a = filters.filters[i].response
-        for begin, end in run.innovation_segments:
-            response[acts, begin:end] = lfilter(b, a, acceleration[acts, begin:end], axis=1)
-        out[i, acts] = response[acts][:, run.settled]
+        if len(acts):
+            out[i, acts] = respond(acceleration[acts], filters.filters[i], run)
     return out
 
 
