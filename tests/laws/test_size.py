@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.application.pipeline.replays import score_run
+from rovsim.application.pipeline.replays import replay_and_score
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.bounded_cache import ReadAgain, Recent, Remade, size
 from rovsim.dynamics.catalogue import built_in
@@ -128,7 +128,7 @@ def test_of_the_horizons_of_a_replay_one_is_held_and_those_that_are_kept(flown, 
 
     monkeypatch.setattr(replaying, "predict", watched)
     scored = ScoreCollector(["nominal"], settings.replay.longest)
-    kept = score_run(scored, model(), motion, settings, "2")
+    kept = replay_and_score(scored, model(), motion, settings, "2")
     assert held == [0, 0, 0, 1]  # when the open loop, 0.5, 2 and 5 s are made
     np.testing.assert_array_equal(kept.horizons["2"].nu, whole.horizons["2"].nu)
     assert scored.comparison.models["nominal"].runs["a"] == score_replay(motion, whole)

@@ -331,7 +331,7 @@ def test_a_wrench_drives_a_vehicle_without_thrusters():
     log = Commands(np.zeros(1), np.array([[3.0, 0, 0, 0, 0, 1.0]]), "wrench")
     drive = Drive.by(world, world.thrust_path.over_steps(log, np.array([0.0, 0.1])), 0.1)
     np.testing.assert_allclose(drive.wrench[0], [3, 0, 0, 0, 0, 1])
-    assert drive.acting(None).shape == (1, 1)
+    assert drive.engine_columns(None).shape == (1, 1)
 
 
 def test_a_model_file_keeps_such_a_vehicle(tmp_path):

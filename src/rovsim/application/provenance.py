@@ -20,7 +20,7 @@ from rovsim.measurement.campaign import Campaign
 
 SOURCE = Path(rovsim.__file__).parent
 MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
-OF_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
+FOUND_BY_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
 LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning.learners")
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "out", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
@@ -100,7 +100,7 @@ def _discovered(modules: set[str]) -> set[str]:
     effects and on the engine.
     """
     packages = {package for package in LOOKED_INTO if package in modules}
-    return packages | (set(OF_MODELS) if MODEL in modules else set())
+    return packages | (set(FOUND_BY_MODELS) if MODEL in modules else set())
 
 
 @cache

@@ -10,7 +10,7 @@ from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.commanded_motion.clocks import tell_following, tell_together
 from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
-from rovsim.evaluation.commanded_motion.predicted import velocity
+from rovsim.evaluation.commanded_motion.predicted import predict_velocity
 from rovsim.intake.facts import Facts
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.survey.starts import find_start
@@ -152,7 +152,7 @@ def _score(nu: Array, time: Array, commands: Commands, fit: VehicleMatch) -> flo
 
     Only axes count that the commands excite; 0 where none of these was measured.
     """
-    caused = velocity(fit.vehicle, commands, time)
+    caused = predict_velocity(fit.vehicle, commands, time)
     excited = caused.std(axis=0) > EXCITED
     correlation = _alike(nu, caused)[excited]
     measured = np.isfinite(correlation)

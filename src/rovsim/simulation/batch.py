@@ -189,7 +189,7 @@ class Batch:
         """Stack the drives for the kernels; a drive that several models share is passed once."""
         distinct, row = _distinct(drives)
         first = distinct[0]
-        columns = [drive.acting(self._reads) for drive in distinct]
+        columns = [drive.engine_columns(self._reads) for drive in distinct]
         if len(distinct) == 1:
             wrench, force, ramp = first.wrench[None], columns[0][None], first.ramp[None]
         else:

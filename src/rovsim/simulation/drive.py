@@ -124,7 +124,7 @@ class Drive:
     read: Array = field(default_factory=lambda: np.empty((0, 0)))
     channels: tuple[str, ...] = ()
 
-    def acting(self, reads: Reads | None) -> Array:
+    def engine_columns(self, reads: Reads | None) -> Array:
         """The columns that the engine takes: forces, angles, then those that its effects read.
 
         Columns of channels that this model does not have are zero. The order is that of

@@ -21,7 +21,7 @@ AT_ONCE = 1 << 16  # samples in a stack: filters take some twenty times its room
 
 
 @dataclass(frozen=True)
-class Embedded:
+class PaddedWindow:
     """A window of a replay, and by how much it is extended.
 
     Attributes:
@@ -37,7 +37,7 @@ class Embedded:
     last: int
 
 
-def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[Embedded]:
+def pad_windows(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[PaddedWindow]:
     """Extend windows of a sampled run within their usable stretches.
 
     Args:
@@ -50,13 +50,13 @@ def embed(motion: Motion, spans: Sequence[tuple[int, int]], reach: int) -> list[
     for a, b in spans:
         start, end = next(((s, e) for s, e in stretches if s <= a < e), (a, b + 1))
         before, after = min(reach, a - start), max(min(reach, end - 1 - b), 0)
-        windows.append(Embedded(before, after, a, b))
+        windows.append(PaddedWindow(before, after, a, b))
     return windows
 
 
-def derive(
+def differentiate_windows(
     paths: Sequence[Array],
-    windows: Sequence[Embedded],
+    windows: Sequence[PaddedWindow],
     motions: Sequence[Motion],
     signals: SignalSettings,
 ) -> list[Array]:
@@ -94,7 +94,7 @@ def derive(
     return derivatives
 
 
-def _count_finite(path: Array, window: Embedded) -> int:
+def _count_finite(path: Array, window: PaddedWindow) -> int:
     """Number of samples until a path diverges; 0 if it diverges inside its window."""
     finite = np.isfinite(path).all(axis=1)
     count = len(path) if finite.all() else int(np.argmin(finite))

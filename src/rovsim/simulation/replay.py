@@ -20,7 +20,7 @@ from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import drive_by_log
-from rovsim.simulation.filter_padding import Embedded, derive, embed
+from rovsim.simulation.filter_padding import PaddedWindow, differentiate_windows, pad_windows
 from rovsim.simulation.initial_memory import remembered_at
 from rovsim.simulation.measured_states import interpolate, interpolate_state, undo_mocap_view
 from rovsim.simulation.prediction import Prediction, Replay
@@ -184,15 +184,19 @@ def _predict_samples(
     """Predict at the samples of a uniform clock, through the filter of the measurement."""
     first = cases[0].motion
     signals = settings.signals.suited(first)
-    windows = embed(first, spans, round(signals.reach / time_step(first.time)))
+    windows = pad_windows(first, spans, round(signals.reach / time_step(first.time)))
     paths = [path for case in cases for path in _report_samples(case, windows, settings.replay)]
     motions = [case.motion for case in cases for _ in windows]
-    derived = iter(zip(paths, derive(paths, windows * len(cases), motions, signals), strict=True))
+    derived = iter(
+        zip(
+            paths, differentiate_windows(paths, windows * len(cases), motions, signals), strict=True
+        )
+    )
     return [_gather(len(first.time), windows, islice(derived, len(windows))) for _ in cases]
 
 
 def _report_samples(
-    case: ReplayCase, within: Sequence[Embedded], settings: ReplaySettings
+    case: ReplayCase, within: Sequence[PaddedWindow], settings: ReplaySettings
 ) -> list[Array]:
     """Simulate each window; returns the poses (k, 7) that the motion capture would report."""
     model, motion, _ = case
@@ -208,7 +212,7 @@ def _report_samples(
 
 
 def _gather(
-    count: int, within: Sequence[Embedded], derived: Iterable[tuple[Array, Array]]
+    count: int, within: Sequence[PaddedWindow], derived: Iterable[tuple[Array, Array]]
 ) -> Prediction:
     """Put the poses of all windows and their derivatives into one prediction at `count` samples."""
     prediction = Prediction.empty(count)

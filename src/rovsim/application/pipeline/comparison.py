@@ -6,7 +6,7 @@ import numpy as np
 
 from rovsim.application.pipeline.bands import bands_when_asked, cover_test_runs
 from rovsim.application.pipeline.measured_campaign import MeasuredCampaign
-from rovsim.application.pipeline.replays import replay_when_asked, score_run
+from rovsim.application.pipeline.replays import replay_and_score, replay_when_asked
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
 from rovsim.core.progress import counted
@@ -40,8 +40,8 @@ def compare(
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
         for model in models:
-            prediction = score_run(scores, model, motion, settings, STANDARD_HORIZON, OPEN_LOOP)
-            replays[model.name].keep(run, prediction)
+            replay = replay_and_score(scores, model, motion, settings, STANDARD_HORIZON, OPEN_LOOP)
+            replays[model.name].keep(run, replay)
         for search in searches:
             search.add_run(motion)
         forces[run] = budgets[run].totals

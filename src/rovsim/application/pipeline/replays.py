@@ -43,11 +43,11 @@ def score_models(
     scores = ScoreCollector((model.name for model in models), settings.replay.longest)
     for run in counted(list(motions), "replaying"):
         for model in models:
-            score_run(scores, model, motions[run], settings)
+            replay_and_score(scores, model, motions[run], settings)
     return scores
 
 
-def score_run(
+def replay_and_score(
     scores: ScoreCollector, model: Model, motion: Motion, settings: SimulationSettings, *kept: str
 ) -> Replay:
     """Replay a run horizon by horizon, and add each prediction to the scores.

@@ -13,7 +13,7 @@ from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import Ladder
 
-OF_MODELS = ("ladder", "error_by_axis", "error_growth")  # figures that show each of them
+MODEL_FIGURES = ("ladder", "error_by_axis", "error_growth")  # figures that show each of them
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def track_study(
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
     steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
     by_model = {path.parent.name: path for path in files.models}
-    figures = [path for path in files.kept if path.stem in OF_MODELS]
+    figures = [path for path in files.kept if path.stem in MODEL_FIGURES]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
     study = TrackedRun(experiment=campaign, name="study", tags={"model": "study"}, files=files.kept)
     parent = track(settings, study)

@@ -1,4 +1,4 @@
-"""Decorators that compile functions with Numba and cache them on disk (`engine.cache`)."""
+"""Decorators that compile functions with Numba and cache them on disk (`compilation.cache`)."""
 
 from contextlib import contextmanager
 from pathlib import Path

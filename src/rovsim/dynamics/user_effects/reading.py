@@ -13,7 +13,7 @@ from typing import Any, Mapping
 
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
-from rovsim.dynamics.effects.base.kernels import compiled_alone, line_that_raises, says
+from rovsim.dynamics.effects.base.kernels import compiled_alone, line_that_raises, mentions
 from rovsim.dynamics.user_effects.declarations import TEXTS, find_faults, refused
 from rovsim.dynamics.user_effects.trials import TRIALS
 
@@ -121,7 +121,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
         raise refused(
             f"'wrench' does not compile: {_reason(str(error))}",
             where,
-            "arithmetic on the numbers of `at` and `p`, functions of math, and if",
+            "arithmetic on the numbers of `at` and `p`, functions of math, if, @inlined helpers",
         ) from None
     returned = kernel.nopython_signatures[0].return_type
     real = (types.Float, types.Integer)
@@ -139,7 +139,7 @@ def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
             where,
             "a wrench at every state: nobody hears of an error inside the simulation",
         )
-    if says(cls.wrench, "print"):
+    if mentions(cls.wrench, "print"):
         raise refused("'wrench' prints", where, "a wrench alone: it is called at every step")
 
 

@@ -21,7 +21,7 @@ from rovsim.simulation.drive import Drive
 BEFORE, AFTER = 1.0, 3.0  # s that are predicted before the first and after the last command
 
 
-def wrench(vehicle: Vehicle, commands: Commands) -> Array:
+def predict_wrench(vehicle: Vehicle, commands: Commands) -> Array:
     """Static wrench (m, 6) of the thrusters at each of m logged commands, N and N m, FRD."""
     model = nominal(vehicle)
     return Drive.by(model, model.thrust_path.at(commands, 0.0, 1.0), 1.0).wrench
@@ -35,7 +35,7 @@ def can_push_sideways(vehicle: Vehicle) -> bool:
     return bool(np.abs(nominal(vehicle).body.B[AXES.index("sway")]).max(initial=0.0) > 0.0)
 
 
-def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
+def predict_velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
     """Body velocity (n, 6) that commands cause, m/s and rad/s, FRD.
 
     Args:
@@ -43,7 +43,7 @@ def velocity(vehicle: Vehicle, commands: Commands, time: Array) -> Array:
         commands: logged commands; each holds until the next one.
         time: evenly spaced times (n,), s.
     """
-    tau = held(commands.time, wrench(vehicle, commands), time)
+    tau = held(commands.time, predict_wrench(vehicle, commands), time)
     return respond(vehicle, tau, time_step(time))
 
 
@@ -63,7 +63,7 @@ def cause(
     """
     end = min(float(commands.time[-1]), begin + longest)
     time = np.arange(begin - BEFORE, end + AFTER, STEP)
-    return time, velocity(vehicle, commands, time)
+    return time, predict_velocity(vehicle, commands, time)
 
 
 def respond(vehicle: Vehicle, tau: Array, step: float) -> Array:

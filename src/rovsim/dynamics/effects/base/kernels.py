@@ -21,7 +21,7 @@ def compiled_alone(cls: Any) -> Any:
 
 
 @cache
-def says(kernel: Callable, name: str) -> bool:
+def mentions(kernel: Callable, name: str) -> bool:
     """Whether a kernel, or a helper that it calls directly or indirectly, contains this name."""
     return any(name in function.__code__.co_names for function in _written_for(kernel))
 

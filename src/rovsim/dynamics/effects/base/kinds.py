@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.core.rotations import Rigid
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base.effect import Effect, Requirement
-from rovsim.dynamics.effects.base.kernels import says
+from rovsim.dynamics.effects.base.kernels import mentions
 from rovsim.dynamics.engine.types import At, Vector6
 
 
@@ -58,7 +58,7 @@ class Wrench(Effect):
     @classmethod
     def reads(cls) -> bool:
         """Whether its kernel, or a helper that it calls, reads actuators or channels."""
-        return bool(cls.channels) or says(cls.wrench, "actuators")
+        return bool(cls.channels) or mentions(cls.wrench, "actuators")
 
 
 class StochasticCurrent(Effect):
