@@ -1,6 +1,6 @@
 """Fossen's equation of motion, compiled by Numba.
 
-`extra(at, own, body, acting)` returns the wrench (6) of all wrench effects of a model. This
+`extra(at, parameters, body, acting)` returns the wrench (6) of all wrench effects of a model. This
 compiled function is passed down the calls, so that LLVM inlines the kernels of the effects.
 
     M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r + g(eta)
@@ -8,8 +8,9 @@ compiled function is passed down the calls, so that LLVM inlines the kernels of 
 
 State: position in NED, quaternion (w, x, y, z) body to world, nu in body axes. SI, float64, FRD at
 CO. Vectors are tuples (`vectors`). Arguments in common: `body`, the `Constants` of one parameter
-set; `own`, its `WrenchParameters`; `step`, the present one; `acting`, see `types.Inputs`. They stay
-apart: taking one that holds arrays out of a further tuple costs half as much as a step (measured).
+set; `parameters`, its `WrenchParameters`; `step`, the present one; `acting`, see `types.Inputs`.
+They stay apart: taking one that holds arrays out of a further tuple costs half as much as a step
+(measured).
 """
 
 import numpy as np
@@ -126,23 +127,23 @@ def thrust_loss(acting, advance, B, directions, nu_r):
 
 
 @inline_anew
-def accelerate(extra, at, body, own, thrust, acting, level):
+def accelerate(extra, at, body, parameters, thrust, acting, level):
     """nu_dot (6) under a thruster wrench (6); level: z in NED where a floating vehicle rests."""
     tau = add6(thrust, -1.0, coriolis(body.M_RB, at.nu))
     tau = add6(tau, -1.0, coriolis(body.M_A, at.nu_r))
     tau = add6(tau, 1.0, at.drag)
     tau = add6(tau, 1.0, restoring(body.net_weight, body.restoring_lever, at.R))
     tau = add6(tau, 1.0, times6(body.M_A, at.nu_c_dot))
-    tau = add6(tau, 1.0, extra(at, own, body, acting))
+    tau = add6(tau, 1.0, extra(at, parameters, body, acting))
     if body.coupled != 0.0:
         tau = add6(tau, 1.0, coupled_damping(body.coupling, at.nu_r))
     if body.advance != 0.0:
         loss = thrust_loss(acting, body.advance, body.B, body.directions, at.nu_r)
         tau = add6(tau, 1.0, loss)
     if body.uncommon != 0.0:
-        rare = (body.waterplane, body.products, body.factors, body.surfaces, body.lifting)
+        uncommon = (body.waterplane, body.products, body.factors, body.surfaces, body.lifting)
         depth, count = at.position[2] - level, body.B.shape[1]
-        tau = add6(tau, 1.0, further_forces(rare, depth, at.R[2], at.nu_r, acting, count))
+        tau = add6(tau, 1.0, further_forces(uncommon, depth, at.R[2], at.nu_r, acting, count))
     return times6(body.M_inv, tau)
 
 
@@ -160,7 +161,7 @@ def diagonal(a, b):
 
 
 @inline_anew
-def slope(extra, t, x, body, own, step, correction, surroundings):
+def slope(extra, t, x, body, parameters, step, correction, surroundings):
     """Time derivative of the state x at time t.
 
     Args:
@@ -168,7 +169,7 @@ def slope(extra, t, x, body, own, step, correction, surroundings):
         t: s since the start of the recording.
         x: the state.
         body: constants of the equation.
-        own: parameters of the wrench effects.
+        parameters: of the wrench effects.
         step: the present step.
         correction: (6) additional acceleration, m/s2 and rad/s2. It must be zero along axes that
             are held, as `M_inv` is, so that they stay at rest.
@@ -192,5 +193,5 @@ def slope(extra, t, x, body, own, step, correction, surroundings):
         surroundings.tank,
         surroundings.axes,
     )
-    nu_dot = add6(accelerate(extra, at, body, own, thrust, acting, level), 1.0, correction)
+    nu_dot = add6(accelerate(extra, at, body, parameters, thrust, acting, level), 1.0, correction)
     return State(into_world(R, x.nu), quaternion_rate(x.attitude, x.nu), nu_dot)

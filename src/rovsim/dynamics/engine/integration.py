@@ -47,19 +47,19 @@ def renormalised(x):
 
 
 @inline_anew
-def runge_kutta(extra, x, body, own, step, correction, surroundings):
+def runge_kutta(extra, x, body, parameters, step, correction, surroundings):
     """One classical Runge-Kutta 4 step; returns the state and the mean nu (Nystroem).
 
     `correction` (6) is an additional acceleration, the mean over the step.
     """
     t, h, ramp = step.t, step.h, step.ramp
     first, last = add6(correction, -0.5, ramp), add6(correction, 0.5, ramp)
-    k1 = slope(extra, t, x, body, own, step, first, surroundings)
+    k1 = slope(extra, t, x, body, parameters, step, first, surroundings)
     x2, half = moved(x, 0.5 * h, k1), t + 0.5 * h
-    k2 = slope(extra, half, x2, body, own, step, correction, surroundings)
+    k2 = slope(extra, half, x2, body, parameters, step, correction, surroundings)
     x3 = moved(x, 0.5 * h, k2)
-    k3 = slope(extra, half, x3, body, own, step, correction, surroundings)
-    k4 = slope(extra, t + h, moved(x, h, k3), body, own, step, last, surroundings)
+    k3 = slope(extra, half, x3, body, parameters, step, correction, surroundings)
+    k4 = slope(extra, t + h, moved(x, h, k3), body, parameters, step, last, surroundings)
     mean = add6(add6(add6(x.nu, h / 6.0, k1.nu), h / 6.0, k2.nu), h / 6.0, k3.nu)
     x = moved(moved(x, h / 6.0, k1), h / 3.0, k2)
     return renormalised(moved(moved(x, h / 3.0, k3), h / 6.0, k4)), mean
@@ -74,8 +74,8 @@ def through_water(x, body):
 @inline_internal
 def lagged(memory, nu_r, time):
     """Fluid memory (6) after moving at a constant nu_r for `time`, in time constants."""
-    kept = exp(-time)
-    return add6(add6(ZERO6, kept, memory), 1.0 - kept, nu_r)
+    decay = exp(-time)
+    return add6(add6(ZERO6, decay, memory), 1.0 - decay, nu_r)
 
 
 @inline_internal
@@ -99,14 +99,14 @@ def memory_after(memory, x, after, h, body):
 
 
 @inline_anew
-def learned(extra, x, body, own, step, push, surroundings, residual, scratch):
+def learned(extra, x, body, parameters, step, push, surroundings, residual, scratch):
     """Learned acceleration (6) at x: tau_res = M a_res, so it adds to nu_dot; zero without one.
 
     `push` (6) is an additional acceleration, under which the residual sees the model.
     """
     if residual is None:
         return ZERO6
-    base = slope(extra, step.t, x, body, own, step, push, surroundings)
+    base = slope(extra, step.t, x, body, parameters, step, push, surroundings)
     R = rotation(x.attitude)
     assemble_one(residual, x.nu, base.nu, step.thrust, R, scratch.features)
     evaluate(residual, scratch.features, scratch.a_res)
@@ -120,13 +120,13 @@ def empty_scratch():
 
 
 @inline_anew
-def stepped(extra, x, memory, body, own, step, surroundings, residual, scratch):
+def stepped(extra, x, memory, body, parameters, step, surroundings, residual, scratch):
     """State and fluid memory after one step; the learned residual is constant over the step."""
     push = ZERO6
     if body.memory_decay != 0.0:
         push = push_over_step(x, memory, step.h, body)
-    a_res = learned(extra, x, body, own, step, push, surroundings, residual, scratch)
-    after, _ = runge_kutta(extra, x, body, own, step, add6(push, 1.0, a_res), surroundings)
+    a_res = learned(extra, x, body, parameters, step, push, surroundings, residual, scratch)
+    after, _ = runge_kutta(extra, x, body, parameters, step, add6(push, 1.0, a_res), surroundings)
     if body.memory_decay != 0.0:
         memory = memory_after(memory, x, after, step.h, body)
     return after, memory
@@ -139,20 +139,22 @@ def integrate(extra, jobs, time, stride, world, out):
     `time` (k+1,) are the instants, in s, between the steps of the inputs; `out` is (.., 13).
     """
     inputs, residual, scratch = world.inputs, world.residual, empty_scratch()
-    constants, parameters = world.constants, world.parameters
+    constants, parameter_sets = world.constants, world.parameters
     surroundings = surroundings_of(world.site)
     for job in range(jobs.first.size):
         m, first, row = jobs.member[job], jobs.first[job], jobs.out[job]
-        body, own = constants_of(constants, m), parameters_of(parameters, m)
-        x, left = state_of(jobs.state[job]), stride
+        body, parameters = constants_of(constants, m), parameters_of(parameter_sets, m)
+        x, remaining = state_of(jobs.state[job]), stride
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for n in range(first, first + jobs.steps[job]):
             step = step_of(inputs, inputs.row[m], n, time[n], time[n + 1] - time[n], body)
-            x, memory = stepped(extra, x, memory, body, own, step, surroundings, residual, scratch)
-            left -= 1
-            if left == 0:
+            x, memory = stepped(
+                extra, x, memory, body, parameters, step, surroundings, residual, scratch
+            )
+            remaining -= 1
+            if remaining == 0:
                 store(x, out[row])
-                row, left = row + 1, stride
+                row, remaining = row + 1, stride
 
 
 @entry
@@ -163,11 +165,11 @@ def advance(extra, state, memory, t, h, world):
         constants_of(world.constants, 0),
         surroundings_of(world.site),
     )
-    m, scratch, own = vector6(memory), empty_scratch(), parameters_of(world.parameters, 0)
+    m, scratch, parameters = vector6(memory), empty_scratch(), parameters_of(world.parameters, 0)
     inputs, residual = world.inputs, world.residual
     for n in range(inputs.duration.size):
         step = even_step_of(inputs, 0, n, t + n * h, h)
-        x, m = stepped(extra, x, m, body, own, step, surroundings, residual, scratch)
+        x, m = stepped(extra, x, m, body, parameters, step, surroundings, residual, scratch)
     store(x, state)
     for i in range(6):
         memory[i] = m[i]
@@ -185,18 +187,18 @@ def heun(extra, state, memory, t, h, pushes, world, out):
         constants_of(world.constants, 0),
         surroundings_of(world.site),
     )
-    m, scratch, own = vector6(memory), empty_scratch(), parameters_of(world.parameters, 0)
+    m, scratch, parameters = vector6(memory), empty_scratch(), parameters_of(world.parameters, 0)
     inputs, residual = world.inputs, world.residual
     for n in range(pushes.shape[0]):
         now, push, recalled = t + n * h, vector6(pushes[n]), memory_push(body, m)
         step = even_step_of(inputs, 0, n, now, h)
-        a_res = learned(extra, x, body, own, step, recalled, surroundings, residual, scratch)
+        a_res = learned(extra, x, body, parameters, step, recalled, surroundings, residual, scratch)
         push = add6(push, 1.0, a_res)
-        k1 = slope(extra, now, x, body, own, step, add6(push, 1.0, recalled), surroundings)
+        k1 = slope(extra, now, x, body, parameters, step, add6(push, 1.0, recalled), surroundings)
         m1 = add6(through_water(x, body), -1.0, m)
         x1, ahead = moved(x, h, k1), add6(m, h * body.memory_decay, m1)
         push = add6(push, 1.0, memory_push(body, ahead))
-        k2 = slope(extra, now + h, x1, body, own, step, push, surroundings)
+        k2 = slope(extra, now + h, x1, body, parameters, step, push, surroundings)
         m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
         m = add6(m, 0.5 * h * body.memory_decay, add6(m1, 1.0, m2))
@@ -212,15 +214,15 @@ def accelerations(extra, times, states, memory, world, out):
     `memory` (n, 6) is the fluid memory at each state; empty: none.
     """
     inputs, residual, scratch = world.inputs, world.residual, empty_scratch()
-    body, own = constants_of(world.constants, 0), parameters_of(world.parameters, 0)
+    body, parameters = constants_of(world.constants, 0), parameters_of(world.parameters, 0)
     surroundings = surroundings_of(world.site)
     for n in range(times.size):
         x, push = state_of(states[n]), ZERO6
         step = even_step_of(inputs, inputs.row[0], n, times[n], 0.0)
         if memory.size:
             push = memory_push(body, vector6(memory[n]))
-        a_res = learned(extra, x, body, own, step, push, surroundings, residual, scratch)
+        a_res = learned(extra, x, body, parameters, step, push, surroundings, residual, scratch)
         push = add6(push, 1.0, a_res)
-        nu_dot = slope(extra, times[n], x, body, own, step, push, surroundings).nu
+        nu_dot = slope(extra, times[n], x, body, parameters, step, push, surroundings).nu
         for i in range(6):
             out[n, i] = nu_dot[i]

@@ -90,13 +90,13 @@ KERNEL = """
 {id}_parameters = {name}.named_parameters()
 """
 CHANNELS = "{id}_channels = {name}.named_channels()\n"
-READING = "        seen = reading_at(at, actuators_at(at, layout, acting), {channels})\n"
+READING = "        reading = reading_at(at, actuators_at(at, layout, acting), {channels})\n"
 PUSH = """\
     if p[{acts}] != 0.0:
-        own = {id}_parameters(
+        effect_parameters = {id}_parameters(
 {values}
         )
-{reading}        tau = add6(tau, 1.0, {id}_wrench({at}, own))
+{reading}        tau = add6(tau, 1.0, {id}_wrench({at}, effect_parameters))
 """
 COLUMNS, MARGIN = 88, " " * 12  # columns and indentation of the parameters in `PUSH`
 
@@ -173,7 +173,7 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
             id=wrench.id,
             acts=acts,
             values=textwrap.indent(values, MARGIN),
-            at="seen" if wrench.reads() else "at",
+            at="reading" if wrench.reads() else "at",
             reading=_reading(wrench, channel) if wrench.reads() else "",
         )
         acts, channel = end, channel + len(wrench.channels)

@@ -146,27 +146,27 @@ def observe(extra, jobs, world, correction, out):
     """
     inputs, time, ends, known = world.inputs, correction.time, correction.ends, correction.known
     by_velocity, decay, gains = correction.by_velocity, correction.decay, correction.gains
-    constants, parameters = world.constants, world.parameters
+    constants, parameter_sets = world.constants, world.parameters
     surroundings = surroundings_of(world.site)
     for job in range(jobs.first.size):
         m, first, at = jobs.member[job], jobs.first[job], jobs.out[job]
         x, body = state_of(jobs.state[job]), constants_of(constants, m)
-        own = parameters_of(parameters, m)
+        parameters = parameters_of(parameter_sets, m)
         gain_pose, gain_nu = vector6(gains[0]), each6(body.free, vector6(gains[1]))
         gain_a = each6(body.free, vector6(gains[2]))
         a, n = ZERO6, ends[first]
         memory = vector6(jobs.memory[job]) if jobs.memory.size else ZERO6
         for k in range(first + 1, first + 1 + jobs.steps[job]):
-            mean, lasts = ZERO6, time[ends[k]] - time[n]
+            mean, duration = ZERO6, time[ends[k]] - time[n]
             while n < ends[k]:
-                t, h, before, push = time[n], time[n + 1] - time[n], x, a
+                t, h, previous, push = time[n], time[n + 1] - time[n], x, a
                 if body.memory_decay != 0.0:
                     push = add6(a, 1.0, push_over_step(x, memory, h, body))
                 step = step_of(inputs, inputs.row[m], n, t, h, body)
-                x, average = runge_kutta(extra, x, body, own, step, push, surroundings)
+                x, average = runge_kutta(extra, x, body, parameters, step, push, surroundings)
                 if body.memory_decay != 0.0:
-                    memory = memory_after(memory, before, x, h, body)
-                mean = add6(mean, h / lasts, average)
+                    memory = memory_after(memory, previous, x, h, body)
+                mean = add6(mean, h / duration, average)
                 a, n = each6(vector6(decay[n]), a), n + 1
             y = correction.readings[correction.row[m], k]
             e = velocity_error(mean, y) if by_velocity else pose_error(x, y, known)

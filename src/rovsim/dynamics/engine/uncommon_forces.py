@@ -44,13 +44,13 @@ def product(factors, v):
     factors (4): element 0 is the axis of the force, the others are i for v_i, 6 + i for |v_i|, and
     -1 for none.
     """
-    found = 1.0
+    value = 1.0
     for k in range(1, 4):
         if factors[k] >= 6:
-            found *= abs(v[factors[k] - 6])
+            value *= abs(v[factors[k] - 6])
         elif factors[k] >= 0:
-            found *= v[factors[k]]
-    return found
+            value *= v[factors[k]]
+    return value
 
 
 @inline_internal

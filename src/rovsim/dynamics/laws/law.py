@@ -103,11 +103,11 @@ def term(at, p, k):
 @inlined
 def total(p, on, values):
     """Sum of the terms that act on `on`."""
-    found = 0.0
+    subtotal = 0.0
     for k in range(TERMS):
         if int(p[STRIDE * k + 2]) == on:
-            found += values[k]
-    return found
+            subtotal += values[k]
+    return subtotal
 
 
 @inlined

@@ -17,10 +17,10 @@ OTHER = 12  # code of a second thrust as the further factor; below, velocities a
 @inlined
 def along(force, p, first):
     """Thrust along an axis, N or N m: p[first:], a row of the allocation, times the forces."""
-    found = 0.0
+    thrust = 0.0
     for i in range(min(force.size, THRUSTERS)):
-        found += p[first + i] * force[i]
-    return found
+        thrust += p[first + i] * force[i]
+    return thrust
 
 
 class ThrustLaw(Wrench):

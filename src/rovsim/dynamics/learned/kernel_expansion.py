@@ -112,24 +112,26 @@ def _kernel(data, part, x, scratch):
 def _mean(data, part, k, out):
     """Write the mean of the outputs of a part into out (m,), from its kernel values k (n',)."""
     for row in range(0, part.share, PASS):
-        four = products(part.weights, row, k)
+        sums = products(part.weights, row, k)
         for o in range(min(PASS, part.share - row)):
-            out[part.first + row + o] = data[HEADER + part.first + row + o] + four[o]
+            out[part.first + row + o] = data[HEADER + part.first + row + o] + sums[o]
 
 
 @plain
 def _variance_share(part, k, n, rank):
     """Compute rho from the kernel values k at n points and the first `rank` vectors."""
-    known = 0.0
+    explained = 0.0
     if part.identity != 0.0:
         for i in range(n):
-            known += k[i] * k[i]
-    known *= part.identity
+            explained += k[i] * k[i]
+    explained *= part.identity
     for row in range(0, rank, PASS):
         a, b, c, d = products(part.vectors, row, k)
         s = part.spectrum
-        known += (s[row] * a * a + s[row + 1] * b * b) + (s[row + 2] * c * c + s[row + 3] * d * d)
-    return min(max(1.0 - known, 0.0), 1.0) if known == known else known
+        explained += (s[row] * a * a + s[row + 1] * b * b) + (
+            s[row + 2] * c * c + s[row + 3] * d * d
+        )
+    return min(max(1.0 - explained, 0.0), 1.0) if explained == explained else explained
 
 
 @plain
@@ -140,8 +142,8 @@ def faded(data, x, scratch, out):
         k = _kernel(data, part, x, scratch)
         _mean(data, part, k, out)
         if data[FADING_RANK] > 0.0:
-            known = 1.0 - _variance_share(part, k, int(data[POINTS]), int(data[FADING_RANK]))
-            share = min(known / max(1.0 - part.limit, 1e-300), 1.0)
+            explained = 1.0 - _variance_share(part, k, int(data[POINTS]), int(data[FADING_RANK]))
+            share = min(explained / max(1.0 - part.limit, 1e-300), 1.0)
             for o in range(part.first, part.first + part.share):
                 out[o] *= share
 

@@ -81,7 +81,7 @@ def neighbours(data, x, scratch, out):
     first, last = last, last + leaves * wide * LANES
     points = data[first:last].reshape((leaves, wide, LANES))
     rows, last = data[last : last + leaves * LANES], last + leaves * LANES
-    given, targets = data[last : last + n * d].reshape((n, d)), data[last + n * d :]
+    unrotated, targets = data[last : last + n * d].reshape((n, d)), data[last + n * d :]
     turned, near, row = scratch[:wide], scratch[LANES:], scratch[LANES + MOST_NEIGHBOURS :]
     place = scratch[LANES + 2 * MOST_NEIGHBOURS :]
     z = scratch[LANES + 3 * MOST_NEIGHBOURS :][:wide]
@@ -89,7 +89,7 @@ def neighbours(data, x, scratch, out):
     scaled(data, HEADER, d, x, z)
     _turn(axes, z, turned)
     query = Query(turned, z, _squared_length(z[:d]))
-    search(Tree(boxes, points, given, rows), query, Nearest(near, row, place, k), rest)
+    search(Tree(boxes, points, unrotated, rows), query, Nearest(near, row, place, k), rest)
     if near[k - 1] == inf:  # x is not finite, or too far away to measure
         out[:m] = nan
         return

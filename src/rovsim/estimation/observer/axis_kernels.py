@@ -48,12 +48,12 @@ def transpose(A):
 @njit(**INTERNAL)
 def increase(A, B):
     """Add B to A (n, m) in place; the largest size of what was added, and of what is there now."""
-    added, there = 0.0, 0.0
+    increment, size = 0.0, 0.0
     for i in range(A.shape[0]):
         for j in range(A.shape[1]):
             A[i, j] += B[i, j]
-            added, there = max(added, abs(B[i, j])), max(there, abs(A[i, j]))
-    return added, there
+            increment, size = max(increment, abs(B[i, j])), max(size, abs(A[i, j]))
+    return increment, size
 
 
 @njit(**INTERNAL)
@@ -139,13 +139,13 @@ def solve_steady_state(
         for j in range(n):
             gain[i] += P[i, j] * C[j]
         variance += C[i] * gain[i]
-    left = np.zeros((n, n))
-    add_to_diagonal(left, 1.0)
+    correction = np.zeros((n, n))
+    add_to_diagonal(correction, 1.0)
     for i in range(n):
         gain[i] /= variance
         for j in range(n):
-            left[i, j] -= gain[i] * C[j]
-    return F, C, gain, variance, characteristic(multiply(F, left)), noise_denominator
+            correction[i, j] -= gain[i] * C[j]
+    return F, C, gain, variance, characteristic(multiply(F, correction)), noise_denominator
 
 
 @njit(**INTERNAL)
@@ -166,10 +166,10 @@ def solve_riccati(F, C, Q, r):
         add_to_diagonal(W, 1.0)
         W = invert(W)
         AW, across = multiply(A, W), transpose(A)
-        added, there = increase(H, multiply(multiply(across, H), multiply(W, A)))
+        increment, size = increase(H, multiply(multiply(across, H), multiply(W, A)))
         increase(G, multiply(AW, multiply(G, across)))
         A = multiply(AW, A)
-        if added <= CONVERGED * there:
+        if increment <= CONVERGED * size:
             break
     return H
 
@@ -178,15 +178,15 @@ def solve_riccati(F, C, Q, r):
 def characteristic(A):
     """Coefficients of det(z I - A), highest power first (Faddeev-LeVerrier)."""
     n = len(A)
-    found, M = np.zeros(n + 1), np.zeros((n, n))
-    found[0] = 1.0
+    coefficients, M = np.zeros(n + 1), np.zeros((n, n))
+    coefficients[0] = 1.0
     for k in range(1, n + 1):
         M = multiply(A, M)
-        add_to_diagonal(M, found[k - 1])
+        add_to_diagonal(M, coefficients[k - 1])
         AM = multiply(A, M)
         for i in range(n):
-            found[k] -= AM[i, i] / k
-    return found
+            coefficients[k] -= AM[i, i] / k
+    return coefficients
 
 
 @njit(inline="always", **INTERNAL)
@@ -274,9 +274,12 @@ def misfit(noise, kind, h, moved, denominator, noise_denominator, e, spans, kept
         kept: which of them count (n,).
         shown: which are there at all (n,).
     """
-    _, _, _, variance, own, own_noise = solve_steady_state(
+    _, _, _, variance, new_denominator, new_noise_denominator = solve_steady_state(
         kind, h, moved, noise[0], noise[1], noise[2], noise[3], noise[4]
     )
-    b, a = convolve(own_noise, denominator), convolve(noise_denominator, own)
+    b, a = (
+        convolve(new_noise_denominator, denominator),
+        convolve(noise_denominator, new_denominator),
+    )
     squares, count = sum_of_squares(b, a, e, spans, kept, shown)
     return squares / variance, np.log(variance), count

@@ -87,10 +87,10 @@ def least_cost(power, white, others, low, high):
         free = ((slope < 0.0) & (x < high)) | ((slope > 0.0) & (x > low))
         step = take_step(slope, curvature, damping, free)
         new = np.minimum(np.maximum(x + step, low), high)
-        found, new_slope, new_curvature = evaluate(new, power, white, others)
-        if found <= cost:
-            gained = cost - found
-            x, cost, slope, curvature = new, found, new_slope, new_curvature
+        new_cost, new_slope, new_curvature = evaluate(new, power, white, others)
+        if new_cost <= cost:
+            gained = cost - new_cost
+            x, cost, slope, curvature = new, new_cost, new_slope, new_curvature
             damping *= LESS
             if gained < COST_TOLERANCE * len(power):
                 break
