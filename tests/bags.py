@@ -9,7 +9,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from rovsim.core.rotations import from_matrix
-from rovsim.measurement.recording.rosbag2.definitions import MAVROS
+from rovsim.measurement.recording.formats.rosbag2.definitions import MAVROS
 
 START = 1_750_000_000.0  # s, arrival of the first message
 POSE, ODOMETRY = "geometry_msgs/msg/PoseStamped", "nav_msgs/msg/Odometry"

@@ -18,6 +18,7 @@ ALIKE = (  # found by looking into the folder: each says itself what it is
     "apps/cli/commands",
     "application/export/targets",
     "learning/learners",
+    "measurement/recording/formats",
 )
 
 

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-import rovsim.measurement.recording as recording_package
+import rovsim.measurement.recording.formats as formats_package
 from recordings import (
     AXES,
     FORMATS,
@@ -67,10 +67,10 @@ def plain_reader(tmp_path, monkeypatch):
     """A format that one more file in the folder of readers declares."""
     folder = tmp_path / "readers"
     write_lines(folder / "plain.py", [ONE_FILE])
-    monkeypatch.setattr(recording_package, "__path__", [*recording_package.__path__, str(folder)])
+    monkeypatch.setattr(formats_package, "__path__", [*formats_package.__path__, str(folder)])
     yield "plain"
-    sys.modules.pop(f"{recording_package.__name__}.plain", None)
-    vars(recording_package).pop("plain", None)
+    sys.modules.pop(f"{formats_package.__name__}.plain", None)
+    vars(formats_package).pop("plain", None)
 
 
 def test_a_reader_is_one_file(tmp_path, plain_reader):

@@ -16,7 +16,7 @@ from rovsim.core.rotations import matrix
 from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.recording.qtm_tsv import read_qtm
+from rovsim.measurement.recording.formats.qtm_tsv import read_qtm
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 from said import unfolded

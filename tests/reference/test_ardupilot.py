@@ -14,9 +14,9 @@ from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.ardupilot.commands import read_commands
-from rovsim.measurement.recording.ardupilot.dataflash import read_dataflash
-from rovsim.measurement.recording.ardupilot.motion import read_log
+from rovsim.measurement.recording.formats.ardupilot.commands import read_commands
+from rovsim.measurement.recording.formats.ardupilot.dataflash import read_dataflash
+from rovsim.measurement.recording.formats.ardupilot.motion import read_log
 
 MOCAP = Mocap(format="ardupilot", world_axes="ned", body_axes="frd")
 SWIM = Swim.ned(60)

@@ -8,7 +8,7 @@ from recordings import Swim
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.c3d import read_c3d
+from rovsim.measurement.recording.formats.c3d import read_c3d
 
 SWIM = Swim.ned(50)
 

@@ -13,8 +13,8 @@ from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality.assessment import assess
 from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.commands_csv import read_commands
-from rovsim.measurement.recording.csv import read_csv
+from rovsim.measurement.recording.formats.commands_csv import read_commands
+from rovsim.measurement.recording.formats.csv import read_csv
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("ROVSIM_DATA", ROOT / ".." / "shared" / "data"))

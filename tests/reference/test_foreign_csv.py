@@ -11,7 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, from_matrix, matrix
 from rovsim.intake.survey.csv_files import look_into_csv
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.csv import read_csv
+from rovsim.measurement.recording.formats.csv import read_csv
 
 MOCAP = Mocap(format="csv", world_axes="ned", body_axes="frd")
 SWIM = Swim.ned(frames=400)

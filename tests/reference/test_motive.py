@@ -13,7 +13,7 @@ from rovsim.core.rotations import matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.motive_csv import read_motive
+from rovsim.measurement.recording.formats.motive_csv import read_motive
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("ROVSIM_DATA", ROOT / ".." / "shared" / "data")) / "mocap_exports"

@@ -13,7 +13,7 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality.assessment import assess
 from rovsim.measurement.recording import read_run
-from rovsim.measurement.recording.qtm_tsv import read_qtm
+from rovsim.measurement.recording.formats.qtm_tsv import read_qtm
 
 SHARED = Path(__file__).parents[2] / ".." / "shared"
 DATA = Path(os.environ.get("ROVSIM_DATA", SHARED / "data"))

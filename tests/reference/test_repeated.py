@@ -5,7 +5,7 @@ import pytest
 
 from recordings import write_lines
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.csv import read_csv
+from rovsim.measurement.recording.formats.csv import read_csv
 from rovsim.measurement.recording.tidying import tidy_export
 
 MOCAP = Mocap(format="csv", world_axes="ned", body_axes="frd")

@@ -22,8 +22,8 @@ from rovsim.core import extras
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler, matrix
 from rovsim.measurement.campaign_file import CommandLog, Mocap
-from rovsim.measurement.recording.rosbag2.commands import read_commands
-from rovsim.measurement.recording.rosbag2.motion import read_bag
+from rovsim.measurement.recording.formats.rosbag2.commands import read_commands
+from rovsim.measurement.recording.formats.rosbag2.motion import read_bag
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("ROVSIM_DATA", ROOT / ".." / "shared" / "data")) / "rosbag2"

@@ -20,7 +20,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_logged
-from rovsim.measurement.recording.commands_csv import format_commands
+from rovsim.measurement.recording.formats.commands_csv import format_commands
 from rovsim.reporting.figures.planned_flight import PlannedFlight, draw_flight
 from rovsim.reporting.figures.style import save
 from rovsim.reporting.words.experiment import list_steps

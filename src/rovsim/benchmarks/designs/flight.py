@@ -11,7 +11,7 @@ from rovsim.design.search import CandidateFlight
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.estimation.observer.train_runs import prepare_train
-from rovsim.measurement.recording.commands_csv import format_commands
+from rovsim.measurement.recording.formats.commands_csv import format_commands
 from rovsim.results.design_benchmark import Outcome, ReachedOdds, ReachedStd, ThroughWall
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankRun

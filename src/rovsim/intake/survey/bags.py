@@ -13,9 +13,9 @@ from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.intake.survey.csv_files import within
 from rovsim.measurement.campaign_file import Mocap, Topics
-from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
-from rovsim.measurement.recording.rosbag2.commands import MANUAL, PULSES, pushed
-from rovsim.measurement.recording.rosbag2.motion import POSES, read_bag
+from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
+from rovsim.measurement.recording.formats.rosbag2.commands import MANUAL, PULSES, pushed
+from rovsim.measurement.recording.formats.rosbag2.motion import POSES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
 
 # Topics that say where the vehicle should be, or where something else is: never read.

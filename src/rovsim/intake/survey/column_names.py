@@ -4,10 +4,10 @@ import re
 from collections import defaultdict
 from typing import Iterator, Sequence
 
-from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
-from rovsim.measurement.recording.delimited import Lines
-from rovsim.measurement.recording.named_columns import TIME
-from rovsim.measurement.recording.units import TIMES, split_unit
+from rovsim.measurement.recording.formats.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
+from rovsim.measurement.recording.tables.delimited import Lines
+from rovsim.measurement.recording.tables.named_columns import TIME
+from rovsim.measurement.recording.tables.units import TIMES, split_unit
 
 # Our name -> regex of names that mean the same, once unit, brackets and case are removed.
 FORMS = {

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.measurement.recording.commands import guess_unit
-from rovsim.measurement.recording.units import in_words
+from rovsim.measurement.recording.tables.units import in_words
 
 # Axis -> regex of names in lower case with underscores, without their units.
 WRENCH = dict(

@@ -25,10 +25,10 @@ from rovsim.intake.survey.repeats import check_unmixed, tell_repeats
 from rovsim.intake.survey.sizes import Key, Unit, Units
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.commands import ALLOWED, PERCENT, are_pulses, guess_unit
-from rovsim.measurement.recording.csv import KNOWN, read_csv
-from rovsim.measurement.recording.delimited import Lines, csv_lines
-from rovsim.measurement.recording.named_columns import TIME, no_time
+from rovsim.measurement.recording.formats.csv import KNOWN, read_csv
 from rovsim.measurement.recording.one_run import check_one_run
+from rovsim.measurement.recording.tables.delimited import Lines, csv_lines
+from rovsim.measurement.recording.tables.named_columns import TIME, no_time
 from rovsim.measurement.recording.tidying import tidy_export
 
 RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)

@@ -19,14 +19,14 @@ from rovsim.intake.survey.command_names import STICKS, are_sticks, find_wrench
 from rovsim.intake.survey.quaternions import check_quaternion
 from rovsim.intake.survey.sizes import Unit, Units, find_by_size
 from rovsim.intake.survey.time_units import find_time_unit
-from rovsim.measurement.recording.cells import find_filler
-from rovsim.measurement.recording.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.csv_checks import is_height
-from rovsim.measurement.recording.delimited import Lines, csv_lines, without_cut_line
-from rovsim.measurement.recording.named_columns import find_halves, no_time
-from rovsim.measurement.recording.numbers import numbers
-from rovsim.measurement.recording.times import dates, times
-from rovsim.measurement.recording.units import DEGREE, FACTORS, split_unit
+from rovsim.measurement.recording.formats.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
+from rovsim.measurement.recording.tables.cells import find_filler
+from rovsim.measurement.recording.tables.delimited import Lines, csv_lines, without_cut_line
+from rovsim.measurement.recording.tables.named_columns import find_halves, no_time
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import dates, times
+from rovsim.measurement.recording.tables.units import DEGREE, FACTORS, split_unit
 
 HALF_TURN = 180.0  # degrees
 

@@ -8,10 +8,10 @@ import numpy as np
 from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, Track
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.ardupilot.commands import SOURCES
-from rovsim.measurement.recording.ardupilot.logs import open_log
-from rovsim.measurement.recording.ardupilot.motion import read_log
-from rovsim.measurement.recording.ardupilot.series import ArduPilotLog
+from rovsim.measurement.recording.formats.ardupilot.commands import SOURCES
+from rovsim.measurement.recording.formats.ardupilot.logs import open_log
+from rovsim.measurement.recording.formats.ardupilot.motion import read_log
+from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog
 from rovsim.measurement.recording.tidying import tidy_export
 
 MOST = 16  # outputs and channels of a log

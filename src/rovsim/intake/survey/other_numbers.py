@@ -11,11 +11,11 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.csv import KNOWN
-from rovsim.measurement.recording.delimited import Lines, without_cut_line
-from rovsim.measurement.recording.named_columns import TIME, column_places
-from rovsim.measurement.recording.numbers import numbers
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.formats.csv import KNOWN
+from rovsim.measurement.recording.tables.delimited import Lines, without_cut_line
+from rovsim.measurement.recording.tables.named_columns import TIME, column_places
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 # Columns that count or monitor something, whatever the size of their numbers.
 WATCHED = re.compile(

@@ -6,9 +6,9 @@ from collections import defaultdict
 import numpy as np
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.csv import QUATERNION
-from rovsim.measurement.recording.delimited import Lines
-from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.formats.csv import QUATERNION
+from rovsim.measurement.recording.tables.delimited import Lines
+from rovsim.measurement.recording.tables.numbers import numbers
 
 NUMBERED = re.compile(
     r"(q|quat|quaternion|orientation|rot|rotation)[\W_]*(\d)[\W_]*", re.IGNORECASE

@@ -6,12 +6,12 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.csv import KNOWN, POSITION
-from rovsim.measurement.recording.delimited import Lines, without_cut_line
-from rovsim.measurement.recording.named_columns import TIME
-from rovsim.measurement.recording.numbers import numbers
+from rovsim.measurement.recording.formats.csv import KNOWN, POSITION
 from rovsim.measurement.recording.one_run import SeveralRuns, find_begins
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.tables.delimited import Lines, without_cut_line
+from rovsim.measurement.recording.tables.named_columns import TIME
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 MANY = 0.1  # share of the lines whose time another has
 LABELS = 20  # runs or bodies in one file

@@ -9,10 +9,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import usual_range
 from rovsim.core.rotations import unwrapped
-from rovsim.measurement.recording.csv import EULER, POSITION
 from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
-from rovsim.measurement.recording.delimited import Lines
-from rovsim.measurement.recording.units import DEGREE, split_unit
+from rovsim.measurement.recording.formats.csv import EULER, POSITION
+from rovsim.measurement.recording.tables.delimited import Lines
+from rovsim.measurement.recording.tables.units import DEGREE, split_unit
 
 # Sizes that no vehicle reaches in a tank or a bay.
 FARTHEST = 1000.0  # m

@@ -4,9 +4,9 @@ import re
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.delimited import is_table
 from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.recording.signature import HEAD, FileSignature, decoded, head_lines
+from rovsim.measurement.recording.tables.delimited import is_table
 
 AS_CSV = "docs/formats.md lists the columns"
 # First bytes of files that people take for recordings -> what they are, and what to do about it.

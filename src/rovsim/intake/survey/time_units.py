@@ -5,10 +5,10 @@ from numpy import ndarray as Array
 
 from rovsim.intake.survey.sizes import Unit, Units, UnknownUnit
 from rovsim.measurement.recording.csv_checks import LONGEST_STEP
-from rovsim.measurement.recording.delimited import Lines
-from rovsim.measurement.recording.named_columns import TIME
-from rovsim.measurement.recording.times import LATEST, times
-from rovsim.measurement.recording.units import FACTORS
+from rovsim.measurement.recording.tables.delimited import Lines
+from rovsim.measurement.recording.tables.named_columns import TIME
+from rovsim.measurement.recording.tables.times import LATEST, times
+from rovsim.measurement.recording.tables.units import FACTORS
 
 SHORTEST_STEP = 2e-4  # s between two lines of any recording
 SHORTEST = 3.0  # s that a recording lasts, where its lines would come faster than any camera

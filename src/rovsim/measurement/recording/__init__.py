@@ -1,24 +1,12 @@
 """Raw exports in, recordings out: one module per format, axes converted once.
 
-readers        the formats; a new one is a module here that declares its reader
+formats        the formats, one module or package each
+readers        what a format declares, and how its module is found
 exports        what a reader returns
 attitudes      finds quaternions and matrices that are no rotations
+tables         text in columns
 signature      recognises a format by the start of a file
-qtm_tsv        Qualisys Track Manager
-motive_csv     OptiTrack Motive
-c3d            C3D with rigid bodies
-csv            measured channels in columns that name their units
 csv_checks     refuses numbers that a measured channel cannot have
-commands_csv   commands in columns
-rosbag2        ROS 2 bags
-ardupilot      ArduPilot logs
-delimited      text in columns: names, separators, lines
-cells          cells of text: a number, or "not measured"
-numbers        whole columns of numbers
-named_columns  columns by their names, and errors where one is missing
-units          units of columns, behind their names or in a line below
-times          reads a column of times
-dates          reads times that are dates
 foreign        turns errors of other libraries into one message
 channels       each kind of measurement at its own times
 commands       turns logged values into commands

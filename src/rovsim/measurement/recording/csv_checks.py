@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.cells import find_filler
+from rovsim.measurement.recording.tables.cells import find_filler
 
 LONGEST_STEP = 5.0  # s between two lines of any recording
 POSITION = ["x_m", "y_m", "z_m"]

@@ -1,4 +1,4 @@
-"""The formats that can be read. A new one is a new module here that declares its reader."""
+"""The formats that can be read. A new one is a new module of `formats` that declares its reader."""
 
 import pkgutil
 from dataclasses import dataclass
@@ -131,8 +131,8 @@ def reader_of(name: str, readers: dict[str, R], where: object) -> R:
 
 
 def _declared(name: str, kind: type[R]) -> list[R]:
-    """Collect what the modules of this package declare under a name."""
-    import rovsim.measurement.recording as package
+    """Collect what the modules of `formats` declare under a name."""
+    import rovsim.measurement.recording.formats as package
 
     modules = [f"{package.__name__}.{item.name}" for item in pkgutil.iter_modules(package.__path__)]
     declared = [getattr(import_module(module), name, None) for module in modules]

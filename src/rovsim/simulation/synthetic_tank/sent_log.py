@@ -11,7 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.commands_csv import read_commands
+from rovsim.measurement.recording.formats.commands_csv import read_commands
 from rovsim.measurement.recording.tidying import tidy_commands
 from rovsim.results.experiment import Experiment
 from rovsim.simulation.rest import PLACED, TURNED, rest_state

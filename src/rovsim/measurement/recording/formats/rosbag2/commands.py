@@ -13,8 +13,8 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
 from rovsim.measurement.recording.readers import CommandReader
-from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
 
 LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
 PULSES = ("RCOut", "OverrideRCIn", "RCIn")

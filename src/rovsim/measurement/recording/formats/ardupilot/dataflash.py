@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series, no_log
+from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series, no_log
 
 HEAD = b"\xa3\x95"
 FORMAT = 128

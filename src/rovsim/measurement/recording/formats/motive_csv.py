@@ -14,13 +14,13 @@ from rovsim.core.files import read_text
 from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
-from rovsim.measurement.recording.delimited import split_lines, without_cut_line
 from rovsim.measurement.recording.exports import Export
-from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import FileAxes, MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature, head_lines
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.tables.delimited import split_lines, without_cut_line
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 RE_EXPORT = (
     "In Motive: Edit, Export Tracking Data, CSV, with Rigid Bodies, header information on, "

@@ -8,7 +8,7 @@ motion       poses and channels
 commands     pulses, arrays, wrenches, joysticks
 """
 
-from rovsim.measurement.recording.rosbag2.commands import COMMAND_READER
-from rovsim.measurement.recording.rosbag2.motion import MOCAP_READER
+from rovsim.measurement.recording.formats.rosbag2.commands import COMMAND_READER
+from rovsim.measurement.recording.formats.rosbag2.motion import MOCAP_READER
 
 __all__ = ["COMMAND_READER", "MOCAP_READER"]

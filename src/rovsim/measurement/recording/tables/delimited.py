@@ -7,10 +7,10 @@ from typing import Iterator, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
-from rovsim.measurement.recording.cells import is_number
-from rovsim.measurement.recording.dates import is_date
 from rovsim.measurement.recording.signature import decoded
-from rovsim.measurement.recording.units import with_units
+from rovsim.measurement.recording.tables.cells import is_number
+from rovsim.measurement.recording.tables.dates import is_date
+from rovsim.measurement.recording.tables.units import with_units
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,9 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.dates import is_date, resembles_date, to_seconds
-from rovsim.measurement.recording.delimited import Lines
-from rovsim.measurement.recording.numbers import bad_cell, numbers
+from rovsim.measurement.recording.tables.dates import is_date, resembles_date, to_seconds
+from rovsim.measurement.recording.tables.delimited import Lines
+from rovsim.measurement.recording.tables.numbers import bad_cell, numbers
 
 LATEST = 1e11  # s since 1970: the year 5138
 

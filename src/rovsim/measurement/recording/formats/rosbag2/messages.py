@@ -7,7 +7,7 @@ import numpy as np
 
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.rosbag2.bag import Numbers
+from rovsim.measurement.recording.formats.rosbag2.bag import Numbers
 
 GRAVITY = 9.80665  # m/s2, ISO 80000-3: standard acceleration of free fall
 UNKNOWN = float("nan")

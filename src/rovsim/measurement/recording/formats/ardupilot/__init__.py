@@ -8,7 +8,7 @@ motion     measured channels
 commands   outputs to thrusters, or the radio of the pilot
 """
 
-from rovsim.measurement.recording.ardupilot.commands import COMMAND_READER
-from rovsim.measurement.recording.ardupilot.motion import MOCAP_READER
+from rovsim.measurement.recording.formats.ardupilot.commands import COMMAND_READER
+from rovsim.measurement.recording.formats.ardupilot.motion import MOCAP_READER
 
 __all__ = ["COMMAND_READER", "MOCAP_READER"]

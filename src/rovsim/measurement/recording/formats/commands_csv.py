@@ -11,13 +11,13 @@ from rovsim.core.axes import AXES
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import are_pulses, as_commands, as_logged
-from rovsim.measurement.recording.delimited import csv_lines, without_cut_line
 from rovsim.measurement.recording.exports import CommandExport
-from rovsim.measurement.recording.named_columns import column_places
-from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import CommandReader
 from rovsim.measurement.recording.repairs import CommandRepairs
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.tables.delimited import csv_lines, without_cut_line
+from rovsim.measurement.recording.tables.named_columns import column_places
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 HEAVE = AXES.index("heave")
 

@@ -11,8 +11,8 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.extras import require
 from rovsim.measurement.recording.foreign import read_by
-from rovsim.measurement.recording.rosbag2.definitions import store_for
-from rovsim.measurement.recording.rosbag2.stamps import on_bag_clock, stamp
+from rovsim.measurement.recording.formats.rosbag2.definitions import store_for
+from rovsim.measurement.recording.formats.rosbag2.stamps import on_bag_clock, stamp
 
 WHOLE = "a whole ROS 2 bag: its folder, or one .db3 or .mcap file"
 REPAIR = "Check it with `ros2 bag info`; `ros2 bag reindex` or `mcap recover` repair a cut one."

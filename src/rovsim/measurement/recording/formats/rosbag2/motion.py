@@ -9,9 +9,9 @@ from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
+from rovsim.measurement.recording.formats.rosbag2.messages import TopicReader, pose, topic_readers
 from rovsim.measurement.recording.readers import FileAxes, MocapReader
-from rovsim.measurement.recording.rosbag2.bag import Bag, TopicSamples, opened
-from rovsim.measurement.recording.rosbag2.messages import TopicReader, pose, topic_readers
 from rovsim.measurement.recording.signature import FileSignature, starts_with
 
 POSES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")

@@ -23,14 +23,19 @@ from rovsim.measurement.recording.csv_checks import (
     doubt_order,
     without_fillers,
 )
-from rovsim.measurement.recording.delimited import Lines, csv_lines, is_table, without_cut_line
 from rovsim.measurement.recording.exports import Export
-from rovsim.measurement.recording.named_columns import column_places
-from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature, head_lines
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.tables.delimited import (
+    Lines,
+    csv_lines,
+    is_table,
+    without_cut_line,
+)
+from rovsim.measurement.recording.tables.named_columns import column_places
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]

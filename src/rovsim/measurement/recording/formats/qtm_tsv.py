@@ -12,13 +12,13 @@ from rovsim.core.files import read_text
 from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.attitudes import finite_rows, orthonormal
-from rovsim.measurement.recording.delimited import Lines, split_lines, without_cut_line
 from rovsim.measurement.recording.exports import Export
-from rovsim.measurement.recording.numbers import numbers
 from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature, head_lines
-from rovsim.measurement.recording.times import times
+from rovsim.measurement.recording.tables.delimited import Lines, split_lines, without_cut_line
+from rovsim.measurement.recording.tables.numbers import numbers
+from rovsim.measurement.recording.tables.times import times
 
 POSITION = ["X", "Y", "Z"]
 ROTATION = [f"Rot[{k}]" for k in range(9)]

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Sequence
 
 from rovsim.core.errors import BadInput, nearest
-from rovsim.measurement.recording.cells import is_number
-from rovsim.measurement.recording.dates import resembles_date
+from rovsim.measurement.recording.tables.cells import is_number
+from rovsim.measurement.recording.tables.dates import resembles_date
 
 TIME = "time_s"
 # What people, loggers and pandas call a column of times; one without a name may be such.

@@ -9,10 +9,10 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_euler
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.ardupilot.logs import SIGNATURES, needs, open_log
-from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.channels import Channel, measured
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.formats.ardupilot.logs import SIGNATURES, needs, open_log
+from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.readers import FileAxes, MocapReader
 
 DEGREE = np.pi / 180.0

@@ -6,8 +6,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.cells import MISSING
-from rovsim.measurement.recording.delimited import Lines
+from rovsim.measurement.recording.tables.cells import MISSING
+from rovsim.measurement.recording.tables.delimited import Lines
 
 AT_ONCE = 10_000  # lines: if one of them needs the slow way, all of these are read in it
 

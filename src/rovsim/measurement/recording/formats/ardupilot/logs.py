@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.ardupilot.dataflash import HEAD, read_dataflash
-from rovsim.measurement.recording.ardupilot.series import RE_RECORD, ArduPilotLog, no_log
-from rovsim.measurement.recording.ardupilot.telemetry import MARKERS, read_telemetry
 from rovsim.measurement.recording.foreign import read_by
+from rovsim.measurement.recording.formats.ardupilot.dataflash import HEAD, read_dataflash
+from rovsim.measurement.recording.formats.ardupilot.series import RE_RECORD, ArduPilotLog, no_log
+from rovsim.measurement.recording.formats.ardupilot.telemetry import MARKERS, read_telemetry
 from rovsim.measurement.recording.signature import FileSignature, starts_with
 
 READERS = {".bin": read_dataflash, ".tlog": read_telemetry}

@@ -8,10 +8,10 @@ from numpy import ndarray as Array
 from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.ardupilot.logs import needs, open_log
-from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.exports import CommandExport
+from rovsim.measurement.recording.formats.ardupilot.logs import needs, open_log
+from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series
 from rovsim.measurement.recording.readers import CommandReader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.

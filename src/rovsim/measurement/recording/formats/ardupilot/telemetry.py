@@ -10,7 +10,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.extras import require
-from rovsim.measurement.recording.ardupilot.series import ArduPilotLog, Series, no_log
+from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series, no_log
 
 # https://mavlink.io/en/guide/serialization.html: marker, bytes of a packet besides the payload
 MARKERS = {0xFD: 12, 0xFE: 8}
