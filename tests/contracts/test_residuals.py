@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 import rovsim.learning.learners as own
+from rovsim.application.configuration import compose
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.checks import check_exported, posterior
@@ -467,6 +468,8 @@ def ridge(tmp_path, monkeypatch):
 
 def test_a_learner_is_one_file(ridge, tmp_path):
     assert set(learners()) == {"gp", "knn", "svgp", "ridge"}
+    with pytest.raises(BadInput, match=r"conf/residual/ridge\.yaml"):
+        compose(["residual=ridge"])
     trained = train(*pairs(ridge), ridge, seed=0, control="6dof")
     assert stored_settings(trained) == ridge
     new, _ = pairs(ridge, n=50, seed=1)

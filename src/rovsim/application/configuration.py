@@ -7,6 +7,7 @@ from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
 from rovsim.core.schema import checked
 from rovsim.core.shipped import conf_folders, conf_names
+from rovsim.learning.learner import learners
 
 
 def compose(overrides: Sequence[str]) -> Settings:
@@ -70,6 +71,13 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
     for override in overrides:
         key, _, value = override.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
+        if key == "residual" and value not in options and value in learners():
+            return BadInput(
+                f"the learner '{value}' has no defaults",
+                where=override,
+                expected=f"a file conf/residual/{value}.yaml",
+                remedy=f"Write its settings there, the first of them kind: {value}.",
+            )
         if options and value not in options:
             return unlisted(value, options, found=f"there is no {key} '{value}'", where=override)
         if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
