@@ -7,7 +7,6 @@ from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
 from rovsim.core.schema import checked
 from rovsim.core.shipped import conf_folders, conf_names
-from rovsim.learning.learner import learners
 
 
 def compose(overrides: Sequence[str]) -> Settings:
@@ -67,6 +66,8 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
         overrides: all of them.
         message: of Hydra's error.
     """
+    from rovsim.learning.learner import learners
+
     choices = [override for override in overrides if _is_choice(override)]
     for override in overrides:
         key, _, value = override.lstrip("+~").partition("=")
