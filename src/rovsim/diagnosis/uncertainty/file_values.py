@@ -87,7 +87,7 @@ def settle_whole_file(
     accepted = {term.id for term in selected.terms}
     sure_gain = _name_gain(whole)
     offset = _measure_offset(whole, keeps_gain=bool(sure_gain))
-    significant = {n for n in owner if _is_sure(whole, offset, (owner == n) & ~undetermined)}
+    significant = {n for n in set(owner) if _is_sure(whole, offset, (owner == n) & ~undetermined)}
     ids = (accepted & significant) | (accepted - FILE_EFFECT_IDS) | sure_gain
     dropped = undetermined | ~np.isin(owner, list(ids))
     while candidates := sorted((significant | accepted) - ids):
@@ -131,21 +131,24 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
 
     To first order: the others take their conditional mean. The common gain stays as it is.
     """
-    h, V = whole.hypothesis, whole.covariance
-    step = np.where(gone, h.absence - h.x, 0.0)
-    fixed = gone | mark_gain(h)
-    correction = V[np.ix_(~fixed, fixed)] @ solve(V[np.ix_(fixed, fixed)], step[fixed])
-    step[~fixed] = correction
+    h = whole.hypothesis
+    step = _follow(whole, gone | mark_gain(h), np.where(gone, h.absence - h.x, 0.0))
     return drop_parameters(h.at(h.x + step), gone)
+
+
+def _follow(whole: Fit, led: Array, step: Array) -> Array:
+    """Steps (k,) of all parameters where those of a mask (k,) take theirs: conditional means."""
+    V = whole.covariance
+    step = step.copy()
+    step[~led] = V[np.ix_(~led, led)] @ solve(V[np.ix_(led, led)], step[led])
+    return step
 
 
 def _measure_offset(whole: Fit, keeps_gain: bool) -> Array:
     """How far the values (k,) are from the file's, at the gain that was found or at the file's."""
-    h, V, gain = whole.hypothesis, whole.covariance, mark_gain(whole.hypothesis)
+    h, gain = whole.hypothesis, mark_gain(whole.hypothesis)
     offset = h.x - h.absence
-    if keeps_gain:
-        return offset
-    return np.asarray(offset - V[:, gain] @ solve(V[np.ix_(gain, gain)], offset[gain]))
+    return offset if keeps_gain else offset + _follow(whole, gain, np.where(gain, -offset, 0.0))
 
 
 def _is_sure(whole: Fit, offset: Array, own: Array) -> bool:
