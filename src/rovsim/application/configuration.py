@@ -59,6 +59,12 @@ def _allow_unlisted(word: str) -> str:
     return f"++{word}" if word.startswith("tank.") else word
 
 
+def _is_learner(kind: str) -> bool:
+    from rovsim.learning.learner import learners  # loads the compiler
+
+    return kind in learners()
+
+
 def _refused(overrides: Sequence[str], message: str) -> BadInput:
     """Make the error for overrides that Hydra refused, with what was probably meant.
 
@@ -66,13 +72,11 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
         overrides: all of them.
         message: of Hydra's error.
     """
-    from rovsim.learning.learner import learners
-
     choices = [override for override in overrides if _is_choice(override)]
     for override in overrides:
         key, _, value = override.lstrip("+~").partition("=")
         options = conf_names(key) if key else []
-        if key == "residual" and value not in options and value in learners():
+        if key == "residual" and value not in options and _is_learner(value):
             return BadInput(
                 f"the learner '{value}' has no defaults",
                 where=override,
