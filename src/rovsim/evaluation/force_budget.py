@@ -85,14 +85,12 @@ def _cumulative(
     at_rest = replace(motion, state_nu=0 * motion.state_nu)
     yield RESTORING, _force(so_far, at_rest, no_thrust)
     yield CORIOLIS, _force(so_far, motion, no_thrust)
-    parts = list(enumerate(model.effects))
-    of_vehicle, added = parts[: len(model.vehicle_effects)], parts[len(model.vehicle_effects) :]
-    for k, effect in sorted(of_vehicle, key=lambda part: _place(part[1])):
+    for k, effect in sorted(enumerate(model.vehicle_effects), key=lambda pair: _place(pair[1])):
         if so_far.effects[k] is not effect:  # else every vehicle has it: in from the start
             so_far = so_far.with_effect(k, effect)
             yield NOMINAL.get(effect.id, effect.id), _force(so_far, motion, no_thrust)
     yield THRUSTERS, _at(so_far, motion, settings)
-    for k, effect in added:
+    for k, effect in enumerate(model.added, start=len(model.vehicle_effects)):
         so_far = so_far.with_effect(k, effect)
         yield f"+{effect.id}", _at(so_far, motion, settings)
     if model.residual is not None:
