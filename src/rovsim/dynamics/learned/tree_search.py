@@ -32,13 +32,13 @@ class Tree(NamedTuple):
     Attributes:
         boxes: low and high ends (nodes, 2, d', LANES) of the boxes of each node's children.
         points: rotated points (blocks, d', LANES).
-        given: points (n, d) as given, not rotated.
+        unrotated: points (n, d) as given.
         rows: training row (n',) of each point.
     """
 
     boxes: Array
     points: Array
-    given: Array
+    unrotated: Array
     rows: Array
 
 
@@ -113,19 +113,19 @@ def _within(points, b, x, limit, s):
 
 
 @exact
-def _insert(nearest, distance, own, at):
+def _insert(nearest, distance, new_row, index):
     """Insert a point into the sorted list of the k nearest, if it belongs there.
 
-    At equal distance the earlier training row comes first. `own` is the training row of the point,
-    `at` its index.
+    At equal distance the earlier training row comes first. `new_row` is the training row of the
+    point, `index` its index.
     """
     near, row, place, p = nearest.near, nearest.row, nearest.place, nearest.k - 1
-    if distance == near[p] and own > row[p]:
+    if distance == near[p] and new_row > row[p]:
         return
-    while p > 0 and (near[p - 1] > distance or (near[p - 1] == distance and row[p - 1] > own)):
+    while p > 0 and (near[p - 1] > distance or (near[p - 1] == distance and row[p - 1] > new_row)):
         near[p], row[p], place[p] = near[p - 1], row[p - 1], place[p - 1]
         p -= 1
-    near[p], row[p], place[p] = distance, own, at
+    near[p], row[p], place[p] = distance, new_row, index
 
 
 @exact
@@ -166,11 +166,11 @@ def _allowed(distance, size):
 
 
 @exact
-def _measured(given, at, z):
-    """Squared distance of z to the point with index `at`, as given."""
+def _measured(unrotated, index, z):
+    """Squared distance of z to the point with this index, as given."""
     total = 0.0
-    for j in range(given.shape[1]):
-        e = given[at, j] - z[j]
+    for j in range(unrotated.shape[1]):
+        e = unrotated[index, j] - z[j]
         total += e * e
     return total
 
@@ -178,13 +178,13 @@ def _measured(given, at, z):
 @exact_inline
 def _look_into_leaf(tree, b, query, nearest, s):
     """Insert the points of leaf b that are near enough into the list of the k nearest."""
-    points, given, rows = tree.points, tree.given, tree.rows
+    points, unrotated, rows = tree.points, tree.unrotated, tree.rows
     near, last, z, size = nearest.near, nearest.k - 1, query.z, query.size
-    first, n = b * LANES, given.shape[0]
+    first, n = b * LANES, unrotated.shape[0]
     if _within(points, b, query.x, _allowed(near[last], size), s):
         for i in range(LANES):
             if first + i < n and s[i] < inf and s[i] <= _allowed(near[last], size):
-                distance = _measured(given, first + i, z)
+                distance = _measured(unrotated, first + i, z)
                 if distance <= near[last]:
                     _insert(nearest, distance, rows[first + i], first + i)
 
@@ -213,18 +213,18 @@ def search(tree, query, nearest, scratch):
     offsets = counts[MOST_LEVELS + 2 :]
     near[: nearest.k] = inf
     nearest.row[: nearest.k] = inf
-    level[0] = _levels(tree.given.shape[0], counts, offsets)
+    level[0] = _levels(tree.unrotated.shape[0], counts, offsets)
     waiting[0], index[0], size = 0.0, 0.0, 1
     while size > 0:
         size -= 1
         limit = _allowed(near[last], query.size)
         if waiting[size] > limit:
             continue
-        high, own = int(level[size]), int(index[size])
-        if high == 0:
-            _look_into_leaf(tree, own, query, nearest, s)
+        height, node = int(level[size]), int(index[size])
+        if height == 0:
+            _look_into_leaf(tree, node, query, nearest, s)
             continue
-        _box_distances(boxes, int(offsets[high]) + own, x, s)
-        before, there = size, int(counts[high - 1])
-        size = _open_node(s, own * LANES, there, limit, waiting, index, size)
-        level[before:size] = high - 1
+        _box_distances(boxes, int(offsets[height]) + node, x, s)
+        previous_size, boxes_below = size, int(counts[height - 1])
+        size = _open_node(s, node * LANES, boxes_below, limit, waiting, index, size)
+        level[previous_size:size] = height - 1
