@@ -87,55 +87,19 @@ class Effects:
                 return
             units = {p.name: p for p in cls.parameters}
             for parameter, value in self.draft.entry(name).parameters.items():
-                self._slider(name, units[parameter], value.value)
+                ParameterRow(self, name, units[parameter], value.value)
 
-    def _slider(self, effect: str, parameter: Any, value: float) -> None:
-        low, high = reach(parameter, value)
-        unit_text = unit(parameter.unit)
-        names = self.bench.base.vehicle.thruster_names
-        label = name_parameter(effect, parameter.name, names).replace('"', "'")
+    async def move(self, effect: str, parameter: str, value: float) -> None:
+        """Give a parameter of an effect another value."""
+        self.touched = effect
+        self.draft.move(effect, parameter, value)
+        await self.moved()
 
-        def told(now: float) -> str:
-            total = tell_total(self.bench.base.body, effect, parameter.name, now, unit_text)
-            return f"{escape(total.told)} {alarm(total.wrong)}".strip()
-
-        with ui.row().classes("slider"):
-            ui.label(label).classes("name")
-            step = 1.0 if parameter.discrete else (high - low) / STEPS
-            slider = Slider(min=low, max=high, step=step, value=value)
-            slider.props(f'aria-label="{effect}, {label}"')
-            number = ui.number(value=rounded(value), suffix=unit_text).classes("value")
-            number.props(f'dense borderless aria-label="{effect}, {label}, number"')
-            back = ui.button(icon="settings_backup_restore").classes("reset")
-            about = f"{effect}, {label}: back to where it began"
-            back.props(f'flat dense aria-label="{about}" title="{about}"')
-            total = ui.html(told(value), sanitize=False).classes("total")
-
-        async def change(now: float) -> None:
-            if now == self.draft.entry(effect).parameters[parameter.name].value:
-                return  # a key tells its value twice, and the throttle tells the last one again
-            self.touched = effect
-            total.content = told(now)
-            self.draft.move(effect, parameter.name, now)
-            await self.moved()
-
-        async def moved(event: Any) -> None:
-            number.set_value(rounded(event.args))
-            await change(float(event.args))
-
-        async def typed() -> None:
-            if number.value is not None:
-                slider.set_value(number.value)
-                await change(float(number.value))
-
-        async def reset() -> None:
-            self.draft.reset(effect, parameter.name)
-            self.draw()
-            await self.moved()
-
-        slider.on("update:model-value", moved, throttle=0.05)
-        number.on("change", typed)
-        back.on_click(reset)
+    async def reset(self, effect: str, parameter: str) -> None:
+        """Give a parameter of an effect the value back that it began with."""
+        self.draft.reset(effect, parameter)
+        self.draw()
+        await self.moved()
 
     async def _tick(self, name: str, yes: bool) -> None:
         self.touched = name
@@ -151,6 +115,61 @@ class Effects:
     async def _another(self, name: str | None) -> None:
         if name:
             await self._tick(name, True)
+
+
+class ParameterRow:
+    """The value of a parameter on a slider and as a number, with the total that it makes.
+
+    Args:
+        effects: told of each change.
+        effect: whose parameter it is.
+        parameter: what the effect declares of it.
+        value: that it has now.
+    """
+
+    def __init__(self, effects: Effects, effect: str, parameter: Any, value: float) -> None:
+        self.effects, self.effect, self.parameter = effects, effect, parameter
+        self.unit = unit(parameter.unit)
+        names = effects.bench.base.vehicle.thruster_names
+        label = name_parameter(effect, parameter.name, names).replace('"', "'")
+        with ui.row().classes("slider"):
+            ui.label(label).classes("name")
+            self._draw(f"{effect}, {label}", value)
+
+    def _draw(self, label: str, value: float) -> None:
+        low, high = reach(self.parameter, value)
+        step = 1.0 if self.parameter.discrete else (high - low) / STEPS
+        self.slider = Slider(min=low, max=high, step=step, value=value)
+        self.slider.props(f'aria-label="{label}"')
+        self.number = ui.number(value=rounded(value), suffix=self.unit).classes("value")
+        self.number.props(f'dense borderless aria-label="{label}, number"')
+        back = ui.button(icon="settings_backup_restore").classes("reset")
+        about = f"{label}: back to where it began"
+        back.props(f'flat dense aria-label="{about}" title="{about}"')
+        self.total = ui.html(self._told(value), sanitize=False).classes("total")
+        self.slider.on("update:model-value", self._moved, throttle=0.05)
+        self.number.on("change", self._typed)
+        back.on_click(lambda: self.effects.reset(self.effect, self.parameter.name))
+
+    def _told(self, value: float) -> str:
+        body = self.effects.bench.base.body
+        total = tell_total(body, self.effect, self.parameter.name, value, self.unit)
+        return f"{escape(total.told)} {alarm(total.wrong)}".strip()
+
+    async def _moved(self, event: Any) -> None:
+        self.number.set_value(rounded(event.args))
+        await self._change(float(event.args))
+
+    async def _typed(self) -> None:
+        if self.number.value is not None:
+            self.slider.set_value(self.number.value)
+            await self._change(float(self.number.value))
+
+    async def _change(self, value: float) -> None:
+        if value == self.effects.draft.entry(self.effect).parameters[self.parameter.name].value:
+            return  # a key tells its value twice, and the throttle tells the last one again
+        self.total.content = self._told(value)
+        await self.effects.move(self.effect, self.parameter.name, value)
 
 
 def tell_doubt(effect: str, draft: Draft) -> str:

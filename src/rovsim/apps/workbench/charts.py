@@ -115,9 +115,21 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         panels: from top to bottom.
         look: by name of a curve.
     """
-    indices = list(range(len(panels)))
-    titles = [f"{panel.title} ({panel.unit})" for panel in panels]
-    options: Options = {
+    data = {series["id"]: series["data"] for series in series_data(time, panels)}
+    last = len(panels) - 1
+    return {
+        **_controls(panels),
+        "grid": _grids(panels),
+        "xAxis": [_time_axis(k, time, k == last) for k in range(len(panels))],
+        "yAxis": [_value_axis(k, panel) for k, panel in enumerate(panels)],
+        "series": [s for k, panel in enumerate(panels) for s in _panel(k, panel, look, data)],
+    }
+
+
+def _controls(panels: Sequence[Panel]) -> Options:
+    """Return legend, zoom, pointer and tooltip, which the panels share."""
+    titles = [_title(panel) for panel in panels]
+    return {
         "legend": {
             "type": "scroll",
             "top": 0,
@@ -143,39 +155,48 @@ def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) 
         "dataZoom": [
             {
                 "type": "inside",
-                "xAxisIndex": indices,
+                "xAxisIndex": list(range(len(panels))),
                 "filterMode": "none",
                 "zoomOnMouseWheel": "ctrl",
                 "moveOnMouseMove": "shift",
                 "preventDefaultMouseMove": False,
             }
         ],
-        "grid": _grids(panels),
-        "xAxis": [_time_axis(k, time, k == indices[-1]) for k in indices],
-        "yAxis": [_value_axis(k, panel) for k, panel in enumerate(panels)],
-        "series": [],
     }
-    data = {series["id"]: series["data"] for series in series_data(time, panels)}
-    for k, panel in enumerate(panels):
-        for name in panel.curves:
-            options["series"].append(
-                {
-                    "id": f"{k}/{name}",
-                    "name": told(name),
-                    "type": "line",
-                    "symbol": "none",
-                    "xAxisIndex": k,
-                    "yAxisIndex": k,
-                    "lineStyle": line_style(look[name]),
-                    "itemStyle": {"color": look[name].color},
-                    "data": data[f"{k}/{name}"],
-                    "z": 3 if name == "measured" else 2,
-                }
-            )
-        for name in panel.bands:
-            options["series"] += [_area(k, name, end, look[name], data) for end in (LOW, WIDTH)]
-        options["series"].append(cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k})
-    return options
+
+
+def _panel(
+    k: int, panel: Panel, look: Mapping[str, Look], ready: Mapping[str, Any]
+) -> list[Options]:
+    """List the series of a panel: its curves, their bands, and the cursor.
+
+    Args:
+        k: number of the panel.
+        panel: what it shows.
+        look: by name of a curve.
+        ready: points of every series by id.
+    """
+    return [
+        *(_curve(k, name, look[name], ready) for name in panel.curves),
+        *(_area(k, name, end, look[name], ready) for name in panel.bands for end in (LOW, WIDTH)),
+        cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k},
+    ]
+
+
+def _curve(k: int, name: str, look: Look, ready: Mapping[str, Any]) -> Options:
+    """Return the series of a curve; what was measured lies above the others."""
+    return {
+        "id": f"{k}/{name}",
+        "name": told(name),
+        "type": "line",
+        "symbol": "none",
+        "xAxisIndex": k,
+        "yAxisIndex": k,
+        "lineStyle": line_style(look),
+        "itemStyle": {"color": look.color},
+        "data": ready[f"{k}/{name}"],
+        "z": 3 if name == "measured" else 2,
+    }
 
 
 def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> Options:
@@ -226,6 +247,10 @@ def cursor(panel: int, time: float | None) -> Options:
     }
 
 
+def _title(panel: Panel) -> str:
+    return f"{panel.title} ({panel.unit})"
+
+
 def _grids(panels: Sequence[Panel]) -> list[Options]:
     top, grids = TOP + GAP // 2, []
     for panel in panels:
@@ -258,7 +283,7 @@ def _time_axis(k: int, time: Array, last: bool) -> Options:
 
 def _value_axis(k: int, panel: Panel) -> Options:
     return {
-        **named_above(f"{panel.title} ({panel.unit})", 52),
+        **named_above(_title(panel), 52),
         "gridIndex": k,
         "scale": True,
         "splitNumber": 2 if panel.short else 3,

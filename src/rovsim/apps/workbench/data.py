@@ -5,7 +5,7 @@ from typing import Mapping
 
 from nicegui import ui
 
-from rovsim.apps.workbench.chart_axes import INK, LINE, SOFT, named_below
+from rovsim.apps.workbench.chart_axes import INK, LINE, SOFT, Options, named_below
 from rovsim.apps.workbench.charts import MARK
 from rovsim.apps.workbench.parts import (
     Failure,
@@ -113,38 +113,8 @@ def _gaps(quality: Mapping[str, Quality]) -> None:
         text("The body was seen throughout.", "soft")
         return
     text("Where the motion capture lost the body. Nothing is invented across a long gap.", "soft")
-    longest = max(quality[run].duration_s for run in runs)
     chart(
-        {
-            "grid": {"left": 8, "right": 24, "top": 8, "bottom": 34, "containLabel": True},
-            "tooltip": {
-                ":formatter": "p => p.value[0].toFixed(2) + ' s to ' + p.value[2].toFixed(2) + ' s'"
-            },
-            "xAxis": {
-                "type": "value",
-                "min": 0,
-                "max": longest,
-                **named_below("time in the run (s)", 22),
-                "axisLabel": {"color": SOFT, "showMaxLabel": False},
-                "splitLine": {"show": False},
-            },
-            "yAxis": {
-                "type": "category",
-                "data": runs,
-                "axisLabel": {"color": INK},
-                "axisTick": {"show": False},
-                "splitLine": {"show": True, "lineStyle": {"color": LINE}},
-            },
-            "series": [
-                {
-                    "type": "custom",
-                    "data": data,
-                    ":renderItem": GAP_SHAPE,
-                    "encode": {"x": [0, 2], "y": 1},
-                    "itemStyle": {"color": MARK},
-                }
-            ],
-        },
+        _chart_of_gaps(data, runs, max(quality[run].duration_s for run in runs)),
         "Gaps in each run over time",
         60 + 30 * len(runs),
         columns={"names": ("from (s)", "run", "to (s)")},
@@ -157,6 +127,46 @@ GAP_SHAPE = (
     " return {type: 'rect', shape: {x: a[0], y: a[1] - 9, width: Math.max(2, b[0] - a[0]),"
     " height: 18}, style: {fill: '#D55E00'}}; }"
 )
+
+
+def _chart_of_gaps(gaps: list[list[float]], runs: list[str], longest: float) -> Options:
+    """Return a chart of gaps over the time in each run.
+
+    Args:
+        gaps: beginning (s), number of the run, and end (s) of each.
+        runs: from bottom to top.
+        longest: duration of the longest run, s.
+    """
+    return {
+        "grid": {"left": 8, "right": 24, "top": 8, "bottom": 34, "containLabel": True},
+        "tooltip": {
+            ":formatter": "p => p.value[0].toFixed(2) + ' s to ' + p.value[2].toFixed(2) + ' s'"
+        },
+        "xAxis": {
+            "type": "value",
+            "min": 0,
+            "max": longest,
+            **named_below("time in the run (s)", 22),
+            "axisLabel": {"color": SOFT, "showMaxLabel": False},
+            "splitLine": {"show": False},
+        },
+        "yAxis": {
+            "type": "category",
+            "data": runs,
+            "axisLabel": {"color": INK},
+            "axisTick": {"show": False},
+            "splitLine": {"show": True, "lineStyle": {"color": LINE}},
+        },
+        "series": [
+            {
+                "type": "custom",
+                "data": gaps,
+                ":renderItem": GAP_SHAPE,
+                "encode": {"x": [0, 2], "y": 1},
+                "itemStyle": {"color": MARK},
+            }
+        ],
+    }
 
 
 def _excitation(quality: Mapping[str, Quality]) -> None:

@@ -113,18 +113,7 @@ def chart_of(ladder: Ladder) -> Options:
         }
         for bar in ladder_chart.bars
     ]
-    line = {
-        "symbol": "none",
-        "silent": True,
-        "data": [{"xAxis": floor}],
-        "precision": -1,  # the exact place; by default ECharts rounds to two decimals
-        "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
-        "label": {
-            "formatter": f"noise floor {significant(ladder_chart.noise_floor)}",
-            "position": "start",
-            "color": INK,
-        },
-    }
+    line = {} if floor is None else {"markLine": _line(floor)}
     return {
         "grid": {"left": 8, "right": 56, "top": 30, "bottom": 28, "containLabel": True},
         "xAxis": {
@@ -142,14 +131,23 @@ def chart_of(ladder: Ladder) -> Options:
             "data": [bar.label for bar in ladder_chart.bars],
             "axisLabel": {"color": INK},
         },
-        "series": [
-            {
-                "type": "bar",
-                "data": bars,
-                "barMaxWidth": 22,
-                **({"markLine": line} if floor is not None else {}),
-            }
-        ],
+        "series": [{"type": "bar", "data": bars, "barMaxWidth": 22, **line}],
+    }
+
+
+def _line(noise_floor: float) -> Options:
+    """Return a line at the noise floor."""
+    return {
+        "symbol": "none",
+        "silent": True,
+        "data": [{"xAxis": noise_floor}],
+        "precision": -1,  # the exact place; by default ECharts rounds to two decimals
+        "lineStyle": {"color": "#333333", "type": "dashed", "width": 1.5},
+        "label": {
+            "formatter": f"noise floor {significant(noise_floor)}",
+            "position": "start",
+            "color": INK,
+        },
     }
 
 
