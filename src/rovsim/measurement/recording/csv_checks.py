@@ -79,6 +79,14 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
     Raises:
         BadInput: says which column is implausible, and how to correct it.
     """
+    _check_steps(path, time)
+    _check_positions(path, time, values)
+    _check_pitch(path, values)
+    _check_velocities(path, values)
+    _check_depth(path, values)
+
+
+def _check_steps(path: Path, time: Array) -> None:
     step = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
     if step > LONGEST_STEP:
         raise _refused(
@@ -88,18 +96,25 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
             "seconds",
             RENAME.format("time_ms", "s"),
         )
-    if values.keys() >= set(POSITION):
-        order = np.argsort(time, kind="stable")
-        position = np.stack([values[name] for name in POSITION], axis=1)
-        speed = usual_speed(position[order], time[order])
-        if speed > FASTEST:
-            raise _refused(
-                path,
-                "x_m",
-                f"a vehicle that moves at {speed:.3g} m/s: mm or cm?",
-                "m",
-                RENAME.format("x_mm", "m"),
-            )
+
+
+def _check_positions(path: Path, time: Array, values: Mapping[str, Array]) -> None:
+    if not values.keys() >= set(POSITION):
+        return
+    order = np.argsort(time, kind="stable")
+    position = np.stack([values[name] for name in POSITION], axis=1)
+    speed = usual_speed(position[order], time[order])
+    if speed > FASTEST:
+        raise _refused(
+            path,
+            "x_m",
+            f"a vehicle that moves at {speed:.3g} m/s: mm or cm?",
+            "m",
+            RENAME.format("x_mm", "m"),
+        )
+
+
+def _check_pitch(path: Path, values: Mapping[str, Array]) -> None:
     pitch = np.abs(values.get("pitch_rad", np.zeros(0)))
     if np.nanmax(pitch, initial=0.0) > TURNED:
         raise _refused(
@@ -109,6 +124,9 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
             "rad, within a quarter turn",
             RENAME.format("pitch_deg", "rad"),
         )
+
+
+def _check_velocities(path: Path, values: Mapping[str, Array]) -> None:
     for limit in LIMITS.values():
         columns = [values[name] for name in limit.columns if name in values]
         if columns and (usual := limit.beyond(np.stack(columns))):
@@ -120,6 +138,9 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
                 limit.unit,
                 RENAME.format(f"{name[0]}_{other_units[0]}", limit.unit),
             )
+
+
+def _check_depth(path: Path, values: Mapping[str, Array]) -> None:
     depth = values.get("depth_m", np.zeros(0))
     if is_height(depth):
         low, high = np.nanmin(depth), np.nanmax(depth)
