@@ -11,7 +11,7 @@ from rovsim.core.run import Commands
 from rovsim.core.shipped import conf_names
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
 from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
-from rovsim.intake.survey.csv_files import within
+from rovsim.intake.survey.csv_commands import within
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.tidying import tidy_commands

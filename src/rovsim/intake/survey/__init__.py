@@ -7,6 +7,7 @@ look           looks into a file by the reader of its format
 bags           looks into ROS 2 bags
 logs           looks into ArduPilot logs
 csv_files      looks into csv files
+csv_commands   finds commands among the columns of a csv file
 other_numbers  columns of a csv file that are numbers and no measured channel
 headings       copies a csv file whose columns have other names or units, with ours
 command_names  what names of columns say of commands: forces and moments, sticks, units

@@ -11,7 +11,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
-from rovsim.intake.survey.csv_files import within
+from rovsim.intake.survey.csv_commands import within
 from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
 from rovsim.measurement.recording.formats.rosbag2.commands import MANUAL, PULSES, pushed
