@@ -91,37 +91,51 @@ def measure_pitfalls(
     """
     samples = {m.run.id: sample_run(model, m, settings) for m in runs}
     test_samples = sample_run(model, test, settings)
-
-    def taught(kind: str, names: Sequence[str], control: Control) -> tuple[Residual, Array]:
-        residual = _trained([samples[name] for name in names], learners[kind], control)
-        return residual, test_samples.features(residual.features)
-
-    gp, X = taught("gp", list(samples), "all")
-    scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in samples.values()]), axis=0), 1e-9)
-    planar = [m.run.id for m in runs if m.run.control == "3dof"]
-    full = [m.run.id for m in runs if m.run.control == "6dof"]
+    planar = [samples[m.run.id] for m in runs if m.run.control == "3dof"]
+    full = [samples[m.run.id] for m in runs if m.run.control == "6dof"]
     costs: dict[str, Cost] = {}
     if test.binned:
-        costs["wrong clock"] = Cost(
-            right=replay_error(model, test, settings),
-            wrong=replay_error(model, on_wrong_clock(test), settings),
-        )
-    right = explained(gp.predict, X, test_samples.a_res)
-    far, twice = (
-        explained(gp.predict, x, test_samples.a_res) for x in (X + FAR * scale, X / scale)
-    )
-    costs["lost data"] = Cost(right=right, wrong=far)
-    costs["scaled twice"] = Cost(right=right, wrong=twice)
+        costs["wrong clock"] = _cost_of_wrong_clock(model, test, settings)
+    costs |= _costs_of_a_broken_gp(list(samples.values()), test_samples, learners["gp"])
     if planar and full:
-        (knn, K), (copy, _) = (
-            taught("knn", full, "6dof"),
-            taught("knn", planar * len(full), "3dof"),
-        )
-        score_of_copies = explained(copy.predict, K, test_samples.a_res)
-        costs["copied runs"] = Cost(
-            right=explained(knn.predict, K, test_samples.a_res), wrong=score_of_copies
-        )
+        costs["copied runs"] = _cost_of_copies(planar, full, test_samples, learners["knn"])
     return costs
+
+
+def _cost_of_wrong_clock(model: Model, test: Motion, settings: SimulationSettings) -> Cost:
+    return Cost(
+        right=replay_error(model, test, settings),
+        wrong=replay_error(model, on_wrong_clock(test), settings),
+    )
+
+
+def _costs_of_a_broken_gp(
+    runs: Sequence[Samples], test: Samples, learner: LearnerSettings
+) -> dict[str, Cost]:
+    """Ask a Gaussian process far from all its data, and with features that were scaled before."""
+    gp = _trained(runs, learner, "all")
+    X = _X(test, gp)
+    scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in runs]), axis=0), 1e-9)
+    right, far, twice = (
+        explained(gp.predict, x, test.a_res) for x in (X, X + FAR * scale, X / scale)
+    )
+    return {
+        "lost data": Cost(right=right, wrong=far),
+        "scaled twice": Cost(right=right, wrong=twice),
+    }
+
+
+def _cost_of_copies(
+    planar: Sequence[Samples], full: Sequence[Samples], test: Samples, learner: LearnerSettings
+) -> Cost:
+    """Learn from copies of 3-DoF runs in place of the 6-DoF runs."""
+    knn = _trained(full, learner, "6dof")
+    copy = _trained([*planar] * len(full), learner, "3dof")
+    X = _X(test, knn)
+    return Cost(
+        right=explained(knn.predict, X, test.a_res),
+        wrong=explained(copy.predict, X, test.a_res),
+    )
 
 
 def _X(one: Samples, residual: Residual) -> Array:

@@ -25,6 +25,7 @@ from rovsim.apps.cli.output import join_files, say
 from rovsim.core.extras import installed
 from rovsim.core.progress import counted, reported
 from rovsim.core.second_process import call, second_process
+from rovsim.diagnosis.campaign_diagnosis import CampaignDiagnosis
 from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.html.kept import find_outdated, keep_other
@@ -65,12 +66,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         options = select(settings, DiagnosisSettings)
         result = diagnose(data.campaign, data.runs, base, options, catalogue, draw_early)
         result.write(out / "diagnosis.json")
-        report_data = ReportData(
-            quality=data.quality,
-            ladder=result.diagnosis.ladder,
-            where=result.where,
-            diagnosis=result.diagnosis,
-        )
+        report_data = _data_to_show(result, data.quality)
         drawing.begin(report_data)
         _tell(settings, out, result.diagnosis, data.quality, catalogue, outdated.told)
         figures = drawing.finish()
@@ -109,6 +105,15 @@ class _Drawing:
     def finish(self) -> list[Drawn]:
         """All of them, once they are drawn."""
         return [future.result() for future in counted(list(self._begun.values()), "drawing")]
+
+
+def _data_to_show(result: CampaignDiagnosis, quality: Mapping[str, Quality]) -> ReportData:
+    return ReportData(
+        quality=quality,
+        ladder=result.diagnosis.ladder,
+        where=result.where,
+        diagnosis=result.diagnosis,
+    )
 
 
 def _tell(
