@@ -155,7 +155,7 @@ BAD = {  # what is replaced, by what: what the message says
     (", scale=1.0", ""): r"line 8: TypeError: .*scale",
     ("scale=1.0", "scale=-1.0"): "scale above 0",
     ('"force", "N"', '"my force", "N"'): "parameter 'my force'",
-    ("p.force", "p.farce"): "does not compile: Unknown attribute 'farce'",
+    ("p.force", "p.farce"): "does not compile: Unknown attribute 'farce'.*Did you mean 'force'",
     ("-p.force", "-unknown"): "does not compile: NameError: name 'unknown'",
     ("-p.force", "'much'"): "returns",
     ("-p.force, 0.0,", "-p.force,"): "six numbers",
@@ -187,7 +187,9 @@ BAD = {  # what is replaced, by what: what the message says
     ("        return", "        assert at.nu[0] < 9.0\n        return"): r"asserts \(line 12\)",
     ("        return", "        print(at.nu[0])\n        return"): "'wrench' prints",
     ("-p.force", "1j * p.force"): "'wrench' returns .*six numbers",
-    ("-p.force", "at.channels.volts"): r"Unknown attribute 'channels' \(line",
+    ("-p.force", "at.channels.volts"): r"Unknown attribute 'channels' \(line.*Declare 'chann",
+    ("-p.force", "at.nu_rel[0]"): "Unknown attribute 'nu_rel'.*Did you mean 'nu_r'",
+    ("-p.force", "at.actuators.farce[0]"): "Unknown attribute 'farce'.*Did you mean 'force'",
     ("-p.force", "1.0 - p.force"): "hose.py, effect hose: 'wrench' returns 1.0.*default values",
     ("-p.force", "p.force * at.nu[6 + int(at.t > 9.0)]"): "out of",
 }
@@ -207,6 +209,14 @@ def test_a_mistake_is_one_message(change, tmp_path, capsys):
     assert text.startswith("rovsim: ")
     assert text.count("rovsim: ") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_a_function_that_math_lacks_is_named_with_the_one_meant():
+    Path("hose.py").write_text(
+        "import math\n" + COMPLETE.replace("-p.force", "-math.sine(p.force)")
+    )
+    with pytest.raises(BadInput, match=r"no attribute 'sine'.*Did you mean 'sin'"):
+        load_catalogue([Path("hose.py")])
 
 
 OTHER_KINDS = {  # kind, its method: what the message says

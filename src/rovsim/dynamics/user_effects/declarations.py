@@ -14,9 +14,16 @@ GUIDE = "docs/your_own_effect.md shows a complete one."
 NUMBERS = ("low", "high", "default", "scale", "resolution")
 
 
-def refused(found: str, where: object, expected: str) -> BadInput:
-    """The error that refuses a user's effect: what was found where, and what was expected."""
-    return BadInput(found, where=where, expected=expected, remedy=GUIDE)
+def refused(found: str, where: object, expected: str, meant: str = "") -> BadInput:
+    """The error that refuses a user's effect.
+
+    Args:
+        found: what is wrong.
+        where: the file, and the line or the class.
+        expected: what should be there.
+        meant: a question after the name that was meant, if one is near.
+    """
+    return BadInput(found, where=where, expected=expected, remedy=f"{meant} {GUIDE}".lstrip())
 
 
 def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:

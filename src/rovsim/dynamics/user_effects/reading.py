@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Mapping
 
+from rovsim.core.errors import nearest
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
 from rovsim.dynamics.effects.base.kernels import compiled_alone, line_that_raises, mentions
@@ -117,17 +118,35 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     at = example_reading(cls.example_channels()) if cls.reads() else EXAMPLE
     try:
         kernel.compile((typeof(at), typeof(p)))
-    except (NumbaError, UnsupportedBytecodeError, TypeError) as error:
+    except (NumbaError, UnsupportedBytecodeError, TypeError, AttributeError) as error:
         raise refused(
             f"'wrench' does not compile: {_reason(str(error))}",
             where,
             "arithmetic on the numbers of `at` and `p`, functions of math, if, @inlined helpers",
+            _name_meant(error, at, p),
         ) from None
     returned = kernel.nopython_signatures[0].return_type
     real = (types.Float, types.Integer)
     numbers = [isinstance(element, real) for element in getattr(returned, "types", ())]
     if len(numbers) != 6 or not all(numbers):
         raise refused(f"'wrench' returns {returned}", where, "six numbers: X, Y, Z, K, M, N")
+
+
+def _name_meant(error: Exception, *given: Any) -> str:
+    """Ask which name was meant, where a kernel does not compile for one that is unknown.
+
+    Args:
+        error: that was raised when the kernel was compiled.
+        given: the named tuples that the kernel is called with.
+    """
+    if isinstance(error, AttributeError) and error.name:  # of a module, such as math
+        return nearest(error.name, [name for name in dir(error.obj) if name[0] != "_"])
+    unknown = re.search(r"Unknown attribute '(\w+)' of type (\w+)", str(error))
+    if unknown and unknown[1] == "channels":
+        return "Declare 'channels' in the class."
+    records = [part for record in given for part in (record, *record) if hasattr(part, "_fields")]
+    fields = {type(record).__name__: record._fields for record in records}
+    return nearest(unknown[1], fields[unknown[2]]) if unknown and unknown[2] in fields else ""
 
 
 def _refuse_in_loop(cls: type[Wrench], where: str) -> None:
