@@ -88,6 +88,7 @@ def test_names_that_differ_in_their_role_alone_go_together(motion, commands):
         ("NO_OF_FRAMES\t6000\nTIME_STAMP\t2026-05-12, 20:14:07.250\t812.5\n", 1778616847.25),
         ("Format Version,1.23,Capture Start Time,2026-05-12 08.14.07.250 PM,x\n", 1778616847.25),
         ("TIME_STAMP\t2026-05-12, 20:14:07\n", 1778616847.0),
+        ("Format Version,1.23,Capture Start Time,2026-05-12 08.14.07.14 PM\n", 1778616847.14),
         ("TIME_STAMP\t2026-15-12, 20:14:07\n", None),
         ("time_s,x_m\n", None),
     ],

@@ -55,6 +55,7 @@ def read(path, mocap):
 
 MOCAP_READER = MocapReader(
     "plain",
+    "a plain file",
     read,
     (FileSignature(starts_with(b"PLAIN")),),
     axes=FileAxes(("ned",), ("frd",), said="so"),

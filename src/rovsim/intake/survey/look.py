@@ -15,7 +15,8 @@ from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.readers import MocapReader, mocap_readers
 from rovsim.measurement.recording.tidying import tidy_export
 
-# Formats whose files may hold commands, or sensors to choose from. Others need only their reader.
+# Formats whose files may hold commands, or sensors to choose from, and what finds these. For every
+# other format its reader, which is found by itself, lists the bodies.
 WITH_COMMANDS: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
     "csv": look_into_csv,
     "rosbag2": lambda path, scratch, units: look_into_bag(path),

@@ -44,7 +44,6 @@ ZIPPED = {
 MARKERS = ("Trajectories", "PathFileType")
 VICON = ("Objects", "Segments", "Devices", "Joints", "Model Outputs")
 TUM = 8  # numbers a line: time, position, quaternion (x, y, z, w)
-FORMATS = "a QTM, Motive, C3D or csv export, a ROS 2 bag or an ArduPilot log"
 
 
 def sniff(path: Path) -> str:
@@ -68,6 +67,12 @@ def sniff(path: Path) -> str:
     raise _unknown(path, head)
 
 
+def _readable() -> str:
+    """Say which files can be read."""
+    *others, last = (reader.what for reader in mocap_readers().values())
+    return f"{', '.join(others)} or {last}"
+
+
 def _check_ending(path: Path, signature: FileSignature) -> None:
     if signature.endings and path.suffix.lower() not in signature.endings:
         raise BadInput(
@@ -86,7 +91,7 @@ def _refuse_known(path: Path, head: bytes) -> None:
     if not matches and not is_table(head):
         matches = [text] if (text := _known_text(head_lines(head))) else []
     for match in matches:
-        raise BadInput(match[0], where=path, expected=FORMATS, remedy=match[1])
+        raise BadInput(match[0], where=path, expected=_readable(), remedy=match[1])
 
 
 def _known_text(lines: list[str]) -> tuple[str, str] | None:
@@ -126,7 +131,7 @@ def _begins_as_text(head: bytes) -> bool:
 
 
 def _unknown(path: Path, head: bytes) -> BadInput:
-    lines, remedy = head_lines(head), f"Export the run as {FORMATS}."
+    lines, remedy = head_lines(head), f"Export the run as {_readable()}."
     if decoded(head) is None:
         problem = "binary data of no known kind"
         if _begins_as_text(head):
@@ -140,4 +145,4 @@ def _unknown(path: Path, head: bytes) -> BadInput:
         problem = f"text that starts with {lines[0].strip()[:40]!r}"
     else:
         problem, remedy = "the file is empty", "Export it again."
-    return BadInput(problem, where=path, expected=FORMATS, remedy=remedy)
+    return BadInput(problem, where=path, expected=_readable(), remedy=remedy)

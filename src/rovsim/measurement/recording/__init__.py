@@ -6,6 +6,7 @@ exports        what a reader returns
 attitudes      finds quaternions and matrices that are no rotations
 tables         text in columns
 signature      recognises a format by the start of a file
+header_times   reads from the header of a file when it began
 csv_checks     refuses numbers that a measured channel cannot have
 foreign        turns errors of other libraries into one message
 channels       each kind of measurement at its own times

@@ -73,21 +73,26 @@ class MocapReader:
 
     Attributes:
         name: of the format, as in `mocap.format`.
+        what: such a file in words: "a QTM export".
         read: reads a file.
         signatures: how files of the format are recognised.
         bodies: lists the rigid bodies of a file ('' where the format names none).
         axes: the axes that its files may have.
         general: whether files of other formats look like this one, so that those are tried first.
         folder: whether a run may be a folder.
+        start: tells from the first bytes of a file at which local time it began, as s since 1970;
+            None where it is not given.
     """
 
     name: str
+    what: str
     read: Callable[[Path, Mocap], Export]
     signatures: tuple[FileSignature, ...]
     bodies: Callable[[Path], Sequence[str]] = lambda path: [""]
     axes: FileAxes = FileAxes()
     general: bool = False
     folder: bool = False
+    start: Callable[[bytes], float | None] = lambda head: None
 
 
 @dataclass(frozen=True)

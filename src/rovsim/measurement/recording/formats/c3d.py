@@ -193,4 +193,4 @@ def _recognised(head: bytes) -> bool:
     return len(head) > 2 and head[1] == KEY and head[0] < 32
 
 
-MOCAP_READER = MocapReader("c3d", read_c3d, (FileSignature(_recognised),), body_names)
+MOCAP_READER = MocapReader("c3d", "a C3D file", read_c3d, (FileSignature(_recognised),), body_names)

@@ -241,4 +241,6 @@ def _recognised(head: bytes) -> bool:
     return len(lines) > 1 and (bool(re.search(r"[,;\t]", lines[0])) or is_table(head))
 
 
-MOCAP_READER = MocapReader("csv", read_csv, (FileSignature(_recognised),), general=True)
+MOCAP_READER = MocapReader(
+    "csv", "a csv file", read_csv, (FileSignature(_recognised),), general=True
+)

@@ -15,6 +15,7 @@ from rovsim.core.rotations import conjugate, multiply, rotate
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.attitudes import check_unit_length, finite_rows, unit_quaternions
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.header_times import reads_time
 from rovsim.measurement.recording.readers import FileAxes, MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature, head_lines
@@ -227,8 +228,13 @@ def _recognised(head: bytes) -> bool:
 
 MOCAP_READER = MocapReader(
     "motive_csv",
+    "a Motive export",
     read_motive,
     (FileSignature(_recognised),),
     body_names,
     FileAxes(("z_up", "ned", "y_up"), ("flu", "frd", "fur")),
+    start=reads_time(
+        r"Capture Start Time,(\d{4}-\d\d-\d\d \d\d\.\d\d\.\d\d)(\.\d+)?( [AP]M)",
+        "%Y-%m-%d %I.%M.%S %p",
+    ),
 )

@@ -13,6 +13,7 @@ from rovsim.core.rotations import from_matrix
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.attitudes import finite_rows, orthonormal
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.header_times import reads_time
 from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature, head_lines
@@ -194,4 +195,13 @@ def _recognised(head: bytes) -> bool:
     return headed or any("Rot[0]" in line for line in lines[:40])
 
 
-MOCAP_READER = MocapReader("qtm_tsv", read_qtm, (FileSignature(_recognised),), body_names)
+MOCAP_READER = MocapReader(
+    "qtm_tsv",
+    "a QTM export",
+    read_qtm,
+    (FileSignature(_recognised),),
+    body_names,
+    start=reads_time(
+        r"^TIME_STAMP\t(\d{4}-\d\d-\d\d, \d\d:\d\d:\d\d)(\.\d+)?", "%Y-%m-%d, %H:%M:%S"
+    ),
+)

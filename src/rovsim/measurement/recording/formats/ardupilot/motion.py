@@ -162,6 +162,7 @@ def _modes(log: ArduPilotLog) -> tuple[str, ...]:
 
 MOCAP_READER = MocapReader(
     "ardupilot",
+    "an ArduPilot log",
     read_log,
     SIGNATURES,
     axes=FileAxes(("ned",), ("frd",), said="ArduPilot logs in these axes"),

@@ -81,6 +81,7 @@ def _channels(found: TopicSamples, reader: TopicReader) -> dict[str, Channel]:
 
 MOCAP_READER = MocapReader(
     "rosbag2",
+    "a ROS 2 bag",
     read_bag,
     (
         FileSignature(starts_with(b"SQLite format 3\0"), "a ROS 2 bag (sqlite3)", (".db3",)),
