@@ -9,6 +9,7 @@ from rovsim.reporting.figures.palette import (
     BLACK,
     BLUE,
     BROWN,
+    FAMILIES,
     GREEN,
     OLIVE,
     PURPLE,
@@ -30,7 +31,9 @@ SIZES = {
         "gpytorch_love": OLIVE, "gpytorch_variance": VERMILION,
     },
 }  # fmt: skip
-COLORS = {"knn": VERMILION, "gp": BLUE, "gp_six_kernels": GREEN, "svgp": PURPLE}
+COLORS = {kind: FAMILIES[kind].color for kind in ("knn", "gp", "svgp")} | {
+    "gp_six_kernels": VERMILION
+}
 
 
 @styled()
