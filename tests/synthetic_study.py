@@ -55,7 +55,7 @@ def _study(
         **motion,
         "predicted_nu": {m: motion["nu"] + _drift(m, motion, rng) for m in models},
         "predicted_nu_dot": {m: motion["nu_dot"] + 2 * _drift(m, motion, rng) for m in models},
-        "predicted_eta": {m: _path(m, motion, rng) for m in models[:3]},
+        "predicted_position": {m: _path(m, motion, rng) for m in models[:3]},
         "tank": np.array([[0.0, 10.0], [-5.0, 0.0], [-3.0, 0.0]]),
         "comparison": Comparison.model_validate(_comparison(models, runs, rng)),
         "growth": Growth.model_validate(_growth(models, rng)),
@@ -142,8 +142,7 @@ def _motion(duration: float, rng: np.random.Generator) -> dict[str, Any]:
     position = np.stack(
         [5 + 3 * np.sin(0.2 * time), -2.5 - 1.6 * np.cos(0.31 * time), -1.5 + np.sin(0.1 * time)], 1
     )
-    eta = np.hstack([position, np.tile([1.0, 0, 0, 0], (len(time), 1))])
-    return {"time": time, "nu": nu, "nu_dot": nu_dot, "usable": usable, "eta": eta}
+    return {"time": time, "nu": nu, "nu_dot": nu_dot, "usable": usable, "position": position}
 
 
 def _drift(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.ndarray:
@@ -154,9 +153,7 @@ def _drift(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.n
 
 def _path(model: str, motion: dict[str, Any], rng: np.random.Generator) -> np.ndarray:
     away = np.linspace(0, 1.2 * _level(model), len(motion["time"]))[:, None]
-    eta = motion["eta"].copy()
-    eta[:, :3] += away * rng.uniform(-1, 1, 3)
-    return eta
+    return motion["position"] + away * rng.uniform(-1, 1, 3)
 
 
 def metrics(level: float, rng: np.random.Generator) -> dict[str, Any]:

@@ -146,7 +146,7 @@ EMPTY = {
 def test_nothing_measured_is_said_not_crashed(name):
     content = study()
     content |= EMPTY
-    for key in ("nu", "nu_dot", "eta"):
+    for key in ("nu", "nu_dot", "position"):
         content[key] = np.full_like(content[key], np.nan)
     budget = content["budget"]
     content["budget"] = replace(budget, parts={}, missing=np.full_like(budget.missing, np.nan))

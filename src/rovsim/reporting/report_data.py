@@ -42,9 +42,9 @@ class ReportData:
         budgets: forces of one model, by run.
         quality: quality reports, by run.
         comparison: see comparison.json; likewise the other results.
-        coverage: how much of the test runs lies inside the bands.
+        band_coverage: how much of the test runs lies inside the bands.
         steps: of a ladder of the compared models, on the test runs.
-        forces: totals of the budgets.
+        budget_totals: totals of the budgets, by run.
         drawn: runs that have figures of their own.
     """
 
@@ -54,10 +54,10 @@ class ReportData:
     budgets: Mapping[str, ForceBudget] = field(default_factory=dict)
     quality: Mapping[str, Quality] = field(default_factory=dict)
     comparison: Comparison | None = None
-    coverage: Bands | None = None
+    band_coverage: Bands | None = None
     growth: Growth | None = None
     steps: tuple[LadderStep, ...] = ()
-    forces: BudgetTotals | None = None
+    budget_totals: BudgetTotals | None = None
     drawn: tuple[str, ...] = ()
     ladder: Ladder | None = None
     timing: Timing | None = None
@@ -162,7 +162,7 @@ class RunData:
         return blank(self._motion.measured, self._motion.nu_dot, np.nan)
 
     @property
-    def eta(self) -> Array:
+    def position(self) -> Array:
         """Measured position (n, 3), NED, m; NaN unless all coordinates were measured."""
         motion, place = self._motion, self._motion.eta[:, :3]
         if motion.measured is not None and not motion.measured.coordinates.all():
@@ -186,9 +186,9 @@ class RunData:
         return self._predicted(STANDARD_HORIZON, "nu_dot")
 
     @property
-    def predicted_eta(self) -> dict[str, Array]:
-        """Predicted pose (n, 7) by model, in open loop: position, NED, m, and quaternion."""
-        return self._predicted(OPEN_LOOP, "eta")
+    def predicted_position(self) -> dict[str, Array]:
+        """Predicted position (n, 3) by model, in open loop, NED, m."""
+        return {model: eta[:, :3] for model, eta in self._predicted(OPEN_LOOP, "eta").items()}
 
     @property
     def bands(self) -> dict[str, Array]:
@@ -217,7 +217,7 @@ class RunData:
 REPLAYED = {
     "predicted_nu": f"{STANDARD_HORIZON} s windows",
     "predicted_nu_dot": f"{STANDARD_HORIZON} s windows",
-    "predicted_eta": "open loop",
+    "predicted_position": "open loop",
 }
 
 

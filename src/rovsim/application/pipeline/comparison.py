@@ -36,7 +36,7 @@ def compare(
     budgets = Remade(
         data.motions, lambda run: balance_forces(models[-1], data.motions[run], settings)
     )
-    forces = {}
+    totals = {}
     for run in counted(list(data.motions), "comparing"):
         motion = data.motions[run]
         for model in models:
@@ -44,18 +44,18 @@ def compare(
             replays[model.name].keep(run, replay)
         for search in searches:
             search.add_run(motion)
-        forces[run] = budgets[run].totals
+        totals[run] = budgets[run].totals
     return ReportData(
         motions=data.motions,
         replays=replays,
         bands=bands_when_asked(models, data.motions, settings),
-        coverage=cover_test_runs(models, data, settings),
+        band_coverage=cover_test_runs(models, data, settings),
         budgets=budgets,
         quality=data.quality,
         comparison=scores.comparison,
         growth=scores.growth,
         steps=tuple(scores.steps),
-        forces=BudgetTotals(runs=forces),
+        budget_totals=BudgetTotals(runs=totals),
         where=list_conditions([search.found for search in searches]),
         drawn=_choose_drawn(scores.comparison, models[-1].name, list(data.motions)),
     )

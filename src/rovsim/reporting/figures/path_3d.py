@@ -32,8 +32,8 @@ CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 def draw(
     *,
     time: Array,
-    eta: Array,
-    predicted_eta: Mapping[str, Array],
+    position: Array,
+    predicted_position: Mapping[str, Array],
     usable: Array | None = None,
     tank: Array | None = None,
 ) -> Figure:
@@ -44,13 +44,13 @@ def draw(
 
     Args:
         time: of the samples (n,), s.
-        eta: measured pose (n, >= 3), of which the position is drawn; NED, m.
-        predicted_eta: the same by model.
+        position: that was measured (n, 3), NED, m.
+        predicted_position: the same by model.
         usable: which samples (n,) may be used.
         tank: lower and upper limits (3, 2), NED, m; None where unknown.
     """
-    paths = {"measured": masked(eta[:, :3], usable)}
-    paths |= {name: masked(values[:, :3], usable) for name, values in predicted_eta.items()}
+    paths = {"measured": masked(position, usable)}
+    paths |= {name: masked(values, usable) for name, values in predicted_position.items()}
     paths = {name: path * HALF_TURN_X for name, path in paths.items()}
     style = looks(paths)
     figure = sheet(90)

@@ -43,7 +43,7 @@ def summarize(data: ReportData) -> list[str]:
         residual_sentences(errors, steps),
         ladder_sentences(steps, bool(data.diagnosis and leaves_unexplained(data.diagnosis))),
         timing_sentences(data.timing) if data.timing else [],
-        band_sentences(data.coverage) if data.coverage else [],
+        band_sentences(data.band_coverage) if data.band_coverage else [],
     ]
     return [" ".join(sentences) for sentences in paragraphs if sentences]
 

@@ -47,12 +47,12 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 
             figures = present(folder, data.campaign.name, results, origin, catalogue, other=other)
     outdated.remove(figures)
-    if results.coverage is None:
+    if results.band_coverage is None:
         (out / "bands.json").unlink(missing_ok=True)  # of an earlier comparison
     errors = {step.model: step.windows_2s for step in results.steps}
     away = [step.model for step in results.steps if not step.scored]
     tested = bool(data.runs.of("test"))
-    text = tell_comparison(errors, results.where, tested, results.coverage, away)
+    text = tell_comparison(errors, results.where, tested, results.band_coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
     message = join_files(text + tell_doubts(data.quality), files, notice, outdated.told)
     say(settings, message, results.comparison.to_json())
@@ -61,8 +61,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 def _write(folder: Path, found: ReportData) -> None:
     results = {
         "where": found.where,
-        "budget": found.forces,
-        "bands": found.coverage,
+        "budget": found.budget_totals,
+        "bands": found.band_coverage,
         "comparison": found.comparison,
     }
     for name, result in results.items():
