@@ -14,7 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.core.axes import AXES
+from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
@@ -26,7 +26,12 @@ SPEEDS = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate",
 THROUGHOUT, HEADING = "throughout", "heading"
 ACCELERATION = "acceleration"  # a kind that is drawn, but not searched
 ANGLES = ("roll angle", "pitch angle", HEADING)
-UNITS = {"speed": ("m/s", "rad/s"), "thrust": ("N", "N m"), "change": ("N/s", "N m/s")}
+UNITS = {  # of the six axes, by kind
+    "speed": VELOCITY_UNITS,
+    "thrust": FORCE_UNITS,
+    "change": tuple(f"{unit}/s" for unit in FORCE_UNITS),
+    ACCELERATION: ACCELERATION_UNITS,
+}
 
 
 @dataclass(frozen=True)
@@ -118,7 +123,7 @@ def list_shown_conditions(blocks: Blocks) -> dict[Condition, Array]:
     """
     conditions = dict(blocks.values)
     for k in np.flatnonzero(blocks.axes).tolist():
-        unit = ("m/s²", "rad/s²")[int(k >= 3)]
+        unit = UNITS[ACCELERATION][k]
         condition = Condition(f"{AXES[k]} acceleration", unit, ACCELERATION, AXES[k])
         conditions[condition] = blocks.measured[:, k]
     return conditions
@@ -130,16 +135,16 @@ def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Ar
     values = {Condition(THROUGHOUT, "", THROUGHOUT): np.zeros(len(time))}
     rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
     for k in np.flatnonzero(moves).tolist():
-        unit = UNITS["speed"][int(k >= 3)]
+        unit = UNITS["speed"][k]
         values[Condition(SPEEDS[k], unit, "speed", AXES[k])] = samples.nu[:, k]
     for k in np.flatnonzero(moves).tolist():
-        name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][int(k >= 3)]
+        name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][k]
         values[Condition(name, unit, "absolute", AXES[k])] = np.abs(samples.nu[:, k])
     for k, axis in enumerate(AXES):
-        unit = UNITS["thrust"][int(k >= 3)]
+        unit = UNITS["thrust"][k]
         values[Condition(f"{axis} thrust", unit, "thrust", axis)] = samples.wrench[:, k]
     for k, axis in enumerate(AXES):
-        unit = UNITS["change"][int(k >= 3)]
+        unit = UNITS["change"][k]
         values[Condition(f"change of {axis} thrust", unit, "change", axis)] = rate[:, k]
     angles = to_euler(samples.attitude)
     turns = moves[3:] if motion.measured is None else [*moves[3:5], *motion.measured.heading]

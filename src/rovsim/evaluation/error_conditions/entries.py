@@ -57,7 +57,7 @@ def _finding(found: Finding) -> ConditionFinding:
     """Report a finding with its sentence."""
     return ConditionFinding(
         **found.share().model_dump(),
-        unit=UNITS.get(found.axis, "rad/s²"),
+        unit=UNITS[found.axis],
         chance=found.chance,
         alike=tuple(c.name for c in found.alike),
         sentence=say_finding(found),

@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS
 from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
 from rovsim.evaluation.error_conditions.findings import SMALLEST, ErrorExplanation, Finding
 
-UNITS = {axis: "m/s²" for axis in ("surge", "sway", "heave")}
-FORCES = {axis: "N" for axis in UNITS}
+UNITS = dict(zip(AXES, ACCELERATION_UNITS, strict=True))  # of an error, by axis
+PUSH_UNITS = dict(zip(AXES, FORCE_UNITS, strict=True))
 POSITIVE = {
     "surge": "forward",
     "sway": "to starboard",
@@ -87,7 +88,7 @@ def relation(found: Finding) -> float:
 
 def _what(found: Finding) -> str:
     """Say how the error depends on the condition, and how large it gets."""
-    condition, unit = found.table.binning.condition, UNITS.get(found.axis, "rad/s²")
+    condition, unit = found.table.binning.condition, UNITS[found.axis]
     if condition.kind == THROUGHOUT:
         return _constant(found, unit)
     wordings = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
@@ -110,7 +111,7 @@ def _constant(found: Finding, unit: str) -> str:
 
 def _push(found: Finding) -> str:
     """Write the force or moment that would cause the mean error, with its unit."""
-    return f"{amount(abs(found.push or 0.0))} {FORCES.get(found.axis, 'N m')}"
+    return f"{amount(abs(found.push or 0.0))} {PUSH_UNITS[found.axis]}"
 
 
 def _extreme(found: Finding, unit: str) -> str:
