@@ -10,11 +10,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from recordings import campaign_content, write_campaign, write_run
-from rovsim.application.pipeline.reading import (
-    judge_recording,
-    load_campaign_vehicle,
-    read_recording,
-)
+from rovsim.application.pipeline.quality import judge_recording
+from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, from_euler, to_euler
@@ -27,6 +24,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.evaluation.commanded_motion.predicted import cause
 from rovsim.measurement.loading import load_campaign
+from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs, MotionRepairs
 from rovsim.measurement.rough_motion import estimate_velocities
 from rovsim.measurement.signals.outliers import KeepAll
 from said import unfolded
@@ -75,6 +73,13 @@ def rewritten(folder: Path, change) -> str:
 def test_nothing_is_said_against_a_sound_campaign(sound):
     for place in range(len(load_campaign(sound).runs)):
         assert doubts(sound, place) == ""
+
+
+def test_what_was_repaired_is_kept_until_a_run_is_judged(tmp_path):
+    repairs = MotionRepairs(duplicates=np.int64(2)), CommandRepairs(clipped=1)
+    anomalies = Anomalies(*repairs, 7, ((0.1, 1.0), (1.5, 1e9 / 3)), ("It’s „cut“.",))
+    anomalies.write(tmp_path / "run.json")
+    assert Anomalies.read(tmp_path / "run.json") == anomalies
 
 
 def test_wrong_body_axes_hang_the_vehicle_upside_down(campaign):

@@ -79,10 +79,13 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
 
     assert to_run(study) == set()
 
-    reading = {"tank", "read", "resample", "filter", "differentiate"}
+    reading = {"tank", "read", "judge", "resample", "filter", "differentiate"}
     touched = _edited(study, "src/rovsim/dynamics/effects/damping.py")
     assert {"replay", "diagnose", "add", "compare"} <= touched
     assert not reading & touched
+    touched = _edited(study, "src/rovsim/dynamics/engine/equation.py")
+    assert {"judge", "replay", "diagnose"} <= touched
+    assert not {"tank", "read", "resample", "filter"} & touched
     touched = _edited(study, "src/rovsim/reporting/figures/ladder.py")
     assert "figure_ladder" in touched
     assert touched <= {"figure_ladder", "report", "track", "all"}

@@ -3,7 +3,7 @@ if study.synthetic:
     rule tank:
         "Fly the synthetic campaign and write its raw exports."
         output:
-            study.raw(),
+            study.tank_files,
         log:
             f"{R}/logs/tank.log",
         benchmark:
@@ -16,19 +16,38 @@ if study.synthetic:
 
 
 rule read:
-    "Read one raw export: convert axes to NED and FRD, assess its quality, filter nothing."
+    "Read one raw export: convert axes to NED and FRD, filter nothing."
     input:
-        raw=lambda wildcards: study.raw(wildcards.run),
+        campaign=lambda w: study.campaign_file,
+        raw=lambda w: study.raw(w.run),
     output:
         recording=f"{R}/recordings/{{run}}.npz",
-        quality=f"{R}/quality/{{run}}.json",
+        anomalies=f"{R}/anomalies/{{run}}.json",
     log:
         f"{R}/logs/read/{{run}}.log",
     benchmark:
         f"{R}/benchmarks/read/{{run}}.tsv"
     params:
-        campaign=study.campaign_file,
-        settings=depends.signal("outliers"),
         code=code_of("read", without="rovsim.dynamics.effects"),
     script:
         "../scripts/read.py"
+
+
+rule judge:
+    "Judge the quality of one recording, beside the vehicle and the runs that it may copy."
+    input:
+        recording=f"{R}/recordings/{{run}}.npz",
+        anomalies=f"{R}/anomalies/{{run}}.json",
+        campaign=lambda w: study.campaign_file,
+        raw=lambda w: study.compared(w.run),
+    output:
+        f"{R}/quality/{{run}}.json",
+    log:
+        f"{R}/logs/judge/{{run}}.log",
+    benchmark:
+        f"{R}/benchmarks/judge/{{run}}.tsv"
+    params:
+        settings=depends.signal("outliers"),
+        code=code_of("judge", without="rovsim.dynamics.effects"),
+    script:
+        "../scripts/judge.py"

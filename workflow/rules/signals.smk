@@ -45,6 +45,6 @@ rule differentiate:
         f"{R}/benchmarks/differentiate/{{run}}.tsv"
     params:
         settings=depends.signal("differentiate"),
-        code=code_of("differentiate", without="rovsim.dynamics.effects"),
+        code=code_of("differentiate"),
     script:
         "../scripts/differentiate.py"

@@ -1,6 +1,6 @@
 """Derive velocities and accelerations; no row of an unusable run counts."""
 
-from rovsim.application.pipeline.measured_campaign import derive_motion
+from rovsim.application.pipeline.motion import derive_motion
 from rovsim.application.snakemake_job import job
 from rovsim.measurement.signals.chain import SignalSettings, read_stage
 from rovsim.results.quality import Quality

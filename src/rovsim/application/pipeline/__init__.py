@@ -1,6 +1,8 @@
 """The way of the data, one step a file: commands, workbench and workflow call the same functions.
 
-reading            raw exports of a run -> its recording, with doubts about it
+reading            raw exports of a run -> its recording, and what was wrong with them
+quality            a recording -> a report on its quality, with doubts about it
+motion             poses of a run -> its motion
 measured_campaign  a whole campaign -> motions, poses before the filter, quality
 models             names and files -> models; a model file with effects added
 replays            models x motions -> replays -> scores, growth of errors, steps of the ladder

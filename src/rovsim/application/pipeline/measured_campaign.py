@@ -1,16 +1,12 @@
 """Read a whole campaign: motions, poses before the filter, and reports on quality."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Mapping
 
-import numpy as np
-
-from rovsim.application.pipeline.reading import (
-    judge_recording,
-    load_campaign_vehicle,
-    read_recording,
-)
+from rovsim.application.pipeline.motion import derive_motion
+from rovsim.application.pipeline.quality import judge_recording
+from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted
@@ -18,13 +14,7 @@ from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.runs import Runs
-from rovsim.measurement.signals.chain import (
-    SignalSettings,
-    Stage,
-    differentiated,
-    filtered,
-    resampled,
-)
+from rovsim.measurement.signals.chain import SignalSettings, Stage, filtered, resampled
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.quality import Quality
 
@@ -70,14 +60,6 @@ def open_campaign(folder: str | None) -> Campaign:
             remedy="`rovsim tank out=DIR` makes a synthetic one to try.",
         )
     return load_campaign(Path(folder))
-
-
-def derive_motion(poses: Stage, quality: Quality, settings: SignalSettings) -> Motion:
-    """Derive velocities and accelerations of filtered poses; no row of an unusable run counts."""
-    motion = differentiated(poses, settings)
-    if quality.unusable:
-        return replace(motion, usable=np.zeros_like(motion.usable))
-    return motion
 
 
 def measure(

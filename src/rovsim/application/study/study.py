@@ -74,26 +74,32 @@ class Study:
         """Folder that the study writes to."""
         return f"results/{self.name}"
 
-    def raw(self, run: str = "") -> list[str]:
-        """List raw files, the campaign file first.
-
-        Args:
-            run: whose files are listed. Empty: all files that the tank writes; for a synthetic
-                campaign only.
-        """
-        if isinstance(self.campaign, Campaign):
-            recording = self.campaign.run(run)
-            return [str(self.campaign.file), *map(str, self.campaign.raw_files(recording))]
-        runs = [r for r in self.campaign.runs if run in ("", r.id)]
-        files = [name for r in runs for name in (*r.sensor_files, r.commands)]
-        vehicle_files = [VEHICLE] if own_vehicle(self.settings.tank) else []
-        extra = vehicle_files if run else [*vehicle_files, SEALED]
-        return [f"{self.folder}/raw/{name}" for name in ["campaign.yaml", *extra, *files]]
-
     @property
     def campaign_file(self) -> str:
         """Path of the campaign file."""
-        return self.raw(self.runs()[0])[0]
+        if isinstance(self.campaign, Campaign):
+            return str(self.campaign.file)
+        return f"{self.folder}/raw/campaign.yaml"
+
+    def raw(self, run: str) -> list[str]:
+        """List the raw files of one run."""
+        if isinstance(self.campaign, Campaign):
+            return [str(path) for path in self.campaign.raw_files(self.campaign.run(run))]
+        runs = [r for r in self.campaign.runs if r.id == run]
+        return [f"{self.folder}/raw/{name}" for r in runs for name in (*r.sensor_files, r.commands)]
+
+    def compared(self, run: str) -> list[str]:
+        """List raw files of a test run and of the train runs that it may copy; else none."""
+        if run not in self.runs("test"):
+            return []
+        return [path for other in (run, *self.runs("train")) for path in self.raw(other)]
+
+    @property
+    def tank_files(self) -> list[str]:
+        """All files of a synthetic campaign: its description, and the raw files of its runs."""
+        beside = [VEHICLE, SEALED] if own_vehicle(self.settings.tank) else [SEALED]
+        description = [self.campaign_file, *(f"{self.folder}/raw/{name}" for name in beside)]
+        return [*description, *(path for run in self.runs() for path in self.raw(run))]
 
     def runs(self, split: str = "") -> list[str]:
         """List the ids of all runs, or of those of one split."""

@@ -1,6 +1,11 @@
 """How many lines of raw files were repaired or left out, for each reason."""
 
 from dataclasses import asdict, astuple, dataclass
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from rovsim.core.files import plain, read_json, write_json
 
 
 @dataclass(frozen=True)
@@ -70,3 +75,12 @@ class Anomalies:
         """All numbers of lines, by their names in `quality/RUN.json`."""
         commands = {f"command_{name}": count for name, count in asdict(self.commands).items()}
         return {**asdict(self.motion), **commands, "left_out": self.left_out}
+
+    def write(self, path: Path) -> None:
+        """Write to JSON."""
+        write_json(path, plain(asdict(self)))
+
+    @staticmethod
+    def read(path: Path) -> "Anomalies":
+        """Read what `write` wrote."""
+        return TypeAdapter(Anomalies).validate_python(read_json(path))
