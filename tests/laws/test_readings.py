@@ -21,7 +21,7 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.estimation.observer.observed_run import prepare_run
-from rovsim.simulation.drive import Actuation, Drives
+from rovsim.simulation.drive import Actuation, Drives, JoinedSteps
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera
 
@@ -34,7 +34,7 @@ def test_a_long_step_moves_a_mass_as_its_parts_do(counts, seed):
     count = np.array(counts)
     wrench = np.random.default_rng(seed).normal(size=(count.sum(), 6))
     none = np.zeros((len(wrench), 0))
-    mean, growth = Actuation(wrench, none, none, none, none).joined(count)
+    mean, growth = Actuation(wrench, none, none, none, none).joined(JoinedSteps.of(count))
     for step, forces in enumerate(np.split(wrench, np.cumsum(count)[:-1])):
         v, p = np.zeros(6), np.zeros(6)
         for force in forces / len(forces):

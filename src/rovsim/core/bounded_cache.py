@@ -3,7 +3,7 @@
 from collections import OrderedDict
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from threading import RLock
+from threading import Lock
 from typing import (
     Callable,
     Generic,
@@ -31,17 +31,31 @@ class Recent(Generic[T]):
     def __init__(self, most: int = MOST) -> None:
         self._most, self._size = most, 0
         self._kept: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
-        self._lock = RLock()  # a server may ask from several threads
+        self._lock = Lock()  # several threads may ask
+        self._making: dict[Hashable, Lock] = {}
 
     def get(self, key: Hashable, make: Callable[[], T]) -> T:
-        """Return the value of a key, and make it if it is not kept."""
+        """Return the value of a key, and make it if it is not kept.
+
+        Values of different keys may be made at the same time.
+        """
         with self._lock:
             if key in self._kept:
-                self._kept.move_to_end(key)
-                return self._kept[key][0]
+                return self._use(key)
+            making = self._making.setdefault(key, Lock())
+        with making:
+            with self._lock:
+                if key in self._kept:  # another thread made it meanwhile
+                    return self._use(key)
             value = make()
             self.keep(key, value)
-            return value
+        with self._lock:
+            self._making.pop(key, None)
+        return value
+
+    def _use(self, key: Hashable) -> T:
+        self._kept.move_to_end(key)
+        return self._kept[key][0]
 
     def keep(self, key: Hashable, value: T) -> None:
         """Keep a value, and drop the least recently used ones if there are too many bytes."""

@@ -57,6 +57,8 @@ def levenberg_marquardt(
         if step is not None:
             damping = max(step.damping / 10.0, MIN_DAMPING)
             ended = _is_small(step, quadratic)
+            if ended and not rough and current.hypothesis is quadratic.hypothesis:
+                return Linearised(step.to, step.e, current.J)  # so near, derivatives are the same
             quadratic = problem.shift(quadratic, step)
             if step.gain_ratio_near_one and not ended:
                 continue
@@ -90,15 +92,16 @@ class QuadraticModel(NamedTuple):
 class TrialStep(NamedTuple):
     """Where a step leads, what it costs there, and how damped it was.
 
-    `length`, squared, in standard deviations; `residuals` (size,) the errors there. The
-    gain ratio is the reduction of the cost over the predicted one: near one, the derivatives from
-    where it began still hold.
+    `length`, squared, in standard deviations; `e` the errors (6, n) of each run there, and
+    `residuals` (size,) the same whitened. The gain ratio is the reduction of the cost over the
+    predicted one: near one, the derivatives from where it began still hold.
     """
 
     to: Hypothesis
     cost: float
     damping: float
     length: float
+    e: list[Array]
     residuals: Array
     gain_ratio_near_one: bool
 
@@ -111,12 +114,12 @@ class _LeastSquares:
     noise: Noise
     prior: Prior
 
-    def errors(self, wanted: Hypothesis) -> Array:
-        """Whitened errors (size,); infinite where the model diverges."""
+    def errors(self, wanted: Hypothesis) -> tuple[list[Array], Array]:
+        """Errors (6, n) of each run, and whitened (size,); infinite where the model diverges."""
         e = [e_run[0] for e_run in self.source.evaluate([wanted.model])]
         if not all(np.isfinite(e_run).all() for e_run in e):
-            return np.array([np.inf])
-        return self.source.whiten(e, self.noise).ravel()
+            return e, np.array([np.inf])
+        return e, self.source.whiten(e, self.noise).ravel()
 
     def cost(self, wanted: Hypothesis, residuals: Array) -> float:
         """Sum of squares of errors, and what the prior says of the hypothesis."""
@@ -201,9 +204,9 @@ def _try_step(
     """Where a step to a goal (k,) leads."""
     trial = quadratic.hypothesis.at(goal)
     step = trial.x - quadratic.hypothesis.x
-    residuals = problem.errors(trial)
+    e, residuals = problem.errors(trial)
     cost, length = problem.cost(trial, residuals), float(step @ quadratic.H @ step)
     predicted = -float(2.0 * quadratic.g @ step + length)
     # gain ratio (actual over predicted reduction) within the tolerance of 1
     near_one = abs(quadratic.cost - cost - predicted) < GAIN_RATIO_TOLERANCE * predicted
-    return TrialStep(trial, cost, damping, length, residuals, near_one)
+    return TrialStep(trial, cost, damping, length, e, residuals, near_one)

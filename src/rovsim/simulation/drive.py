@@ -77,25 +77,39 @@ class Actuation(NamedTuple):
             channels=model.thrust_path.channels,
         )
 
-    def joined(self, count: Array) -> tuple["Actuation", "Actuation"]:
+    def joined(self, steps: "JoinedSteps") -> tuple["Actuation", "Actuation"]:
         """Join steps to longer ones, over each of which the actuation is a straight line.
 
         A mean over a long step forgets when within the step a force acted. A line with the same
         mean and the same first moment about the middle of the step keeps that.
 
-        Args:
-            count: how many steps (s,) make each of the s longer ones.
-
         Returns:
             Means over the longer steps, and by how much the lines rise over each of them.
         """
+        mean, rise = (Actuation(*(weigh @ x for x in self)) for weigh in steps)
+        return mean, rise
+
+
+class JoinedSteps(NamedTuple):
+    """Sparse matrices (s, k) that join k steps to s longer ones.
+
+    Attributes:
+        mean: gives means over the longer steps.
+        rise: gives by how much a straight line with the same first moment rises over each of them.
+    """
+
+    mean: csr_array
+    rise: csr_array
+
+    @staticmethod
+    def of(count: Array) -> "JoinedSteps":
+        """Join so many steps (s,) to each of s longer ones."""
         bounds = np.append(0, np.cumsum(count))
         number = np.arange(bounds[-1])
         share = 1.0 / np.repeat(count, count)
         # a line r c over -1/2 < c < 1/2 has the first moment r / 12
         apart = 12.0 * ((number - np.repeat(bounds[:-1], count) + 0.5) * share - 0.5)
-        mean, growth = (csr_array((w, number, bounds)) for w in (share, apart * share))
-        return Actuation(*(mean @ x for x in self)), Actuation(*(growth @ x for x in self))
+        return JoinedSteps(*(csr_array((w, number, bounds)) for w in (share, apart * share)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +206,7 @@ class Drives:
     ) -> None:
         self._given = commands, edges, between
         self._cuts = StepCuts()
-        self._parts = parts
+        self._joined = None if parts is None else JoinedSteps.of(parts)
         self._kept = Recent(KEPT) if kept is None else kept
         self._own = object()  # part of its keys, which no other run has
 
@@ -219,7 +233,7 @@ class Drives:
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
         """Actuation over the steps; where these are joined, also its rise over each of them."""
         actuation = Actuation.by(model, model.thrust_path.over_steps(*self._given, self._cuts))
-        return (actuation,) if self._parts is None else actuation.joined(self._parts)
+        return (actuation,) if self._joined is None else actuation.joined(self._joined)
 
 
 def drive_by_log(model: Model, motion: Motion, grid: StepGrid, between: Between) -> Drive:

@@ -26,7 +26,7 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
     Args:
         model: with its current and the time constant of its memory.
         motion: the run as the model sees it, see `undo_mocap_view`.
-        times: (k,) in rising order, s on the clock of the motion.
+        times: (k,), s on the clock of the motion.
 
     Returns:
         Velocity (k, 6) in body axes, m/s and rad/s; empty where the model has no fluid memory.
@@ -39,8 +39,9 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
         return np.zeros((len(times), 6))
     nu_r = motion.state_nu[rows].copy()
     nu_r[:, :3] -= unrotate(motion.eta[rows, 3:], body.current)
-    count = max(1, int(np.ceil((times[-1] - motion.time[0]) / STEP - 1e-9)))
-    grid = np.linspace(motion.time[0], times[-1], count + 1)
+    end = np.max(times, initial=motion.time[0] + STEP)
+    count = int(np.ceil((end - motion.time[0]) / STEP - 1e-9))
+    grid = np.linspace(motion.time[0], end, count + 1)
     h = float(grid[1] - grid[0])
     on_grid = np.stack([np.interp(grid, motion.time[rows], column) for column in nu_r.T], axis=1)
     wake = LowPass((1.0 / body.memory_decay,))
@@ -69,11 +70,11 @@ def remembered_at(
         return NO_MEMORY
     keys = [_name_memory(m) for m in models]
     states = {
-        k: measured_memory(m, see(m), edges)
+        k: measured_memory(m, see(m), edges[steps])
         for k, m in dict(zip(keys, models, strict=True)).items()
     }
     return np.stack(
-        [states[k][steps] if states[k].size else np.zeros((len(steps), 6)) for k in keys]
+        [states[k] if states[k].size else np.zeros((len(steps), 6)) for k in keys]
     )
 
 

@@ -12,7 +12,7 @@ from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, project
 from rovsim.diagnosis.equations.products.library import push
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.diagnosis.structure.residual import FALSE_ALARM
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
@@ -53,19 +53,19 @@ class LawFits:
         """What the best of all terms gains by chance, less its penalty (Bonferroni's bound)."""
         return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.penalty)
 
-    def fit_unless_worse(
-        self, form: Form, h: Hypothesis, current: Fit, score: float
+    def fit_unless_below(
+        self, form: Form, h: Hypothesis, current: Fit, least: float
     ) -> FittedLaw | None:
-        """Fit a law and all else; None as soon as its score surely stays far below another.
+        """Fit a law and all else; None as soon as its score will surely not reach `least`.
 
         Args:
             form: of the law.
             h: a hypothesis with the law.
             current: a fit whose derivatives are taken at first.
-            score: to compare with.
+            least: score to be reached.
         """
         start = form.follow(h)
-        fit = self.selection.fit_unless_worse(start, current, score + self._extra_penalty(start))
+        fit = self.selection.fit_unless_below(start, current, least + self._extra_penalty(start))
         return None if fit is None else self._score_law(form, fit)
 
     def fit_each(
@@ -78,7 +78,7 @@ class LawFits:
         fits: dict[Key, FittedLaw] = {}
         for key, (form, h) in laws.items():
             best_score = max((score, *(x.score for x in fits.values())))
-            law = self.fit_unless_worse(form, h, current, best_score)
+            law = self.fit_unless_below(form, h, current, best_score - HOPELESS_LR)
             fits |= {key: law} if law else {}
         return dict(sorted(fits.items(), key=lambda x: -x[1].score))
 

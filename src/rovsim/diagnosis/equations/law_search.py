@@ -116,7 +116,7 @@ def _finish(fits: LawFits, grown: FittedLaw) -> FittedLaw:
         h, form = current.fit.hypothesis, current.form
         without_term = [(form, h.without(i)) for i in _list_idle(fits, current.fit)]
         shorter = (*without_term, *form.simplify(h))
-        laws = [fits.fit_unless_worse(*x, current.fit, current.score) for x in shorter]
+        laws = [fits.fit_unless_below(*x, current.fit, current.score) for x in shorter]
         best_law = max(filter(None, laws), key=lambda x: x.score, default=None)
         if best_law is None or best_law.score < current.score:
             return current

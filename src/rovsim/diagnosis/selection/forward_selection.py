@@ -78,10 +78,33 @@ def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: f
     return more is not less and workspace.score(more) - workspace.score(less) >= threshold
 
 
-def try_swaps(
-    workspace: SearchWorkspace, current: Fit, trials: int, swap: float = MIN_LR_OF_SWAP
+def swap_terms(
+    workspace: SearchWorkspace, current: Fit, min_gain: float = MIN_LR_OF_SWAP
+) -> Fit:
+    """Replace any one term by the likeliest other effect, as long as that is likelier.
+
+    Args:
+        workspace: of the search.
+        current: the fit so far.
+        min_gain: by how much the score has to be larger after a swap.
+    """
+    return _try_swaps(workspace, current, 1, min_gain, -min_gain)[0]
+
+
+def swap_and_list_rivals(workspace: SearchWorkspace, current: Fit) -> tuple[Fit, list[Rival]]:
+    """Replace any one term by another effect, as long as that is likelier, and list the others.
+
+    Returns:
+        The likeliest fit, and the effects that could stand in the place of each of its terms.
+    """
+    trials = workspace.settings.trials
+    return _try_swaps(workspace, current, trials, MIN_LR_OF_SWAP, HOPELESS_LR)
+
+
+def _try_swaps(
+    workspace: SearchWorkspace, current: Fit, trials: int, min_gain: float, known: float
 ) -> tuple[Fit, list[Rival]]:
-    """Replace any one term by another effect, as long as that is likelier.
+    """Try other effects in the place of each term, from the beginning after each swap.
 
     An effect that to first order explains less than half of what the term does is not refitted,
     unless its smaller penalty makes up for that.
@@ -90,10 +113,9 @@ def try_swaps(
         workspace: of the search.
         current: the fit so far.
         trials: how many effects are refitted in the place of each term, at least.
-        swap: by how much the score has to be larger after a swap.
-
-    Returns:
-        The likeliest fit, and the effects that could stand in the place of each of its terms.
+        min_gain: by how much the score has to be larger after a swap.
+        known: by how much the score of a rival may be smaller for that to be found out; a fit that
+            will surely be worse is given up.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
     removals = workspace.first_order.remove_each(current)
@@ -107,11 +129,14 @@ def try_swaps(
             ):
                 start, deficit = removed.hypothesis.with_term(p.term), HOPELESS_LR
                 start = place_thresholds(workspace, start, p.term)
-                trial = workspace.fit_unless_worse(start, current, workspace.score(current))
+                trial = workspace.fit_unless_below(
+                    start, current, workspace.score(current) - known
+                )
             if trial is not None:
                 deficit = workspace.score(current) - workspace.score(trial)
-                if deficit < -swap and not (loose and file.explains(trial, p.term.id)):
-                    return try_swaps(workspace, prune(workspace, trial), trials, swap)
+                if deficit < -min_gain and not (loose and file.explains(trial, p.term.id)):
+                    swapped = prune(workspace, trial)
+                    return _try_swaps(workspace, swapped, trials, min_gain, known)
                 weight = file.weigh(Contender(current, term), Contender(trial, p.term), deficit)
                 deficit = max(0.0, weight)  # likelier, but not beside a loose file: undecided
             rivals.append(Rival(p.term.id, term.id, deficit, trial))
@@ -183,12 +208,12 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     if loose is not current:
         workspace, current = _add_and_swap(workspace, loose, seed)
     workspace = workspace.relinearise_if_changed(current)
-    current, _ = try_swaps(workspace, current, 1)
+    current = swap_terms(workspace, current)
     current = drop_imitations(workspace, change_mode(workspace, current))
     verdict = judge_beside_file(workspace, prefer_file(workspace, current))
     current = free_shape(workspace, fix_gain(workspace, verdict.fit))
     workspace, current, wandering = challenge_steady(workspace, current)
-    current, rivals = try_swaps(workspace, current, workspace.settings.trials)
+    current, rivals = swap_and_list_rivals(workspace, current)
     every = [*rivals, *verdict.rivals, *wandering]
     return SearchResult(workspace, current, keep_likeliest(every))
 
@@ -205,8 +230,7 @@ def _add_and_swap(
         workspace = workspace.update_after(extended)
         workspace, polished = prefer_steady(workspace, workspace.fit(extended.hypothesis))
         polished = free_shape(workspace, move_thresholds(workspace, polished))
-        swap = max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain)
-        current, _ = try_swaps(workspace, polished, 1, swap)  # the likeliest other name
+        current = swap_terms(workspace, polished, max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain))
     return workspace, current
 
 

@@ -70,12 +70,12 @@ class SearchResult:
         """Fit another hypothesis in the same way as the accepted one."""
         return self.workspace.fit(start, self.prior_std)
 
-    def fit_unless_worse(self, start: Hypothesis, current: Fit, score: float) -> Fit | None:
-        """As `fit`, but None as soon as the score surely stays far below another.
+    def fit_unless_below(self, start: Hypothesis, current: Fit, least: float) -> Fit | None:
+        """As `fit`, but None as soon as the score will surely not reach `least`.
 
-        See `SearchWorkspace.fit_unless_worse`.
+        See `SearchWorkspace.fit_unless_below`.
         """
-        return self.workspace.fit_unless_worse(start, current, score, self.prior_std)
+        return self.workspace.fit_unless_below(start, current, least, self.prior_std)
 
     def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
         """Remove from a fit of the selection what is not worth its penalty.

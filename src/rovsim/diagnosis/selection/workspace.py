@@ -129,20 +129,20 @@ class SearchWorkspace:
         """
         return self.fits.fit(start, prior_std)
 
-    def fit_unless_worse(
-        self, start: Hypothesis, current: Fit, score: float, prior_std: float = np.inf
+    def fit_unless_below(
+        self, start: Hypothesis, current: Fit, least: float, prior_std: float = np.inf
     ) -> Fit | None:
-        """As `fit`, but None as soon as its score will surely be `HOPELESS_LR` below another.
+        """As `fit`, but None as soon as its score will surely not reach `least`.
 
         Args:
             start: the hypothesis to fit.
             current: a fit whose derivatives are taken at first, as far as they have the same
                 parameters.
-            score: to compare with.
+            least: score to be reached.
             prior_std: see `fit`.
         """
-        least = score - HOPELESS_LR + self._penalty_of(start)
-        return self.fits.fit_or_give_up(start, current, least, prior_std)
+        least_likelihood = least + self._penalty_of(start)
+        return self.fits.fit_or_give_up(start, current, least_likelihood, prior_std)
 
     def score(self, fit: Fit) -> float:
         """Twice the log likelihood of a fit, less its penalties: what fits are compared by.

@@ -7,21 +7,24 @@ not depend on the number of cores.
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import ContextVar, copy_context
 from functools import cache
 from itertools import pairwise
-from typing import Any, Callable
+from typing import Any, Callable, Iterable, TypeVar
 
 import numpy as np
 from numba import config
 
 from rovsim.dynamics.engine.types import Jobs
 
+T = TypeVar("T")
+_mapping: ContextVar[bool] = ContextVar("mapping", default=False)
 PIECES = 4  # of the jobs for each core: with more pieces than cores, all end at about the same time
 
 
 @cache
-def _threads(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count, "rovsim")
+def _threads(count: int, name: str) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count, f"rovsim_{name}")
 
 
 if hasattr(os, "register_at_fork"):  # a forked child process has none of the threads
@@ -48,4 +51,24 @@ def on_cores(kernel: Callable[[slice], None], lengths: np.ndarray) -> None:
     cuts = np.searchsorted(ends, np.linspace(0.0, ends[-1], PIECES * cores + 1)[1:-1])
     parts = [0, *np.unique(cuts), len(lengths)]
     slices = [slice(a, b) for a, b in pairwise(parts) if b > a]
-    list(_threads(cores).map(kernel, slices))
+    list(_threads(cores, "kernels").map(kernel, slices))
+
+
+def map_on_cores(function: Callable[..., T], *arguments: Iterable[Any]) -> list[T]:
+    """As `list(map(function, *arguments))`, NUMBA_NUM_THREADS calls at a time.
+
+    It pays for functions that mostly run without the interpreter's lock (GIL): numpy on large
+    arrays, and kernels, also on all cores. Each call sees the caller's context (`contextvars`), of
+    which numpy's error handling is a part. Within such a call, others are made one by one.
+    """
+    rows = list(zip(*arguments, strict=True))
+    cores = config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    if cores == 1 or len(rows) < 2 or _mapping.get():
+        return [function(*row) for row in rows]
+    contexts = [copy_context() for _ in rows]
+    for context in contexts:
+        context.run(_mapping.set, True)
+    calls = _threads(cores, "calls").map(
+        lambda context, row: context.run(function, *row), contexts, rows
+    )
+    return list(calls)

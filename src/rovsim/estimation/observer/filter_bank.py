@@ -11,6 +11,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.progress import step
+from rovsim.dynamics.engine.parallel import map_on_cores
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
 from rovsim.estimation.observer.drifting_current import DriftFit, MovingWater
@@ -70,10 +71,11 @@ class FilterBank:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of m models on each run; NaN for models that are impossible."""
-        return [
-            evaluate_possible(models, len(run.time), partial(self._innovations_of_run, k))
-            for k, run in enumerate(self.runs)
-        ]
+        def of_run(k: int, run: ObservedRun) -> Array:
+            of_possible = partial(self._innovations_of_run, k)
+            return evaluate_possible(models, len(run.time), of_possible)
+
+        return map_on_cores(of_run, range(len(self.runs)), self.runs)
 
     def innovations(self, model: Model) -> list[Array]:
         """Innovations (6, n) of one model on each run."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
+from rovsim.dynamics.engine.parallel import map_on_cores
 from rovsim.estimation.observer.axis_kernels import misfit
 from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,
@@ -62,19 +63,19 @@ def fit_noise(
         draws: how many sets of innovations `e` holds, each of which might be the true one. All sets
             together then count as one.
     """
-    noises, costs = [], []
-    for i, dynamics in enumerate(error_dynamics):
+
+    def of_axis(i: int, dynamics: AxisErrorDynamics) -> tuple[AxisNoise, float]:
         filters = tuple(x.filters[i] for x in made_by)
         e_axis = tuple(x[i] for x in e)
         axis = _AxisInnovations(i, e_axis, tuple(runs), filters, dynamics, draws)
         if not axis.counted:
-            noises.append(start.of_axis(i))
-            continue
+            return start.of_axis(i), 0.0
         noise, cost = _fit_axis(axis, start.of_axis(i))
-        if with_bias and not axis.binned:
-            noise, cost = _fit_bias(axis, noise, cost)
-        noises.append(noise)
-        costs.append(cost)
+        return _fit_bias(axis, noise, cost) if with_bias and not axis.binned else (noise, cost)
+
+    noises, costs = zip(
+        *map_on_cores(of_axis, range(len(error_dynamics)), error_dynamics), strict=True
+    )
     return NoiseFit(Noise(*np.array(noises).T), -2.0 * sum(costs))
 
 
