@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.dynamics.engine.parallel import map_on_cores, on_cores
 
 
 def on(cores):
@@ -56,3 +56,29 @@ def test_what_goes_wrong_in_a_part_is_told():
 
     with on(2), pytest.raises(ZeroDivisionError):
         on_cores(work, np.ones(9))
+
+
+@given(st.lists(st.integers(), max_size=20), st.integers(1, 5))
+def test_calls_side_by_side_give_what_calls_one_by_one_give(numbers, cores):
+    with on(cores):
+        assert map_on_cores(pow, numbers, [2] * len(numbers)) == [k**2 for k in numbers]
+
+
+def test_calls_share_kernels_and_may_map_in_turn():
+    def call(k):
+        return times_done([1] * k), map_on_cores(times_done, [[1], [1, 1]])
+
+    with on(2):
+        found = map_on_cores(call, range(9))
+    assert found == [([1] * k, [[1], [1, 1]]) for k in range(9)]
+
+
+def test_a_call_sees_how_numpy_treats_errors():
+    with on(2), np.errstate(divide="ignore", over="raise"):
+        found = map_on_cores(lambda _: np.geterr(), range(3))
+    assert [(one["divide"], one["over"]) for one in found] == [("ignore", "raise")] * 3
+
+
+def test_what_goes_wrong_in_a_call_is_told():
+    with on(2), pytest.raises(ZeroDivisionError):
+        map_on_cores(lambda k: 1 // k, range(3))

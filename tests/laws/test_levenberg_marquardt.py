@@ -69,3 +69,32 @@ def test_a_step_that_damping_made_short_is_followed_by_others():
     (found,) = levenberg_marquardt(start, Saturated(), FIRST_NOISE).hypothesis.terms
     assert found.effect["surge"] == pytest.approx(35.0, abs=0.5)
     assert found.effect["sway"] == pytest.approx(40.0, abs=0.5)
+
+
+class Linear(Errors):
+    """Errors linear in drag, 40 in surge and in sway; counts how often it is linearised."""
+
+    def __init__(self):
+        self.linearised = 0
+
+    def linearise(self, at):
+        self.linearised += 1
+        return super().linearise(at)
+
+    def _errors(self, world):
+        (drag,) = world.added
+        found = np.zeros((6, COUNT))
+        found[0] = 0.5 * (drag["surge"] - 40.0) * np.sin(np.arange(COUNT))
+        found[1] = 0.5 * (drag["sway"] - 40.0) * np.cos(np.arange(COUNT))
+        return found
+
+
+def test_a_last_small_step_needs_no_new_derivatives():
+    term = Term(built_in()["quadratic_damping"](surge=40.0001, sway=40.0), ("surge", "sway"))
+    source, start = Linear(), Hypothesis(model(), (term,))
+    found = levenberg_marquardt(start, source, FIRST_NOISE)
+    there = source.linearise(found.hypothesis)
+    assert source.linearised == 2  # that of the start, and this one
+    assert found.hypothesis.terms[0].effect["surge"] == pytest.approx(40.0, abs=1e-6)
+    np.testing.assert_array_equal(found.e, there.e)
+    np.testing.assert_allclose(found.J, there.J, rtol=1e-6, atol=1e-9)

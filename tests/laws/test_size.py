@@ -1,8 +1,10 @@
 """Long recordings and many runs: taken in piece by piece, they say the same."""
 
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from threading import Barrier
 from types import SimpleNamespace
 
 import numpy as np
@@ -59,6 +61,26 @@ def test_one_value_stays_however_large_and_none_where_none_is_wanted():
         for _ in range(2):
             recent.get("a", lambda made=made: made.append(1) or np.zeros(10))
         assert len(made) == again
+
+
+def test_two_values_may_be_made_at_once_but_none_twice():
+    both, recent, made = Barrier(2, timeout=20.0), Recent(1 << 20), []
+
+    def make(name):
+        made.append(name)
+        both.wait()  # until the other one is being made, too
+        return np.zeros(10)
+
+    with ThreadPoolExecutor(8) as threads:
+        list(threads.map(lambda name: recent.get(name, lambda: make(name)), "abababab"))
+    assert sorted(made) == ["a", "b"]
+
+
+def test_a_value_that_could_not_be_made_may_be_asked_for_again():
+    recent = Recent()
+    with pytest.raises(ZeroDivisionError):
+        recent.get("a", lambda: np.zeros(1 // 0))
+    assert recent.get("a", lambda: np.ones(1)) == 1.0
 
 
 def test_values_of_two_kinds_share_what_is_kept():

@@ -73,9 +73,7 @@ def remembered_at(
         k: measured_memory(m, see(m), edges[steps])
         for k, m in dict(zip(keys, models, strict=True)).items()
     }
-    return np.stack(
-        [states[k] if states[k].size else np.zeros((len(steps), 6)) for k in keys]
-    )
+    return np.stack([states[k] if states[k].size else np.zeros((len(steps), 6)) for k in keys])
 
 
 def _name_memory(model: Model) -> tuple:

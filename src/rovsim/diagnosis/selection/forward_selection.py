@@ -78,9 +78,7 @@ def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: f
     return more is not less and workspace.score(more) - workspace.score(less) >= threshold
 
 
-def swap_terms(
-    workspace: SearchWorkspace, current: Fit, min_gain: float = MIN_LR_OF_SWAP
-) -> Fit:
+def swap_terms(workspace: SearchWorkspace, current: Fit, min_gain: float = MIN_LR_OF_SWAP) -> Fit:
     """Replace any one term by the likeliest other effect, as long as that is likelier.
 
     Args:
@@ -129,9 +127,7 @@ def _try_swaps(
             ):
                 start, deficit = removed.hypothesis.with_term(p.term), HOPELESS_LR
                 start = place_thresholds(workspace, start, p.term)
-                trial = workspace.fit_unless_below(
-                    start, current, workspace.score(current) - known
-                )
+                trial = workspace.fit_unless_below(start, current, workspace.score(current) - known)
             if trial is not None:
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -min_gain and not (loose and file.explains(trial, p.term.id)):

@@ -71,6 +71,7 @@ class FilterBank:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Innovations (m, 6, n) of m models on each run; NaN for models that are impossible."""
+
         def of_run(k: int, run: ObservedRun) -> Array:
             of_possible = partial(self._innovations_of_run, k)
             return evaluate_possible(models, len(run.time), of_possible)
