@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.dynamics.engine.parallel import map_on_cores, on_cores
+from rovsim.core.threads import map_on_cores, on_cores
 
 
 def on(cores):

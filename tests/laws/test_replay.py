@@ -19,7 +19,6 @@ from rovsim.dynamics.body import Body, packed
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import QuadraticDamping
 from rovsim.dynamics.engine.modules import engine
-from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import (
     Constants,
     Inputs,
@@ -33,6 +32,7 @@ from rovsim.evaluation.error_metrics import rms, subtract
 from rovsim.evaluation.score_collector import score_replay
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
+from rovsim.simulation.batch import run_jobs
 from rovsim.simulation.prediction import Replay
 from rovsim.simulation.replay import replay, simulate
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings

@@ -9,7 +9,7 @@ from numba import njit
 from scipy.linalg import eigh
 
 from rovsim.core import rotations
-from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.core.threads import on_cores
 from rovsim.dynamics.learned.checks import check_exported
 from rovsim.dynamics.learned.features import assemble, assemble_one
 from rovsim.dynamics.learned.layout import BLOCKS, HEADER

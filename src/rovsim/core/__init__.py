@@ -21,6 +21,7 @@ normal          numbers of the normal distribution
 robust          statistics that a few wrong values do not change
 gauss_markov    noise with a correlation time, of unit variance
 bounded_cache   a cache with a limit: what it dropped is computed again
+threads         work on all cores, in threads
 collector       when Python collects garbage, and returns memory to the system
 second_process  a second process for work that needs other libraries
 termination     treats SIGTERM like Ctrl-C

@@ -6,17 +6,17 @@ use it. Only this module and the engine know which arguments the kernels take.
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
+from rovsim.core.threads import on_cores
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.engine.modules import attached, engine
-from rovsim.dynamics.engine.parallel import run_jobs
 from rovsim.dynamics.engine.types import (
     NO_MEMORY,
     Constants,
@@ -197,6 +197,11 @@ class Batch:
             ramp = np.stack([d.ramp for d in distinct])
         length = np.full(len(first.wrench), first.duration)
         return Inputs(wrench, force, first.demand, row, length, ramp)
+
+
+def run_jobs(kernel: Callable, jobs: Jobs, *given: Any) -> None:
+    """Call `kernel(part, *given)` for parts of the jobs on all cores; it must release the GIL."""
+    on_cores(lambda part: kernel(Jobs(*(values[part] for values in jobs)), *given), jobs.steps)
 
 
 def _refuse_unlike(models: Sequence[Model]) -> None:

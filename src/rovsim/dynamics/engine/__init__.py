@@ -9,5 +9,4 @@ as_tuples        one parameter set, one step and one state, out of arrays of all
 integration      its integration over steps
 observer         a model along a measurement, corrected by it
 modules          written modules for lists of effects
-parallel         kernels on all cores, in threads
 """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.progress import step
-from rovsim.dynamics.engine.parallel import map_on_cores
+from rovsim.core.threads import map_on_cores
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
 from rovsim.estimation.observer.drifting_current import DriftFit, MovingWater

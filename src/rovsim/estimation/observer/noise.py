@@ -22,7 +22,7 @@ from typing import NamedTuple, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.engine.parallel import on_cores
+from rovsim.core.threads import on_cores
 from rovsim.estimation.observer.autoregression import Autoregression
 from rovsim.estimation.observer.axis_kernels import filter_kept
 from rovsim.estimation.observer.kalman import (

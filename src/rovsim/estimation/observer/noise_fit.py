@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.optimize import minimize
 
-from rovsim.dynamics.engine.parallel import map_on_cores
+from rovsim.core.threads import map_on_cores
 from rovsim.estimation.observer.axis_kernels import misfit
 from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,

@@ -1,8 +1,8 @@
-"""Run compiled kernels on all cores, in threads: kernels release the interpreter's lock (GIL).
+"""Work on all cores, in threads: compiled kernels release the interpreter's lock (GIL).
 
 Numba's own parallel loops would double the time of compilation, and two of them must not run at
-the same time in one process. The jobs of a kernel are independent of each other, so the results do
-not depend on the number of cores.
+the same time in one process. What is shared out are jobs that are independent of each other, so
+the results do not depend on the number of cores.
 """
 
 import os
@@ -13,13 +13,17 @@ from itertools import pairwise
 from typing import Any, Callable, Iterable, TypeVar
 
 import numpy as np
-from numba import config
-
-from rovsim.dynamics.engine.types import Jobs
 
 T = TypeVar("T")
 _mapping: ContextVar[bool] = ContextVar("mapping", default=False)
 PIECES = 4  # of the jobs for each core: with more pieces than cores, all end at about the same time
+
+
+def count_cores() -> int:
+    """How many threads may work at once: NUMBA_NUM_THREADS, or all cores of the machine."""
+    from numba import config  # takes a while, and most commands never need it
+
+    return int(config.NUMBA_NUM_THREADS)  # type: ignore[attr-defined]
 
 
 @cache
@@ -31,11 +35,6 @@ if hasattr(os, "register_at_fork"):  # a forked child process has none of the th
     os.register_at_fork(after_in_child=_threads.cache_clear)
 
 
-def run_jobs(kernel: Callable, jobs: Jobs, *given: Any) -> None:
-    """Call `kernel(part, *given)` for parts of the jobs on all cores; it must release the GIL."""
-    on_cores(lambda part: kernel(Jobs(*(values[part] for values in jobs)), *given), jobs.steps)
-
-
 def on_cores(kernel: Callable[[slice], None], lengths: np.ndarray) -> None:
     """Call `kernel(part)` for parts of about equal duration, NUMBA_NUM_THREADS at a time.
 
@@ -43,7 +42,7 @@ def on_cores(kernel: Callable[[slice], None], lengths: np.ndarray) -> None:
         kernel: does a slice of the jobs, without the interpreter's lock (GIL).
         lengths: (j,) relative duration of each job, in any unit.
     """
-    cores = config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    cores = count_cores()
     if cores == 1 or len(lengths) < 2:
         kernel(slice(0, len(lengths)))
         return
@@ -62,7 +61,7 @@ def map_on_cores(function: Callable[..., T], *arguments: Iterable[Any]) -> list[
     which numpy's error handling is a part. Within such a call, others are made one by one.
     """
     rows = list(zip(*arguments, strict=True))
-    cores = config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    cores = count_cores()
     if cores == 1 or len(rows) < 2 or _mapping.get():
         return [function(*row) for row in rows]
     contexts = [copy_context() for _ in rows]
