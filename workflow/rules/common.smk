@@ -7,6 +7,7 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 
 R = study.folder
 F = f"{R}/folds/{{fold}}"
+MODEL_FILES = "rovsim.dynamics.model_file"  # of scripts that read a model through their job
 
 
 def code_of(script, *more, without=""):

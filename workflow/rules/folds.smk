@@ -87,7 +87,7 @@ rule fold:
         f"{F}/benchmarks/fold.tsv"
     params:
         settings=depends.section(SimulationSections),
-        code=code_of("fold"),
+        code=code_of("fold", MODEL_FILES),
     script:
         "../scripts/fold.py"
 
@@ -133,6 +133,6 @@ if folds.pitfalls:
             learners={
                 kind: depends.learner(kind).model_dump_json() for kind in ("knn", "gp")
             },
-            code=code_of("pitfalls"),
+            code=code_of("pitfalls", MODEL_FILES),
         script:
             "../scripts/pitfalls.py"

@@ -12,7 +12,7 @@ rule replay:
         f"{R}/benchmarks/replay/{{model}}.tsv"
     params:
         settings=depends.section(SimulationSections),
-        code=code_of("replay"),
+        code=code_of("replay", MODEL_FILES),
     script:
         "../scripts/replay.py"
 
@@ -31,7 +31,7 @@ rule search:
         f"{R}/benchmarks/search/{{model}}.tsv"
     params:
         settings=depends.section(SimulationSections),
-        code=code_of("search"),
+        code=code_of("search", MODEL_FILES),
     script:
         "../scripts/search.py"
 
@@ -49,7 +49,7 @@ rule budget:
         f"{R}/benchmarks/budget/{{run}}.tsv"
     params:
         settings=depends.section(SimulationSections),
-        code=code_of("budget"),
+        code=code_of("budget", MODEL_FILES),
     script:
         "../scripts/budget.py"
 
