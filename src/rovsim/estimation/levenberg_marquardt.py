@@ -57,8 +57,9 @@ def levenberg_marquardt(
         if step is not None:
             damping = max(step.damping / 10.0, MIN_DAMPING)
             ended = _is_small(step, quadratic)
-            if ended and not rough and current.hypothesis is quadratic.hypothesis:
-                return Linearised(step.to, step.e, current.J)  # so near, derivatives are the same
+            exact = not rough and current.hypothesis is quadratic.hypothesis
+            if exact and ended and _is_invisible(step, quadratic):
+                return Linearised(step.to, step.e, current.J)  # derivatives are the same there
             quadratic = problem.shift(quadratic, step)
             if step.gain_ratio_near_one and not ended:
                 continue
@@ -142,6 +143,11 @@ class _LeastSquares:
 
     def _prior_slope(self, x: Array) -> Array:
         return self.prior.weights(x) * (x - self.prior.about)
+
+
+def _is_invisible(step: TrialStep, quadratic: QuadraticModel) -> bool:
+    """Whether a step changes nothing anyone could see."""
+    return step.length < STEP_TOLERANCE**2 * len(quadratic.g)
 
 
 def _is_small(step: TrialStep, quadratic: QuadraticModel) -> bool:
