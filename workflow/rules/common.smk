@@ -7,7 +7,8 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 
 R = study.folder
 F = f"{R}/folds/{{fold}}"
-MODEL_FILES = "rovsim.dynamics.model_file"  # of scripts that read a model through their job
+# scripts that read a model through their job do not import this themselves
+MODEL_FILES = "rovsim.dynamics.model_file"
 
 
 def code_of(script, *more, without=""):
