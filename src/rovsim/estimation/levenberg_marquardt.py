@@ -52,12 +52,12 @@ def levenberg_marquardt(
     quadratic = problem.expand(current)
     for _ in range(MOST_ITERATIONS):
         step, ended = _find_reducing_step(problem, quadratic, damping), False
-        if step is None and current.hypothesis is quadratic.hypothesis and not rough:
+        exact = current.hypothesis is quadratic.hypothesis and not rough
+        if step is None and exact:
             return current
         if step is not None:
             damping = max(step.damping / 10.0, MIN_DAMPING)
             ended = _is_small(step, quadratic)
-            exact = not rough and current.hypothesis is quadratic.hypothesis
             if exact and ended and _is_invisible(step, quadratic):
                 return Linearised(step.to, step.e, current.J)  # derivatives are the same there
             quadratic = problem.shift(quadratic, step)
@@ -153,8 +153,8 @@ def _is_invisible(step: TrialStep, quadratic: QuadraticModel) -> bool:
 def _is_small(step: TrialStep, quadratic: QuadraticModel) -> bool:
     """Whether a step need not be followed by another."""
     excess = max(0.0, step.cost - quadratic.size)
-    tolerance = max(STEP_TOLERANCE**2 * len(quadratic.g), MISFIT_TOLERANCE * excess)
-    return step.damping <= LIGHT_DAMPING and step.length < tolerance
+    small = _is_invisible(step, quadratic) or step.length < MISFIT_TOLERANCE * excess
+    return step.damping <= LIGHT_DAMPING and small
 
 
 def _find_reducing_step(
