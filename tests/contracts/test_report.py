@@ -30,7 +30,7 @@ from rovsim.reporting.words.verdict import explain
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import DiagnosisErrors, LookedAt, RivalEffect, Unexplained
 from rovsim.results.error_conditions import ErrorConditions
-from rovsim.results.fitted import FittedEffect, FittedValue
+from rovsim.results.fitted import FittedEffect, FittedValue, SelectedEffect
 from rovsim.results.pitfalls import Pitfalls
 from rovsim.results.published_errors import MissedCell
 from synthetic_study import study
@@ -301,7 +301,7 @@ def test_theirs_and_ours_are_set_against_one_simulator(content):
 def test_a_fitted_number_is_known_where_its_interval_leaves_zero_out(content):
     def fold(**values):
         fitted = {name: FittedValue(value=v, std=s) for name, (v, s) in values.items()}
-        selected = (FittedEffect(effect="current", parameters=fitted),)
+        selected = (SelectedEffect(effect="current", parameters=fitted),)
         return content["diagnosis"].model_copy(update={"selected": selected})
 
     folds = {
@@ -477,7 +477,7 @@ def test_what_was_not_looked_at_is_said():
 
 
 def test_what_wanders_is_said_to_be_unforeseeable_and_not_worth_nothing(content):
-    drift = FittedEffect(
+    drift = SelectedEffect(
         effect="current_drift",
         parameters={"rate": FittedValue(value=0.012, std=0.001)},
         error_reduction=0.0,

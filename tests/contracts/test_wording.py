@@ -3,6 +3,7 @@
 import ast
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pandas import DataFrame
@@ -26,10 +27,10 @@ from rovsim.reporting.wording import (
 )
 from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
+from rovsim.reporting.words.sureness import DOUBTS
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
-from rovsim.results.diagnosis import ProposedEquation
-from rovsim.results.fitted import FittedEffect, FittedValue
+from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
 from rovsim.results.ladder import Ladder, LadderStep
 from synthetic_study import study
 
@@ -67,8 +68,8 @@ def test_thrusters_are_called_as_in_the_vehicle_file(content):
     gain = {"t3": FittedValue(value=0.5, std=0.01, unit="1"), "all": FittedValue(value=0.9)}
     swapped = {"first": FittedValue(value=1), "second": FittedValue(value=3)}
     selected = (
-        FittedEffect(effect="thruster_gain", parameters=gain),
-        FittedEffect(effect="thruster_order", parameters=swapped),
+        SelectedEffect(effect="thruster_gain", parameters=gain),
+        SelectedEffect(effect="thruster_order", parameters=swapped),
     )
     found = content["diagnosis"].model_copy(
         update={
@@ -181,7 +182,7 @@ def test_a_verdict_tells_a_probability_as_tables_do(content, probability):
 def test_a_sure_effect_whose_values_may_each_be_absent_is_told(content):
     def said(effect, values, probability=0.9999):
         given = {name: FittedValue(value=v, std=s, unit="1") for name, (v, s) in values.items()}
-        one = FittedEffect(effect=effect, parameters=given, probability=probability)
+        one = SelectedEffect(effect=effect, parameters=given, probability=probability)
         selected = {"selected": (one,), "thrusters": ("port", "starboard")}
         found = content["diagnosis"].model_copy(update=selected)
         told = explain(found, built_in()).remarks
@@ -233,51 +234,12 @@ def test_a_comparison_shows_the_error_that_ranks_without_a_ladder(content):
     assert "noise floor is a bound" not in page
 
 
-@pytest.mark.parametrize(
-    ("effect", "values", "beside", "why"),
-    [
-        ("lift", {"sway": 1.0}, None, "no other name was tried"),
-        ("lift", {"sway": 1.0}, ("lift",), "no other name was tried"),
-        ("lift", {"sway": 1.0}, (), "the proposed equation does without it"),
-        ("current_drift", {"rate": 0.01}, (), "may seem a current that wanders"),
-        ("input_delay", {"delay": -0.05}, None, "may look ahead"),
-        ("input_delay", {"delay": 0.05}, None, "no other name was tried"),
-    ],
-)
-def test_why_a_name_has_no_probability_is_said(content, effect, values, beside, why):
-    given = {k: FittedValue(value=x, std=None, unit="") for k, x in values.items()}
-    camera = FittedEffect(effect="pose_filter", parameters={}, probability=0.9)
-    one = FittedEffect(effect=effect, parameters=given)
-    others = tuple(FittedEffect(effect=name, parameters={}) for name in beside or ())
-    law = ProposedEquation(
-        axis="sway",
-        equation="",
-        file="",
-        parameters={},
-        error_reduction=0.5,
-        effect="",
-        meaning="",
-        terms=(),
-        beside=others,
-    )
-    left = content["diagnosis"].unexplained
-    left = left.model_copy(update={"proposal": None if beside is None else law})
-    found = {"selected": (camera, one), "unexplained": left, "rivals": ()}
-    said = explain(content["diagnosis"].model_copy(update=found), built_in()).missing[1]
-    assert re.search(f", no probability: .*{why}$", said.worth)
-
-
-@pytest.mark.parametrize(
-    ("removed", "why"), [(0.05, "may make more of the error"), (0.9, "no other name was tried")]
-)
-def test_why_a_small_name_beside_what_is_unexplained_has_no_probability(content, removed, why):
-    one = FittedEffect(effect="lift", parameters={}, error_reduction=removed)
-    left = content["diagnosis"].unexplained.model_copy(
-        update={"fraction": 0.5, "significant": True, "proposal": None}
-    )
-    found = {"selected": (one,), "unexplained": left, "rivals": (), "verdict": "unexplained"}
-    said = explain(content["diagnosis"].model_copy(update=found), built_in()).missing[0]
-    assert said.worth.endswith(why)
+@pytest.mark.parametrize("doubt", [None, *get_args(Doubt)])
+def test_why_a_name_has_no_probability_is_said(content, doubt):
+    one = SelectedEffect(effect="lift", parameters={}, doubt=doubt)
+    found = content["diagnosis"].model_copy(update={"selected": (one,), "rivals": ()})
+    said = explain(found, built_in()).missing[0]
+    assert said.worth.endswith(f", no probability: {DOUBTS[doubt]}")
 
 
 def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):

@@ -8,19 +8,21 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import LOOKS_AHEAD, advise
+from rovsim.diagnosis.advice import OF_DOUBTS, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.ranking import OrderedEffect
 from rovsim.diagnosis.selection.withdrawn_probability import (
+    doubt_beside_law,
+    find_constant_heave,
     find_leading,
     find_small,
-    find_stand_ins,
     withdraw_probability,
 )
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.diagnosis.uncertainty.identifiability import find_doubtful, group_joint_parameters
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
+from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
@@ -189,10 +191,10 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
     """A jet in one corner was a current at a probability of one; beside the jet there is none."""
     found = fit(alike())
     drag, thrust = (AcceptedEffect(term, {}, 1.0) for term in found.hypothesis.terms[:2])
-    doubted = find_stand_ins([drag, thrust], [drag])
-    kept, idle = withdraw_probability([drag, thrust], doubted)
-    assert doubted == {thrust.term.id}
-    assert (kept.probability, idle.probability) == (1.0, None)
+    for proposed, doubt in ((True, "law"), (False, "stand_in")):
+        kept, idle = doubt_beside_law([drag, thrust], [drag], proposed)
+        assert (kept.probability, kept.doubt) == (1.0, None)
+        assert (idle.probability, idle.doubt) == (None, doubt)
 
 
 @pytest.mark.parametrize(
@@ -203,7 +205,7 @@ def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
     """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
     drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
     named = [OrderedEffect(drag, {}, 1.0, 0.6), OrderedEffect(gain, {}, 1.0, 0.05)]
-    told = withdraw_probability(named, find_small(named, fraction))
+    told = withdraw_probability(named, find_small(named, fraction), "unexplained")
     assert tuple(one.probability for one in told) == sure
 
 
@@ -214,23 +216,50 @@ def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted)
         AcceptedEffect(Term(LinearDamping(sway=10.0 * part), ("sway",)), {}, 1.0)
         for part in (1.0, left)
     )
-    assert find_stand_ins([own], [other]) == ({"linear_damping"} if doubted else set())
+    (named,) = doubt_beside_law([own], [other], True)
+    assert named.doubt == ("stand_in" if doubted else None)
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])
 def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(delay, doubted):
     smooths = AcceptedEffect(Term(PoseFilter(cutoff=6.0), ("cutoff",)), {"cutoff": 0.1}, 1.0)
     late = AcceptedEffect(Term(InputDelay(delay=delay), ("delay",)), {"delay": 1e-3}, 1.0)
-    (named,) = withdraw_probability([late], find_leading([late]))
+    (named,) = withdraw_probability([late], find_leading([late]), "looks_ahead")
     assert (named.probability is None) == doubted
-    selected = [OrderedEffect(one.term, one.std, one.probability, 0.5) for one in (smooths, named)]
+    selected = [
+        OrderedEffect(one.term, one.std, one.probability, 0.5, doubt=one.doubt)
+        for one in (smooths, named)
+    ]
     found = TrainDiagnosis(
         fit(alike()).hypothesis.base,
         UsableRuns((), (), (), (), 60.0),
         fit(alike()),
         selected=selected,
     )
-    assert (LOOKS_AHEAD in advise(found, [], [], built_in())) == doubted
+    assert (OF_DOUBTS["looks_ahead"] in advise(found, [], [], built_in())) == doubted
+
+
+@pytest.mark.parametrize(
+    ("effect", "free", "doubted"),
+    [
+        (NetBuoyancy(force=4.0), ("force",), True),
+        (ConstantWrench(heave=4.0), ("heave",), True),
+        (ConstantWrench(surge=4.0, heave=4.0), ("surge", "heave"), True),
+        (ConstantWrench(surge=4.0), ("surge",), False),
+        (LinearDamping(heave=4.0), ("heave",), False),
+    ],
+)
+def test_a_constant_force_in_heave_only_shifts_the_depth_of_what_floats(effect, free, doubted):
+    """A pilot who pushed a floating vehicle down was a wrench of -45 N at a probability of one."""
+    named = AcceptedEffect(Term(effect, free), {}, 1.0)
+    assert find_constant_heave([named]) == ({effect.id} if doubted else set())
+
+
+def test_an_effect_keeps_its_first_doubt():
+    named = AcceptedEffect(Term(LinearDamping(sway=9.0), ()), {}, 1.0)
+    (once,) = withdraw_probability([named], {"linear_damping"}, "law")
+    (twice,) = withdraw_probability([once], {"linear_damping"}, "unexplained")
+    assert twice.doubt == "law"
 
 
 def test_what_wanders_may_be_what_has_no_name():

@@ -1,15 +1,22 @@
 """The synthetic tank flies any vehicle, and its raw exports bring angles back as they were."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
 
+from rovsim.application.configuration import compose
 from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.settings import select
 from rovsim.core.errors import BadInput
+from rovsim.diagnosis.campaign_diagnosis import diagnose_campaign
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal
 from rovsim.evaluation.score_collector import score_replay
+from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.replay import replay
@@ -39,7 +46,7 @@ PODS = {
 
 
 def flown(tmp_path, **settings):
-    tank = TankSettings.model_validate({"runs": RUN, "duration": 20.0, **settings})
+    tank = TankSettings.model_validate({"runs": RUN, "duration": 20.0} | settings)
     make_campaign(tank, tmp_path / "raw", built_in())
     campaign = open_campaign(str(tmp_path / "raw"))
     data = measure(campaign, SignalSettings())
@@ -67,6 +74,20 @@ def test_what_floats_stays_at_the_surface(tmp_path):
     _, data, run = flown(tmp_path, **without_waves)
     assert run.site.level == pytest.approx(run.site.tank[2, 0], abs=0.01)
     check_replay(data, run)
+
+
+@pytest.mark.thorough
+def test_a_wrong_depth_at_rest_is_no_sure_force(tmp_path):
+    """A pilot who pushed a floating vehicle down was a wrench of -45 N at a probability of one."""
+    _, data, run = flown(tmp_path, duration=40.0, **SUITABLE["waterplane"])
+    lower = replace(run, site=replace(run.site, level=run.site.level + 0.02))
+    runs = Runs({"one": lower}, data.runs.stages, data.runs.splits)
+    settings = select(compose(["command=diagnose"]), DiagnosisSettings)
+    found = diagnose_campaign(runs, {}, nominal(data.vehicle), settings, built_in()).diagnosis
+    (force,) = found.selected
+    assert force.parameters.keys() == {"heave"}
+    assert (force.probability, force.doubt) == (None, "depth_at_rest")
+    assert "float without commands" in found.next_experiment
 
 
 def test_pods_turn_as_the_log_says(tmp_path):

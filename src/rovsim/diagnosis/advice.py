@@ -6,8 +6,8 @@ from rovsim.diagnosis.checks.wrong_units import list_absurd
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.results.fitted import Doubt
 
 FIX_SCALE = (
     "To fix the common scale of thrust, inertia and drag, measure one force. Either measure the "
@@ -41,10 +41,14 @@ CHECK_UNITS = (
     "in the recordings."
 )
 
-LOOKS_AHEAD = (
-    "A negative input_delay beside a pose_filter is what software leaves that smooths forwards and "
-    "backwards, and so without delay: export the poses unsmoothed, and diagnose these."
-)
+# What settles a doubt, where something does:
+OF_DOUBTS: dict[Doubt, str] = {
+    "looks_ahead": "A negative input_delay beside a pose_filter is what software leaves that "
+    "smooths forwards and backwards, and so without delay: export the poses unsmoothed, and "
+    "diagnose these.",
+    "depth_at_rest": "Let it float without commands for most of a run: the median of a run's "
+    "depths is taken for its depth at rest, and a constant force in heave shifts that.",
+}
 
 
 def advise(
@@ -64,9 +68,8 @@ def advise(
     if not diagnosis.enough:
         return _begin_again(diagnosis)
     parts = _doubt_units(diagnosis)
-    smoothed = any(isinstance(s.term.effect, PoseFilter) for s in diagnosis.selected)
-    if smoothed and any(s.leads for s in diagnosis.selected):
-        parts.append(LOOKS_AHEAD)
+    doubts = {s.doubt for s in diagnosis.selected}
+    parts += [text for doubt, text in OF_DOUBTS.items() if doubt in doubts]
     if groups:
         names = " and ".join(groups[0])
         parts.append(

@@ -35,7 +35,14 @@ from rovsim.results.diagnosis import (
     Unexplained,
 )
 from rovsim.results.error_conditions import ConditionShare
-from rovsim.results.fitted import Correlation, FittedEffect, FittedNoise, Possibility, Posterior
+from rovsim.results.fitted import (
+    Correlation,
+    FittedEffect,
+    FittedNoise,
+    Possibility,
+    Posterior,
+    SelectedEffect,
+)
 from rovsim.results.ladder import Ladder
 
 REFUSED = (
@@ -43,6 +50,7 @@ REFUSED = (
 )
 TOO_LITTLE = "There is too little data to say what is left."
 LISTED = 10  # effects of the ranking
+BESIDE_LAW = ("law", "stand_in")  # doubts of effects that stand in for a law
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +92,8 @@ def assemble_diagnosis(
     joint = _list_joint(diagnosis)
     return Diagnosis(
         verdict=diagnosis.verdict,
-        selected=tuple(_fitted(s, s.std) for s in diagnosis.selected),
-        ranking=tuple(_fitted(s, {}) for s in _listed(diagnosis)),
+        selected=tuple(map(_selected, diagnosis.selected)),
+        ranking=tuple(map(_ranked, _listed(diagnosis))),
         indistinguishable=tuple(map(tuple, groups)),
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
@@ -145,11 +153,22 @@ def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     )
 
 
-def _fitted(one: OrderedEffect | RankedEffect, std: Mapping[str, float]) -> FittedEffect:
-    """Report an effect, with standard deviations by parameter name, in their units."""
+def _selected(one: OrderedEffect) -> SelectedEffect:
+    """Report an accepted effect."""
+    return SelectedEffect(
+        effect=one.term.id,
+        parameters=describe_values(one.term, one.std),
+        error_reduction=rounded(one.error_reduction),
+        probability=rounded(one.probability),
+        doubt=one.doubt,
+    )
+
+
+def _ranked(one: RankedEffect) -> FittedEffect:
+    """Report an effect of the ranking; its values are first estimates, without deviations."""
     return FittedEffect(
         effect=one.term.id,
-        parameters=describe_values(one.term, std),
+        parameters=describe_values(one.term, {}),
         error_reduction=rounded(one.error_reduction),
         probability=rounded(one.probability),
     )
@@ -186,7 +205,7 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
         significant=True,
         hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED,
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
-        stand_ins=diagnosis.stand_ins,
+        stand_ins=tuple(sorted(s.term.id for s in diagnosis.selected if s.doubt in BESIDE_LAW)),
         disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
     )
 

@@ -46,9 +46,10 @@ from rovsim.diagnosis.selection.ranking import (
 )
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.withdrawn_probability import (
+    doubt_beside_law,
+    find_constant_heave,
     find_leading,
     find_small,
-    find_stand_ins,
     withdraw_probability,
 )
 from rovsim.diagnosis.settings import SearchSettings
@@ -88,7 +89,6 @@ class TrainDiagnosis:
         scale: common factor of all forces and inertias; None where it is known.
         not_observable: ids of effects that the runs could not show.
         proposed: a law for what is left; None where no law holds.
-        stand_ins: ids of selected effects that a law makes unnecessary or changes, proposed or not.
         disturbance: what is left as a force in time, where no law holds.
     """
 
@@ -104,7 +104,6 @@ class TrainDiagnosis:
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
     proposed: ProposedLaw | None = None
-    stand_ins: tuple[str, ...] = ()
     disturbance: ForceInTime | None = None
 
     @property
@@ -188,10 +187,13 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     rivals = answer.selection.named_rivals
     terms = name_terms(wide_fit, rivals)
     effects = [*camera, *terms]
-    stand_ins = find_stand_ins(effects, law.beside) if law else set()
-    leading = find_leading(terms) if camera else set()
-    effects = withdraw_probability(effects, stand_ins | leading)
     proposed = law if law and law.complete else None
+    if law:
+        effects = doubt_beside_law(effects, law.beside, proposed is not None)
+    if camera:
+        effects = withdraw_probability(effects, find_leading(terms), "looks_ahead")
+    if base.vehicle.floats:
+        effects = withdraw_probability(effects, find_constant_heave(terms), "depth_at_rest")
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
@@ -199,7 +201,7 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     selected = order_accepted(base, effects, usable.runs)
     if answer.structures and not proposed:
         small = find_small(selected, answer.structures[0].share)
-        selected = withdraw_probability(selected, small)
+        selected = withdraw_probability(selected, small, "unexplained")
     start = validated.start
     return TrainDiagnosis(
         base,
@@ -214,7 +216,6 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         scale=scale,
         not_observable=list_not_observable(answer.selection, problem.catalogue, base.vehicle),
         proposed=proposed,
-        stand_ins=tuple(sorted(stand_ins)),
         disturbance=None if proposed else _trace(answer),
     )
 

@@ -1,7 +1,7 @@
 """`diagnosis.json`: which physical effects a model lacks, and how sure that is."""
 
 from pathlib import Path
-from typing import ClassVar, Iterable, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field, JsonValue
 
@@ -9,7 +9,13 @@ from rovsim.core.model_names import PROPOSED
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 from rovsim.results.error_conditions import ConditionShare
-from rovsim.results.fitted import FittedEffect, FittedNoise, FittedValue, Posterior
+from rovsim.results.fitted import (
+    FittedEffect,
+    FittedNoise,
+    FittedValue,
+    Posterior,
+    SelectedEffect,
+)
 from rovsim.results.ladder import Ladder
 
 LAW = f"{PROPOSED}.py"  # its file, beside the diagnosis
@@ -98,8 +104,7 @@ class Unexplained(Section):
     """Structure that no effect of the catalogue explains: its share of the disturbance's power.
 
     `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
-    does; `stand_ins`: selected effects that an equation which was tried, proposed or not, does
-    without, or with values that differ by more than half.
+    does; `stand_ins`: selected effects whose doubt is `law` or `stand_in`.
     """
 
     fraction: float | None
@@ -108,16 +113,6 @@ class Unexplained(Section):
     proposal: ProposedEquation | None = None
     stand_ins: tuple[str, ...] = ()
     disturbance: Disturbance | None = None
-
-
-def bound_unexplained(fraction: float | None, reductions: Iterable[float | None]) -> float:
-    """Share of the base's error that what is left unexplained makes at most.
-
-    Args:
-        fraction: `Unexplained.fraction`; None: nothing is known of it.
-        reductions: `error_reduction` of the selected effects.
-    """
-    return (fraction or 0.0) * max(0.0, 1.0 - sum(reduction or 0.0 for reduction in reductions))
 
 
 class DiagnosisErrors(Section):
@@ -200,7 +195,7 @@ class Diagnosis(Result):
 
     schema_: Literal["rovsim.diagnosis/1"] = Field(default="rovsim.diagnosis/1", alias="schema")
     verdict: Verdict
-    selected: tuple[FittedEffect, ...]
+    selected: tuple[SelectedEffect, ...]
     ranking: tuple[FittedEffect, ...]
     indistinguishable: tuple[tuple[str, ...], ...]
     known_together: tuple[tuple[str, ...], ...] = ()

@@ -1,6 +1,6 @@
 """What was fitted: values with their deviations, how these hang together, and the noise."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from numpy import ndarray as Array
@@ -40,6 +40,26 @@ class FittedEffect(Section):
     parameters: dict[str, FittedValue]
     error_reduction: float | None = None
     probability: float | None = None
+
+
+# Why a name has no probability:
+Doubt = Literal[
+    "law",  # the proposed equation does without it
+    "stand_in",  # an equation that was tried does without it, or changes it by more than half
+    "unexplained",  # what is left unexplained may make more of the error
+    "wanders",  # what is left unexplained may seem a current that wanders
+    "looks_ahead",  # the cameras' filter may use later frames as well
+    "depth_at_rest",  # another depth at rest would look like it
+]
+
+
+class SelectedEffect(FittedEffect):
+    """An accepted effect; `doubt`: why its name has no probability, if not for want of rivals.
+
+    Files of earlier versions have no `doubt`.
+    """
+
+    doubt: Doubt | None = None
 
 
 class FittedNoise(Sparse):

@@ -1,6 +1,6 @@
 """Accepted effects: their fitted values, how sure these are, and how sure their names."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Sequence
 
 from rovsim.core.odds import probability_of, share_odds
@@ -11,6 +11,7 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.camera import Smoothing
 from rovsim.estimation.observer.drifting_current import DriftFit
 from rovsim.estimation.observer.hypothesis import Term
+from rovsim.results.fitted import Doubt
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,11 +22,13 @@ class AcceptedEffect:
         term: the effect at its fitted values.
         std: standard deviations of the fitted parameters, by name, in their units.
         probability: of this effect among all that were tried in its place; None where unknown.
+        doubt: why it is unknown although others were tried.
     """
 
     term: Term
     std: dict[str, float]
     probability: float | None
+    doubt: Doubt | None = field(default=None, kw_only=True)
 
     @property
     def leads(self) -> bool:
@@ -58,8 +61,10 @@ def name_drift(drift: DriftFit, leaves_physics: bool) -> AcceptedEffect:
             may be what seems to wander, so the effect then has no probability.
     """
     term = Term(CurrentDrift(rate=drift.rate.value), ("rate",))
-    probability = None if leaves_physics else probability_of(drift.lr_margin)
-    return AcceptedEffect(term, {"rate": drift.rate.std}, probability)
+    std = {"rate": drift.rate.std}
+    if leaves_physics:
+        return AcceptedEffect(term, std, None, doubt="wanders")
+    return AcceptedEffect(term, std, probability_of(drift.lr_margin))
 
 
 def find_std(fit: Fit, i: int) -> dict[str, float]:

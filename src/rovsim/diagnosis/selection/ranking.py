@@ -58,7 +58,11 @@ def order_accepted(
         best = remaining.pop(k_best)
         ordered.append(
             OrderedEffect(
-                best.term, best.std, best.probability, float((error - errors[k_best]) / base_error)
+                best.term,
+                best.std,
+                best.probability,
+                float((error - errors[k_best]) / base_error),
+                doubt=best.doubt,
             )
         )
         model, error = models[k_best], errors[k_best]

@@ -3,23 +3,30 @@
 from typing import Mapping
 
 from rovsim.core.normal import Z_95
-from rovsim.dynamics.effects.base import Effect, StochasticCurrent
-from rovsim.dynamics.effects.clocks import InputDelay
-from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.wording import IMPROBABLE, listed, tell_probability
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis, bound_unexplained
-from rovsim.results.fitted import FittedEffect, FittedValue
+from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
+
+DOUBTS: dict[Doubt | None, str] = {
+    None: "no other name was tried",
+    "law": "the proposed equation does without it",
+    "stand_in": "an equation that was tried takes most of its place",
+    "unexplained": "what is left unexplained may make more of the error",
+    "wanders": "what is left unexplained may seem a current that wanders",
+    "looks_ahead": "the cameras' filter may look ahead",
+    "depth_at_rest": "if it floats at rest elsewhere than in the middle of its depths, that is "
+    "the same force in heave",
+}
 
 
-def tell_sureness(
-    one: FittedEffect, found: Diagnosis, catalogue: Mapping[str, type[Effect]]
-) -> str:
+def tell_sureness(one: SelectedEffect) -> str:
     """Say the probability of a selected effect's name, or why none is given."""
     if one.probability is not None:
         return f"probability {tell_probability(one.probability)}"
-    return f"no probability: {_say_why(one, found, catalogue.get(one.effect))}"
+    return f"no probability: {DOUBTS[one.doubt]}"
 
 
 def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
@@ -43,25 +50,3 @@ def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) ->
 def _holds(value: FittedValue, other: float) -> bool:
     """Whether a value's 95 % interval contains another; False where it has no interval."""
     return abs(or_nan(value.value) - other) <= Z_95 * or_nan(value.std)
-
-
-def _say_why(one: FittedEffect, found: Diagnosis, known: type[Effect] | None) -> str:
-    proposal = found.unexplained.proposal
-    if known and issubclass(known, StochasticCurrent):
-        return "what is left unexplained may seem a current that wanders"
-    if proposal and one.effect not in {fit.effect for fit in proposal.beside}:
-        return "the proposed equation does without it"
-    if one.effect in found.unexplained.stand_ins:
-        return "an equation that was tried takes most of its place"
-    smooths = any(fit.effect == PoseFilter.id for fit in found.selected)
-    if known and issubclass(known, InputDelay) and smooths and _leads(one):
-        return "the cameras' filter may look ahead"
-    reductions = [fit.error_reduction for fit in found.selected]
-    unexplained = bound_unexplained(found.unexplained.fraction, reductions)
-    if proposal is None and or_nan(one.error_reduction) < unexplained:
-        return "what is left unexplained may make more of the error"
-    return "no other name was tried"
-
-
-def _leads(one: FittedEffect) -> bool:
-    return any(or_nan(value.value) < 0.0 for value in one.parameters.values())

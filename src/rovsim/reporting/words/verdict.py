@@ -111,7 +111,7 @@ def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
             fit,
             catalogue.get(fit.effect),
             found.thrusters,
-            tell_sureness(fit, found, catalogue),
+            tell_sureness(fit),
             above=bool(place),
         )
         for place, fit in enumerate(found.selected)
