@@ -182,6 +182,24 @@ def test_a_result_replaces_an_older_one_and_no_other_file(tmp_path, monkeypatch,
     assert "which rovsim did not write" in " ".join(capsys.readouterr().err.split())
 
 
+def test_a_model_that_was_changed_by_hand_is_replaced_only_by_force(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    several_effects().write(tmp_path / "diagnosis.json")
+    words = ["add", "diagnosis=diagnosis.json", "model=new.yaml", "--quiet"]
+    (tmp_path / "new.yaml").touch()  # nothing to lose
+    main(words)
+    first = (tmp_path / "new.yaml").read_text()
+    (tmp_path / "new.yaml").write_text(f"{first}# lag measured on 3 May\n")
+    with pytest.raises(SystemExit, match="2"):
+        main(words)
+    assert "measured on 3 May" in (tmp_path / "new.yaml").read_text()
+    said = " ".join(capsys.readouterr().err.split())
+    assert "new.yaml: there is one already, with another content" in said
+    assert "replace it with force=true" in said
+    main([*words, "force=true"])
+    assert (tmp_path / "new.yaml").read_text() == first
+
+
 def test_a_model_does_not_replace_another_diagnosis(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = several_effects()

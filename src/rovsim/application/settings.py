@@ -171,7 +171,7 @@ class Settings(WorkbenchSettings):
         know: parameters, as effect.parameter, that a planned flight should make better known.
         fly: log of commands that the tank flies as one more train run.
         files: files and folders of recordings to be looked into.
-        force: whether a campaign.yaml that is there is replaced.
+        force: whether a campaign.yaml or a model file that is there is replaced.
         study: which residuals the workflow trains.
         folds: each run held out once.
         timing: of the inference of residuals.

@@ -175,6 +175,23 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
+def write_new(path: Path, text: str) -> None:
+    """Write UTF-8 text atomically, where no file is, an empty one, or one with the same text.
+
+    Raises:
+        BadInput: there is a file with another content.
+    """
+    content = text.encode("utf-8")
+    if path.is_file() and path.read_bytes() not in (b"", content):
+        raise BadInput(
+            "there is one already, with another content",
+            where=path,
+            expected="a name that is free",
+            remedy="Give another name, move that file away, or replace it with force=true.",
+        )
+    write_bytes(path, content)
+
+
 def write_json(path: Path, content: Any) -> None:
     """Write JSON atomically; NaN is refused (it is not JSON)."""
     write_text(path, json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False) + "\n")

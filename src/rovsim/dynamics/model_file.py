@@ -7,11 +7,11 @@ from typing import Any, Literal, Self
 from pydantic import Field, field_validator, model_validator
 
 from rovsim.core.errors import BadInput, located, nearest
-from rovsim.core.files import plain
+from rovsim.core.files import plain, write_text
 from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import name_of
 from rovsim.core.schema import PathText, Section, checked
-from rovsim.core.yaml_files import read_yaml, write_yaml
+from rovsim.core.yaml_files import read_yaml, yaml_text
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import EffectEntry, build_effects, describe_effect
 from rovsim.dynamics.learned.residual import StoredResidual, read_residual
@@ -239,13 +239,21 @@ def write_model(
     residual: StoredResidual | None = None,
     provenance: dict[str, Any] | None = None,
 ) -> None:
-    """Write a model file.
+    """Write a model file, see `model_text`; one that is there is replaced."""
+    write_text(path, model_text(model, residual, provenance))
+
+
+def model_text(
+    model: Model,
+    residual: StoredResidual | None = None,
+    provenance: dict[str, Any] | None = None,
+) -> str:
+    """The text of a model file.
 
     The uncertainty of a model holds without a learned residual, and is omitted if there is one.
 
     Args:
         model: to write.
-        path: of the file.
         residual: describes the arrays of a learned residual, which are in files beside this one.
         provenance: how the model came about.
     """
@@ -256,4 +264,4 @@ def write_model(
         uncertainty = _describe_uncertainty(model.uncertainty)
         content |= {"uncertainty": uncertainty.model_dump(mode="json", exclude_defaults=True)}
     content |= {"provenance": plain(provenance)} if provenance else {}
-    write_yaml(path, content, rows=True)
+    return yaml_text(content, rows=True)

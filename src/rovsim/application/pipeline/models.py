@@ -4,13 +4,13 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import require_replaceable
+from rovsim.core.files import require_replaceable, write_new, write_text
 from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import as_list, is_name
 from rovsim.diagnosis import apply
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
-from rovsim.dynamics.model_file import SCHEMA, load_model, write_model
+from rovsim.dynamics.model_file import SCHEMA, load_model, model_text
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.results.diagnosis import Diagnosis
 
@@ -114,6 +114,7 @@ def write_with_effects(
     catalogue: Catalogue,
     out: Path,
     story: Mapping[str, object],
+    force: bool = False,
 ) -> apply.Added:
     """Write a model file: a base with effects that a diagnosis fitted.
 
@@ -124,9 +125,11 @@ def write_with_effects(
         catalogue: all effects.
         out: the model file.
         story: further entries of its provenance.
+        force: whether a model file that is there is replaced, whatever it says.
 
     Raises:
-        BadInput: no such diagnosis, effect or model, or `out` is another file of the user's.
+        BadInput: no such diagnosis, effect or model, or `out` is another file of the user's, or
+            another model and `force` is false.
     """
     if out.resolve() == diagnosis.resolve():
         raise BadInput(
@@ -138,5 +141,6 @@ def write_with_effects(
     require_replaceable(out, f"schema: {SCHEMA}")  # not as a diagnosis has it, of its base
     fitted = Diagnosis.read(diagnosis)
     added = apply.add_effects(fitted, diagnosis, base, effects, catalogue)
-    write_model(added.model, out, provenance={"base": base, "effects": added.names, **story})
+    text = model_text(added.model, provenance={"base": base, "effects": added.names, **story})
+    (write_text if force else write_new)(out, text)
     return added

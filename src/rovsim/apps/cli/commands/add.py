@@ -1,11 +1,12 @@
 """Write a model file with the effects that a diagnosis found.
 
 rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml [effects=[id,…]] [to=nominal|FILE]
+           [force=true]
 
 Takes the selected effects with their fitted values and intervals, or the named ones of the ranking,
 and adds them to the base model `to`; with effects_file=OUT/proposed_effect.py the law that the
 diagnosis proposes and the effects beside it. NEW.yaml is plain YAML, and a model wherever a model
-is asked.
+is asked. Another model of that name is replaced only with force=true.
 """
 
 from pathlib import Path
@@ -38,6 +39,7 @@ class Settings(CommandSettings):
     model: str | list[str]
     to: str
     effects: list[str] | None
+    force: bool
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
@@ -52,8 +54,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
+    diagnosis, effects, force = Path(settings.diagnosis), settings.effects, settings.force
     extended, names, diagnosed, one_by_one = write_with_effects(
-        Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
+        diagnosis, base, effects, catalogue, Path(model), story, force
     )
     text = f"{base} + {' + '.join(names)}"
     if not names:
