@@ -205,6 +205,22 @@ def test_a_drag_that_feeds_energy_in_is_told_when_it_is_added(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("two_found")
+def test_an_effect_is_added_only_to_a_vehicle_on_which_it_can_act(tmp_path, capsys):
+    found = read_json(tmp_path / "diagnosis.json")
+    stiff = {"effect": "waterplane_stiffness", "parameters": {"roll": {"value": 50.0}}}
+    found["ranking"].append(stiff)
+    (tmp_path / "diagnosis.json").write_text(json.dumps(found))
+    words = ["diagnosis=diagnosis.json", "model=new.yaml", "effects=[waterplane_stiffness]"]
+    with pytest.raises(SystemExit, match="2"):
+        main(["add", *words])
+    assert "cannot act on a vehicle without a waterplane" in unfolded(capsys.readouterr().err)
+    assert not (tmp_path / "new.yaml").exists()
+    (tmp_path / "floating.yaml").write_text("vehicle: otter\n")
+    main(["add", *words, "to=floating.yaml"])
+    assert read_yaml(tmp_path / "new.yaml")["vehicle"] == "otter"
+
+
+@pytest.mark.usefixtures("two_found")
 def test_no_effects_are_no_effects(tmp_path, capsys):
     main(["add", "diagnosis=diagnosis.json", "model=new.yaml", "effects=[]"])
     assert "effects=[] names no effect" in unfolded(capsys.readouterr().out)

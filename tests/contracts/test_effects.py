@@ -5,6 +5,7 @@ import pytest
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
+from rovsim.core.yaml_files import write_yaml
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import (
     Autopilot,
@@ -15,6 +16,7 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.model_file import read_model, write_model
+from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.simulation.replay import simulate
 from rovsim.simulation.settings import ReplaySettings
 from worlds import at_rest, beside_others, model, motion, some, sticks, tank
@@ -110,6 +112,31 @@ def test_a_model_file_keeps_it(cls, tmp_path):
     assert again.name == "m"
     assert [e.given() for e in again.effects] == [e.given() for e in world.effects]
     assert driven(again).tobytes() == driven(world).tobytes()
+
+
+LACKING = {
+    "bluerov2_heavy": {"surfaces", "waterplane"},
+    "otter": {"surfaces"},
+    "remus100": {"waterplane"},
+    "hull": {"surfaces", "waterplane", "thrusters"},
+}
+
+
+@EVERY
+@pytest.mark.parametrize("vehicle", LACKING)
+def test_a_model_file_has_it_only_where_it_can_act(cls, vehicle, tmp_path):
+    """Elsewhere it would do nothing, and nobody would notice."""
+    hull = load_vehicle("bluerov2_heavy").model_dump(mode="json", by_alias=True)
+    hull["thrusters"] |= {"units": [], "mixer": None}
+    entry = {"effect": cls.id}
+    vehicle_file = hull if vehicle == "hull" else vehicle
+    write_yaml(tmp_path / "m.yaml", {"vehicle": vehicle_file, "effects": [entry]})
+    if cls.requires not in LACKING[vehicle]:
+        read_model(tmp_path / "m.yaml", built_in())
+        return
+    with pytest.raises(BadInput, match=f"m.yaml.*'{cls.id}' cannot act on a vehicle") as refusal:
+        read_model(tmp_path / "m.yaml", built_in())
+    assert f"in '{cls.requires}'" in refusal.value.remedy
 
 
 def test_an_unknown_effect_names_the_nearest():

@@ -64,7 +64,7 @@ def add_effects(
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
     entries = [EffectEntry.of(by_name[name], source) for name in names]
-    on_vehicle = catalogue.on(vehicle)
+    on_vehicle = catalogue.on(base.vehicle)
     new_effects = build_effects(entries, on_vehicle)
     _refuse_again(new_effects, base, to)
     model = extend(base, new_effects)

@@ -5,23 +5,41 @@ import pkgutil
 from functools import cache
 from importlib.metadata import entry_points
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 from typing import Iterable, Iterator, Mapping, Sequence
 
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics import effects
-from rovsim.dynamics.effects.base import Effect, Wrench
+from rovsim.dynamics.effects.base import Effect, Requirement, Wrench
 from rovsim.dynamics.user_effects.reading import check_effects, read_effects
 from rovsim.dynamics.user_effects.trials import try_on
 from rovsim.dynamics.vehicle import Vehicle
 
+# What a vehicle may lack, in words; its vehicle file has a section of that name.
+PARTS: Mapping[Requirement, str] = {
+    "thrusters": "thrusters",
+    "surfaces": "control surfaces",
+    "waterplane": "a waterplane",
+}
+
 
 class Catalogue(Mapping[str, type[Effect]]):
-    """Effect classes by id, sorted; `files` are those of a user's effects."""
+    """Effect classes by id, sorted.
 
-    def __init__(self, found: Mapping[str, type[Effect]], files: Sequence[Path] = ()) -> None:
+    Attributes:
+        files: those of a user's effects.
+        impossible: by id, what a vehicle would need for effects that are left out (`on`).
+    """
+
+    def __init__(
+        self,
+        found: Mapping[str, type[Effect]],
+        files: Sequence[Path] = (),
+        impossible: Mapping[str, Requirement] = MappingProxyType({}),
+    ) -> None:
         self._by_id = dict(sorted(found.items()))
         self.files = tuple(files)
+        self.impossible = impossible
 
     def __getitem__(self, name: str) -> type[Effect]:
         return self._by_id[name]
@@ -38,24 +56,35 @@ class Catalogue(Mapping[str, type[Effect]]):
         return tuple(cls for cls in self.values() if issubclass(cls, Wrench))
 
     def on(self, vehicle: Vehicle) -> "Catalogue":
-        """The same effects with the parameters and starts that they have on a vehicle.
+        """The effects that can act on a vehicle, with the parameters and starts they have there.
 
         Raises:
             BadInput: a user's effect fails on this vehicle.
         """
-        classes = {name: cls.on(vehicle) for name, cls in self.items()}
+        needs = {name: cls.requires for name, cls in self.items()}
+        impossible = {name: need for name, need in needs.items() if need in vehicle.lacking}
+        classes = {n: cls.on(vehicle) for n, cls in self.items() if n not in impossible}
         for name in classes.keys() - built_in().keys():
             try_on(classes[name], vehicle)
-        return Catalogue(classes, self.files)
+        return Catalogue(classes, self.files, {**self.impossible, **impossible})
 
     def find(self, name: str) -> type[Effect]:
         """The effect with this id.
 
         Raises:
-            BadInput: there is none; the message names the nearest id.
+            BadInput: there is none, and the message names the nearest id; or it cannot act on the
+                vehicle.
         """
         if name in self:
             return self[name]
+        if name in self.impossible:
+            need = self.impossible[name]
+            raise BadInput(
+                f"'{name}' cannot act on a vehicle without {PARTS[need]}",
+                where="effects",
+                expected="effects of what the vehicle has",
+                remedy=f"Leave it out, or describe what is there in the vehicle file, in '{need}'.",
+            )
         raise BadInput(
             f"unknown effect '{name}'",
             where="effects",

@@ -91,11 +91,11 @@ def list_means(runs: Sequence[ObservedRun], vehicle: Vehicle) -> set[Requirement
         "nothing": True,
         "commands": commands,
         "demands": "demand" in kinds,
-        "thrusters": vehicle.thrusters.units and kinds - {"wrench"},
-        "surfaces": vehicle.surfaces,
-        "waterplane": vehicle.floats,
+        "thrusters": kinds - {"wrench"},
+        "surfaces": True,
+        "waterplane": True,
     }
-    return {means for means, met in conditions.items() if met}
+    return {means for means, met in conditions.items() if met} - vehicle.lacking
 
 
 def _can_act(start: Effect, runs: Sequence[ObservedRun]) -> bool:

@@ -26,7 +26,8 @@ DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
 OF_SIZE = ("N", "kg")  # how units begin of parameters that grow with the size of a vehicle
 # Scales of a threshold. ESCs stop at 0.06: that a deadband of 0.3 would show says nothing of that.
 USUAL = 2.5
-LOGGED: tuple[Requirement, ...] = ("commands", "demands")  # not observable where nobody logged them
+# not observable where nobody logged them
+LOGGED: tuple[Requirement, ...] = ("commands", "demands", "thrusters")
 
 
 def list_not_observable(
@@ -112,9 +113,8 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
 def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: Vehicle) -> set[str]:
     """Find the ids of effects that act on a kind of commands that nobody logged."""
     means = list_means(runs, vehicle)
-    requirements = (*LOGGED, *(("thrusters",) if vehicle.thrusters.units else ()))
     return {
         name
         for name, effect in catalogue.on(vehicle).items()
-        if effect.requires in requirements and effect.requires not in means
+        if effect.requires in LOGGED and effect.requires not in means
     }

@@ -70,8 +70,6 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
         BadInput: a method fails, or returns something else than expected.
     """
     where = _place_of(cls)
-    if cls.requires == "thrusters" and not vehicle.thruster_count:
-        return
     for start in ({}, *cls.starts):
         effect = cls(**start)
         for trial in _list_trials(effect, vehicle):

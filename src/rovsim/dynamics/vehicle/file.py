@@ -10,7 +10,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.names import Name
 from rovsim.core.schema import Axis, Section
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Effect
+from rovsim.dynamics.effects.base import Coefficients, Effect, Requirement
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.rigid_body import RigidBody
 from rovsim.dynamics.effects.waterplane import WaterplaneStiffness
@@ -155,6 +155,16 @@ class Vehicle(Section):
     def floats(self) -> bool:
         """Whether it has a waterplane."""
         return self.waterplane is not None
+
+    @property
+    def lacking(self) -> frozenset[Requirement]:
+        """What effects may require of a vehicle, and this one does not have."""
+        parts: dict[Requirement, object] = {
+            "thrusters": self.thrusters.units,
+            "surfaces": self.surfaces,
+            "waterplane": self.floats,
+        }
+        return frozenset(name for name, part in parts.items() if not part)
 
     @property
     def command_columns(self) -> tuple[str, ...]:
