@@ -103,8 +103,6 @@ def test_what_folds_lack_is_said(folder):
     (folder / "published.csv").unlink()
     with pytest.raises(BadInput, match=r"published\.csv: no such file.*Ask the harbour master"):
         folds_of(folder).check()
-    with pytest.raises(BadInput, match="Did you mean 'knn'"):
-        folds_of(folder, "folds.residuals=[knnn]").check()
     for word in ("folds.published=published.csv", "folds.pitfalls=true"):
         with pytest.raises(BadInput, match="only with leave_one_run_out=true"):
             compose([word])

@@ -54,6 +54,21 @@ def test_a_tank_takes_keys_that_no_file_lists():
         compose(["tank.camera.rat=50"])
 
 
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("blind.methods=[diagnosis,stlq]", "stlsq"),
+        ("study.controls=[6dfo]", "6dof"),
+        ("folds.controls=[al]", "all"),
+        ("tank.runs=[{id: a, control: 6dof, split: trian}]", "train"),
+        ("blind.suite=quik", "quick"),
+    ],
+)
+def test_a_mistyped_name_is_answered_with_the_nearest(word, meant):
+    with pytest.raises(BadInput, match=f"Did you mean '{meant}'"):
+        compose([word])
+
+
 def test_the_page_names_every_key_of_the_tank():
     text = PAGE.read_text(encoding="utf-8")
     for name, field in TankSettings.model_fields.items():

@@ -32,8 +32,22 @@ def test_overrides_may_hold_what_the_command_line_may():
 
 
 @pytest.mark.parametrize(
+    "word",
+    ["study.residuals=[knnn]", "folds.residuals=[knnn]"],
+)
+def test_a_residual_that_nobody_knows_is_refused_before_anything_is_planned(word):
+    """Also where no run is left out: the typing error would show only when one is."""
+    with pytest.raises(BadInput, match=f"{word.partition('=')[0]}: .*'knnn'.*mean 'knn'"):
+        Study({"overrides": f"tank=tiny {word}"}).check()
+
+
+@pytest.mark.parametrize(
     ("names", "said"),
-    [("[knn]", "'knn'.*as in knn_6dof"), ("[knn_7dof]", "'knn_7dof'"), ("[kn_6dof]", "'kn'")],
+    [
+        ("[knn]", "'knn'.*as in knn_6dof"),
+        ("[knn_6dfo]", "'knn_6dfo'.*Did you mean '6dof'"),
+        ("[kn_6dof]", "'kn'"),
+    ],
 )
 def test_residuals_on_effects_are_named_with_their_control(names, said):
     with pytest.raises(BadInput, match=f"study.on_effects: .*{said}"):

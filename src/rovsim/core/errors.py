@@ -68,7 +68,7 @@ def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> B
     """Make the error for an unknown name: it lists the known ones and suggests the nearest."""
     names = [str(k) for k in known]
     return BadInput(
-        found, where=where, expected=f"one of {', '.join(names)}", remedy=_closest(name, names)
+        found, where=where, expected=f"one of {', '.join(names)}", remedy=closest(name, names)
     )
 
 
@@ -76,10 +76,10 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """Return a remedy for an unknown name: the nearest known one, else all of them."""
     names = [str(k) for k in known]
     more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return _closest(name, names) or f"Known: {', '.join(names[:MOST]) or 'none'}{more}."
+    return closest(name, names) or f"Known: {', '.join(names[:MOST]) or 'none'}{more}."
 
 
-def _closest(name: str, names: Sequence[str]) -> str:
+def closest(name: str, names: Sequence[str]) -> str:
     """Ask whether the nearest name was meant; empty where none is near."""
     close = get_close_matches(str(name), names, n=1, cutoff=0.5)
     return f"Did you mean '{close[0]}'?" if close else ""

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from rovsim.core.errors import BadInput, unlisted
+from rovsim.core.errors import BadInput, closest, unlisted
 
 
 class Section(BaseModel):
@@ -146,7 +146,9 @@ def _remedy(error: Any) -> str:
     options = re.findall(r"'([^']*)'", error["msg"])
     text = value.casefold()
     matches = [o for o in options if text and (text.startswith(o) or o.startswith(text))]
-    return f"Did you mean '{matches[0]}'?" if len(matches) == 1 else "Correct that value."
+    if len(matches) == 1:
+        return f"Did you mean '{matches[0]}'?"
+    return closest(text, options) or "Correct that value."
 
 
 def _sentence(message: str) -> str:

@@ -8,7 +8,6 @@ from rovsim.application.study.models import PHYSICS
 from rovsim.application.study.study import Study
 from rovsim.core.errors import BadInput
 from rovsim.core.model_names import EFFECTS, NOMINAL, name_learned
-from rovsim.learning.learner import learner
 from rovsim.learning.pairs import flown_with
 from rovsim.measurement.campaign import Campaign
 from rovsim.reporting.figures import FigureKind
@@ -39,10 +38,8 @@ class LeaveOneRunOut:
         """Check the settings of the folds before anything is planned.
 
         Raises:
-            BadInput: there is only one run, an unknown residual, or no file of published errors.
+            BadInput: there is only one run, or no file of published errors.
         """
-        for kind in self.study.settings.folds.residuals if self.runs else ():
-            learner(kind, "folds.residuals")
         if len(self.runs) == 1:
             raise BadInput(
                 "only one run",

@@ -6,7 +6,7 @@ from typing import Any, Mapping, get_args
 
 from rovsim.application.settings import Settings
 from rovsim.application.study.snakemake_config import SnakemakeConfig
-from rovsim.core.errors import BadInput
+from rovsim.core.errors import BadInput, closest
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.learned.settings import Control
 from rovsim.learning.learner import learner
@@ -132,6 +132,8 @@ class Study:
                 )
         for kind in self.settings.study.residuals:
             learner(kind, "study.residuals")
+        for kind in self.settings.folds.residuals:  # even where no run is left out
+            learner(kind, "folds.residuals")
         for name in self.settings.study.on_effects:
             kind, _, control = name.rpartition("_")
             controls = get_args(Control)
@@ -140,6 +142,6 @@ class Study:
                     f"'{name}'",
                     where="study.on_effects",
                     expected=f"a residual and a control ({', '.join(controls)}), as in knn_6dof",
-                    remedy="Correct that value.",
+                    remedy=closest(control, controls) or "Correct that value.",
                 )
             learner(kind, "study.on_effects")
