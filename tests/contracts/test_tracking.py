@@ -23,6 +23,7 @@ from rovsim.apps.cli.sweep import (
     name_run,
 )
 from rovsim.core.errors import BadInput
+from rovsim.results.ladder import Ladder, LadderStep
 from said import unfolded
 from synthetic_study import study
 
@@ -153,6 +154,28 @@ def test_models_are_ranked_where_there_is_a_test_run():
     errors = {"nominal": 0.2, "model": 0.05, "untested": None}
     assert ranking(errors, "model", "nominal") == {"windows_2s": 0.05, "windows_2s/of_base": 0.25}
     assert ranking(errors, "untested", "nominal") == {}
+
+
+@pytest.mark.parametrize(
+    ("added", "error"),
+    [({"+thruster_lag": 0.3, "+lift": 0.2}, 0.2), ({}, 0.6)],
+    ids=["two", "none"],
+)
+def test_the_model_with_all_effects_is_ranked_though_it_is_no_step_of_the_ladder(
+    added, error, tmp_path
+):
+    made = study(models=("nominal", "effects", "knn_6dof"))
+    found = [LadderStep(model=name, windows_2s=value) for name, value in added.items()]
+    scored = [LadderStep(model=m, windows_2s=v) for m, v in [("nominal", 0.6), ("effects", error)]]
+    names = {name: tmp_path / f"{name}.json" for name in ("comparison", "ladder", "diagnosis")}
+    made["ladder"] = Ladder.with_diagnosis(scored, found)
+    for name, path in names.items():
+        made[name].write(path)
+    uri = f"sqlite:///{tmp_path / 'mlflow.db'}"
+    settings = TrackingSettings(uri=uri, artifacts=str(tmp_path / "kept"))
+    runs = track_study(settings, "tank", StudyFiles(models=[], kept=[], **names), {})
+    logged = MlflowClient(tracking_uri=uri).get_run(runs["effects"]).data.metrics
+    assert logged["windows_2s"] == error
 
 
 def test_jobs_of_a_sweep_have_folders_of_their_own_in_one_that_is_given():

@@ -4,9 +4,11 @@ from typing import ClassVar, Literal, Sequence
 
 from pydantic import Field
 
-from rovsim.core.model_names import EFFECTS, NOISE_FLOOR
+from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
+
+ADDED = "+"  # begins the name of a step at which a diagnosis added an effect
 
 
 class LadderStep(Section):
@@ -47,13 +49,25 @@ class Ladder(Result):
         """`windows_2s` of a perfect model, if known."""
         return next((s.windows_2s for s in self.steps if s.model == NOISE_FLOOR), None)
 
+    @property
+    def errors(self) -> dict[str, float]:
+        """`windows_2s` by model, where it is known, with the model `effects`.
+
+        Of that one the steps are its effects, one by one: the last of them has all, and where
+        none was selected it is the nominal model.
+        """
+        complete = next((s for s in reversed(self.steps) if s.model.startswith(ADDED)), None)
+        steps = {step.model: step.windows_2s for step in self.models}
+        steps[EFFECTS] = complete.windows_2s if complete else steps.get(NOMINAL)
+        return {model: error for model, error in steps.items() if error is not None}
+
     @staticmethod
     def with_diagnosis(models: Sequence[LadderStep], diagnosed: Sequence[LadderStep]) -> "Ladder":
         """Models and a diagnosis: its effects one by one, its noise floor last.
 
         The effects stand where the model that has all of them would.
         """
-        effects = [s for s in diagnosed if s.model.startswith("+")]
+        effects = [s for s in diagnosed if s.model.startswith(ADDED)]
         floor = [s for s in diagnosed if s.model == NOISE_FLOOR]
         steps = [s for m in models for s in (effects if m.model == EFFECTS else [m])]
         return Ladder(steps=(*steps, *floor))

@@ -6,6 +6,7 @@ from typing import Any, Mapping, Sequence
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
+from rovsim.application.tracking.ranking_view import RANKED_BY
 from rovsim.application.tracking.runs import TrackedRun, track
 from rovsim.core.model_names import NOMINAL
 from rovsim.core.yaml_files import read_yaml
@@ -50,7 +51,7 @@ def track_study(
         Ids of the runs by name; under `diagnosis` those of its run and its steps, by name.
     """
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
-    steps = {s.model: s.windows_2s for s in ladder.steps if s.windows_2s is not None}
+    errors = ladder.errors
     by_model = {path.parent.name: path for path in files.models}
     figures = [path for path in files.kept if path.stem in MODEL_FIGURES]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
@@ -66,7 +67,7 @@ def track_study(
             name=name,
             parent=parent,
             scores=entry.runs,
-            metrics={"windows_2s": steps[name]} if name in steps else {},
+            metrics={RANKED_BY: errors[name]} if name in errors else {},
             **_described(name, by_model.get(name), figures),
         )
         runs[name] = track(settings, of_model)
