@@ -10,14 +10,14 @@ from scipy.signal import lfilter
 
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.spectrum import find_spectrum
-from rovsim.evaluation.error_conditions.conditions import SPEEDS, THROUGHOUT, Blocks, Condition
+from rovsim.evaluation.error_conditions.conditions import SPEEDS, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.findings import explain_errors
 from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
-from rovsim.results.error_conditions import BLOCK, ErrorConditions
+from rovsim.results.error_conditions import BLOCK, THROUGHOUT, ErrorConditions
 from rovsim.results.force_budget import ForceBudget
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Ladder

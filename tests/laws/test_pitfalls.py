@@ -7,8 +7,9 @@ import pytest
 
 from flown import observed
 from rovsim.dynamics.effect_entry import EffectEntry
-from rovsim.evaluation.held_out.pitfalls import PITFALLS, SAID, measure_pitfalls, on_wrong_clock
+from rovsim.evaluation.held_out.pitfalls import SAID, measure_pitfalls, on_wrong_clock
 from rovsim.learning.learner import learner_settings
+from rovsim.results.pitfalls import PITFALLS
 from rovsim.simulation.settings import SimulationSettings
 
 QUICK = {"max_points": 300, "tuning_points": 100, "iterations": 15}

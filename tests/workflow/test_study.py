@@ -9,7 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from rovsim.application.provenance import find_modules, imports_of
+from rovsim.application.study.dependencies import SURROUNDINGS
 from small_study import ROOT, SMALL, copy_of
+
+COMMENT = {".css": "\n/* edited */\n"}  # by ending; else "# edited"
 
 
 def snakemake(folder: Path, *words: str, source: Path = ROOT / "src") -> str:
@@ -89,6 +93,9 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     touched = _edited(study, "src/rovsim/reporting/figures/ladder.py")
     assert "figure_ladder" in touched
     assert touched <= {"figure_ladder", "report", "track", "all"}
+    touched = _edited(study, "src/rovsim/reporting/html/report.css")
+    assert touched == {"report", "track", "all"}
+    assert _edited(study, "src/rovsim/intake/pairing.py") == set()
     touched = _edited(study, "conf/vehicle/bluerov2_heavy.yaml")
     assert {"tank", "read", "replay", "diagnose", "train"} <= touched
     touched = _edited(study, "src/rovsim/measurement/signals/filter.py")
@@ -128,7 +135,7 @@ def _edited(folder: Path, name: str) -> set[str]:
     path = folder / name
     before = path.read_text()
     try:
-        path.write_text(before + "\n# edited\n")
+        path.write_text(before + COMMENT.get(path.suffix, "\n# edited\n"))
         return to_run(folder)
     finally:
         path.write_text(before)
@@ -143,6 +150,21 @@ def test_a_rule_depends_on_what_its_own_script_imports():
     assert len(found) == rules.count("script:\n") > 15
     for kind, name, script in found:
         assert name == ("simulation.synthetic_tank" if kind == "own_code" else script)
+
+
+def _depends_on(script: str) -> set[str]:
+    """Modules of rovsim whose edits run a script again."""
+    path = ROOT / "workflow" / "scripts" / f"{script}.py"
+    return find_modules(*imports_of(path), aside=SURROUNDINGS)
+
+
+def test_what_tells_of_results_depends_on_nothing_that_computes_them():
+    report, tracked = _depends_on("report"), _depends_on("track")
+    assert {"rovsim.reporting.words.verdict", "rovsim.dynamics.effects.damping"} <= report
+    assert not {"rovsim.dynamics.engine.equation", "rovsim.simulation.replay"} & report
+    assert "rovsim.application.tracking.runs" in tracked
+    assert {name.split(".")[1] for name in tracked} == {"application", "core", "results"}
+    assert "rovsim.reporting.html.report" not in _depends_on("tables")
 
 
 def test_a_bad_campaign_is_one_message(tmp_path):

@@ -139,7 +139,7 @@ rule report:
     params:
         campaign=study.name,
         runs=study.runs(),
-        provenance=depends.provenance(),
+        given=depends.given(),
         code=code_of("report"),
     script:
         "../scripts/report.py"

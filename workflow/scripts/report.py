@@ -1,6 +1,6 @@
 """Write the report of the study."""
 
-from rovsim.application.pipeline.presentation import write_report
+from rovsim.application.pipeline.study_report import write_report
 from rovsim.application.snakemake_job import job
 from rovsim.reporting.report_data import STUDY_RESULTS
 
@@ -11,7 +11,7 @@ if __name__ == "__main__":
             contents=rule.contents(*STUDY_RESULTS),
             quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
             figures=rule.paths("figures"),
-            provenance=rule.params.provenance,
+            given=rule.params.given,
             catalogue=rule.catalogue,
             out=rule.output(),
         )

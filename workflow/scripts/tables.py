@@ -1,6 +1,6 @@
 """Write the tables of the study."""
 
-from rovsim.application.pipeline.presentation import write_tables
+from rovsim.application.pipeline.study_tables import write_tables
 from rovsim.application.snakemake_job import job
 
 if __name__ == "__main__":

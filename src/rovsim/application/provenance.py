@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from os.path import relpath
 from pathlib import Path
-from typing import Any, Iterable, Mapping, Sequence
+from typing import Any, Collection, Iterable, Mapping, Sequence
 
 import rovsim
 from rovsim.core.schema import Section
@@ -20,29 +20,43 @@ from rovsim.measurement.campaign import Campaign
 
 SOURCE = Path(rovsim.__file__).parent
 MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
-FOUND_BY_MODELS = ("rovsim.dynamics.effects", "rovsim.dynamics.engine")
-LOOKED_INTO = ("rovsim.measurement.recording", "rovsim.learning.learners")
+EFFECTS = "rovsim.dynamics.effects"
+# Packages that a module depends on without importing them: it looks into their folders. A model may
+# hold any effect, and compiles its engine.
+LOOKED_INTO = {
+    MODEL: (EFFECTS, "rovsim.dynamics.engine"),
+    "rovsim.dynamics.catalogue": (EFFECTS,),
+    "rovsim.measurement.recording": ("rovsim.measurement.recording",),
+    "rovsim.learning.learners": ("rovsim.learning.learners",),
+}
 UNRELATED = ("command", "tracking", "timing", "blind", "bench", "out", "output", "port", "open")
 PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
 
-def digest(*names: str, without: str = "", described: Sequence[Path] = ()) -> str:
+def digest(
+    *names: str,
+    without: str = "",
+    aside: Collection[str] = (),
+    described: Sequence[Path] = (),
+) -> str:
     """Digest modules of rovsim and all that they import, directly or indirectly.
 
     Args:
         names: of modules. A package stands for all its modules, since plug-ins that are found by
             looking into a folder have no import to follow.
         without: a package that is left out.
+        aside: modules that are left out, with all that nothing else imports.
         described: files that describe a vehicle or a user's effects; included where one of the
             modules depends on models or vehicles.
 
     Returns:
         The first 16 hexadecimal digits of a SHA-256.
     """
-    modules = find_modules(*names)
+    modules = find_modules(*names, aside=aside)
     if without:
         modules = {name for name in modules if not f"{name}.".startswith(f"{without}.")}
-    return _digest(map(_file, sorted(modules)), described if modules & {MODEL, VEHICLE} else ())
+    files = (file for name in sorted(modules) for file in _files(name))
+    return _digest(files, described if modules & {MODEL, VEHICLE} else ())
 
 
 def imports_of(script: Path) -> list[str]:
@@ -52,13 +66,14 @@ def imports_of(script: Path) -> list[str]:
     return sorted({name for name in modules if name and name.startswith("rovsim")})
 
 
-def find_modules(*names: str) -> set[str]:
+def find_modules(*names: str, aside: Collection[str] = ()) -> set[str]:
     """Find modules of rovsim and all that they import, directly or indirectly.
 
     Args:
         names: of modules; a package stands for all its modules.
+        aside: modules that are left out, with all that nothing else imports.
     """
-    graph = _graph()
+    graph = _graph(frozenset(aside))
 
     def found(packages: Iterable[str]) -> set[str]:
         members = {
@@ -66,8 +81,8 @@ def find_modules(*names: str) -> set[str]:
         }
         return members.union(*(graph.find_upstream_modules(name) for name in members))
 
-    modules = found(names)
-    return modules | found(_discovered(modules))
+    modules = found(name for name in names if name not in aside)
+    return modules.union(*(found(LOOKED_INTO[name]) for name in LOOKED_INTO.keys() & modules))
 
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:
@@ -93,26 +108,25 @@ def _without_comments(source: bytes) -> bytes:
         return source  # raises where the effect is loaded
 
 
-def _discovered(modules: set[str]) -> set[str]:
-    """List packages whose plug-ins these modules find by looking into the folder.
-
-    A model may hold any effect and compiles its engine: modules that depend on models depend on all
-    effects and on the engine.
-    """
-    packages = {package for package in LOOKED_INTO if package in modules}
-    return packages | (set(FOUND_BY_MODELS) if MODEL in modules else set())
-
-
 @cache
-def _graph():
+def _graph(aside: frozenset[str]):
     import grimp
 
-    return grimp.build_graph("rovsim", cache_dir=None)
+    graph = grimp.build_graph("rovsim", cache_dir=None)
+    for name in aside:
+        graph.remove_module(name)
+    return graph
 
 
 def _file(module: str) -> Path:
     path = SOURCE.joinpath(*module.split(".")[1:])
     return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def _files(module: str) -> list[Path]:
+    """Return the file of a module, and those that bear its name: the templates it fills in."""
+    path = _file(module)
+    return sorted(path.parent.glob(f"{path.stem}.*"))
 
 
 def _version(package: str) -> str | None:
@@ -145,20 +159,29 @@ def provenance(
     """Describe recordings, vehicle file, settings, code and versions behind a result.
 
     Args:
-        settings: of the command or rule; those that do not influence a result are left out.
+        settings: of the command; those that do not influence a result are left out.
         catalogue: all effects, with those of the user's own files.
         campaign: that was used; None where the settings create it (a synthetic one).
         recordings: digests of its files that are known (`digest_recordings`).
     """
-    relevant = settings.model_dump(mode="json", exclude=set(UNRELATED))
-    origin = {"settings": relevant, **describe_origin(catalogue)}
+    return add_origin(describe_given(settings, campaign, recordings), catalogue)
+
+
+def describe_given(
+    settings: Section, campaign: Campaign | None, recordings: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Describe settings, recordings and vehicle file as `provenance` does, without the code."""
+    given: dict[str, Any] = {"settings": settings.model_dump(mode="json", exclude=set(UNRELATED))}
     if campaign is None:
-        return origin
+        return given
     vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
-    return origin | {
-        "recordings": digest_files(campaign, recordings),
-        "vehicle": _sha256(vehicle)[:16],
-    }
+    recorded = digest_files(campaign, recordings)
+    return given | {"recordings": recorded, "vehicle": _sha256(vehicle)[:16]}
+
+
+def add_origin(given: Mapping[str, Any], catalogue: Catalogue) -> dict[str, Any]:
+    """Add the code and the versions that run now to what `describe_given` returned."""
+    return {"settings": given["settings"], **describe_origin(catalogue), **given}
 
 
 def digest_files(campaign: Campaign, known: Mapping[str, str] | None = None) -> dict[str, str]:

@@ -8,11 +8,10 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.core.model_names import NOISE_FLOOR, ZERO_ACCELERATION
-from rovsim.evaluation.error_conditions.conditions import THROUGHOUT
 from rovsim.reporting.figures.palette import Look, family_look
 from rovsim.reporting.wording import title
 from rovsim.results.base import or_nan
-from rovsim.results.error_conditions import ConditionTable, ModelConditions
+from rovsim.results.error_conditions import THROUGHOUT, ConditionTable, ModelConditions
 from rovsim.results.ladder import Ladder
 
 NAME = 28  # letters of a step's name

@@ -8,6 +8,7 @@ from rovsim.core.schema import Section
 from rovsim.results.base import Result
 
 BLOCK = 0.5  # s, over which errors are averaged
+THROUGHOUT = "throughout"  # the condition that holds all the time: of an error that is constant
 
 
 class ConditionShare(Section):

@@ -7,6 +7,16 @@ from pydantic import Field
 from rovsim.core.schema import Section
 from rovsim.results.base import Result
 
+ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
+SHARE = "share of the residual acceleration that is predicted"
+# For each mistake, what was done, and which number is compared without it and with it.
+PITFALLS = {
+    "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
+    "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
+    "lost data": ("a GP loaded with its hyperparameters but not its data", SHARE),
+    "scaled twice": ("features scaled before they reach a GP that scales them", SHARE),
+}
+
 
 class Cost(Section):
     """The same number measured right, and with the mistake."""

@@ -17,7 +17,8 @@ refit              the nominal model with its own parameters fitted
 training           a learned residual on top of a model, and how long its predictions take
 comparison         replays, scores, conditions and forces of several models together
 drawing            figures of a study
-presentation       tables and report of a study
+study_tables       tables of a study
+study_report       its report
 summary            the study's scores, ladder and growth in one place
 held_out           a held-out run: its scores, beside published errors and pitfalls
 """

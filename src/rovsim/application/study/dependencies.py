@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Mapping
 
 from rovsim.application.configuration import compose
-from rovsim.application.provenance import digest, imports_of, own_digest, provenance
+from rovsim.application.provenance import describe_given, digest, imports_of, own_digest
 from rovsim.application.sections import TrainingSettings
 from rovsim.application.settings import select
 from rovsim.application.study.study import Study
@@ -16,7 +16,7 @@ from rovsim.learning.learner import learner_settings
 from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.campaign import Campaign
 
-# Modules that every script imports: left out of digests, as settings are parameters of its rule.
+# Left out of digests, with all that they alone import: settings are parameters of rules already.
 SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
 
 
@@ -75,8 +75,8 @@ class Dependencies:
             more: modules that it depends on without importing them.
             without: a package whose edits change nothing that the script writes.
         """
-        names = [name for name in (*imports_of(script), *more) if name not in SURROUNDINGS]
-        return digest(*names, without=without, described=self._described)
+        names = (*imports_of(script), *more)
+        return digest(*names, without=without, aside=SURROUNDINGS, described=self._described)
 
     def own_code(self, package: str) -> str:
         """Digest a package without its imports.
@@ -95,7 +95,10 @@ class Dependencies:
             vehicle = vehicle_file(self.study.settings.tank.vehicle)
         return [vehicle, *self.study.catalogue.files]
 
-    def provenance(self) -> dict[str, Any]:
-        """Describe settings, code and versions behind the study."""
+    def given(self) -> dict[str, Any]:
+        """Describe settings and recordings of the study.
+
+        The code is left out: whatever was edited, the report would be written again.
+        """
         campaign = self.study.campaign if isinstance(self.study.campaign, Campaign) else None
-        return provenance(self.study.settings, self.study.catalogue, campaign)
+        return describe_given(self.study.settings, campaign)

@@ -18,12 +18,12 @@ from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS, VELOCITY_UNI
 from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.error_conditions import BLOCK
+from rovsim.results.error_conditions import BLOCK, THROUGHOUT
 from rovsim.simulation.samples import Samples
 
 SEEN = 0.5  # share of a block that must have been measured
 SPEEDS = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
-THROUGHOUT, HEADING = "throughout", "heading"
+HEADING = "heading"
 ACCELERATION = "acceleration"  # a kind that is drawn, but not searched
 ANGLES = ("roll angle", "pitch angle", HEADING)
 UNITS = {  # of the six axes, by kind

@@ -21,8 +21,8 @@ from rovsim.evaluation.error_conditions.bins import (
     number_stretches,
     weigh_evidence,
 )
-from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Blocks, Condition
-from rovsim.results.error_conditions import ConditionShare
+from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
+from rovsim.results.error_conditions import THROUGHOUT, ConditionShare
 
 LEVEL = 0.005  # chance of any false finding in a whole search over an adequate model
 FLIPS = 3999  # draws of signs: they tell chances down to 1/4000, a twentieth of LEVEL

@@ -4,8 +4,9 @@ import numpy as np
 
 from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS
 from rovsim.core.signs import minus
-from rovsim.evaluation.error_conditions.conditions import THROUGHOUT, Condition
+from rovsim.evaluation.error_conditions.conditions import Condition
 from rovsim.evaluation.error_conditions.findings import SMALLEST, ErrorExplanation, Finding
+from rovsim.results.error_conditions import THROUGHOUT
 
 UNITS = dict(zip(AXES, ACCELERATION_UNITS, strict=True))  # of an error, by axis
 PUSH_UNITS = dict(zip(AXES, FORCE_UNITS, strict=True))

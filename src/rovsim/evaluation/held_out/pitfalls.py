@@ -20,15 +20,6 @@ from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import SimulationSettings
 
-ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
-SHARE = "share of the residual acceleration that is predicted"
-# For each mistake, what was done, and which number is compared without it and with it.
-PITFALLS = {
-    "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
-    "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
-    "lost data": ("a GP loaded with its hyperparameters but not its data", SHARE),
-    "scaled twice": ("features scaled before they reach a GP that scales them", SHARE),
-}
 SAID = 0.1  # s, the bin that the public code replays with
 FAR = 1e6  # standard deviations from all training data: there a Gaussian process knows no data
 

@@ -3,10 +3,9 @@
 from typing import Mapping
 
 from rovsim.core.model_names import EFFECTS
-from rovsim.evaluation.held_out.pitfalls import PITFALLS
 from rovsim.reporting.tables import QUANTITIES
 from rovsim.reporting.wording import known, title
-from rovsim.results.pitfalls import Cost, Pitfalls
+from rovsim.results.pitfalls import PITFALLS, Cost, Pitfalls
 from rovsim.results.published_errors import ModelStanding, PublishedErrors
 
 
