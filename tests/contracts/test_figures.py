@@ -21,7 +21,13 @@ from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.series import averaged
 from rovsim.reporting.figures.style import save, styled
 from rovsim.reporting.html.folder import draw
-from rovsim.reporting.report_data import ReportData, RunData, list_run_figures, list_study_figures
+from rovsim.reporting.report_data import (
+    ReportData,
+    RunData,
+    list_run_figures,
+    list_study_figures,
+    read_by,
+)
 from rovsim.results.comparison import Comparison
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.growth import Growth
@@ -69,8 +75,11 @@ def test_it_says_where_it_belongs_and_what_it_shows(name):
     assert found.section in SECTIONS
     assert found.caption.endswith(".")
     assert (found in list_study_figures()) != (found in list_run_figures())
-    of_study = {*(field.name for field in fields(ReportData)), *vars(ReportData)}
-    assert set(found.needs) <= (of_study if found in list_study_figures() else vars(RunData).keys())
+    known = {field.name for field in fields(ReportData)}
+    of_study = found in list_study_figures()
+    assert set(found.needs) <= ({*known, *vars(ReportData)} if of_study else vars(RunData).keys())
+    # else the workflow would not know what to read for it
+    assert not of_study or known & set(read_by(found))
 
 
 @EVERY

@@ -13,7 +13,7 @@ from rovsim.application.provenance import find_modules, imports_of
 from rovsim.application.study.dependencies import SURROUNDINGS
 from small_study import ROOT, SMALL, copy_of
 
-COMMENT = {".css": "\n/* edited */\n"}  # by ending; else "# edited"
+COMMENT = {".css": "\n/* edited */\n", ".json": "\n"}  # by ending; else "# edited"
 
 
 def snakemake(folder: Path, *words: str, source: Path = ROOT / "src") -> str:
@@ -95,6 +95,8 @@ def test_the_study_ends_in_results_and_edits_rerun_what_they_touch(study):
     assert touched <= {"figure_ladder", "report", "track", "all"}
     touched = _edited(study, "src/rovsim/reporting/html/report.css")
     assert touched == {"report", "track", "all"}
+    touched = _edited(study, "results/tank-tiny/timing.json")
+    assert touched == {"figure_inference_time", "report", "track", "all"}
     assert _edited(study, "src/rovsim/intake/pairing.py") == set()
     touched = _edited(study, "conf/vehicle/bluerov2_heavy.yaml")
     assert {"tank", "read", "replay", "diagnose", "train"} <= touched

@@ -1,7 +1,16 @@
-from rovsim.reporting.report_data import list_run_figures
+from rovsim.reporting.report_data import list_run_figures, read_by
 
-# Only where errors of the same runs have been published.
-PUBLISHED_ERRORS = [f"{R}/published_errors.json"] if folds.published else []
+# What figures and the report show of all runs, by the name that they ask for it.
+RESULTS = {
+    **{
+        name: f"{R}/{name}.json"
+        for name in ("comparison", "ladder", "growth", "timing", "where", "diagnosis")
+    },
+    # only where errors of the same runs have been published
+    "published_errors": [f"{R}/published_errors.json"] if folds.published else [],
+    "pitfalls": [f"{R}/pitfalls.json"] if folds.pitfalls else [],
+    "quality": expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+}
 FIGURES = [figure.name for figure in folds.figures]
 
 
@@ -37,16 +46,7 @@ for figure in folds.figures:
         name:
             f"figure_{figure.name}"
         input:
-            comparison=f"{R}/comparison.json",
-            ladder=f"{R}/ladder.json",
-            growth=f"{R}/growth.json",
-            timing=f"{R}/timing.json",
-            where=f"{R}/where.json",
-            diagnosis=f"{R}/diagnosis.json",
-            published_errors=(
-                PUBLISHED_ERRORS if "published_errors" in figure.needs else []
-            ),
-            quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+            **{name: RESULTS[name] for name in read_by(figure) if name in RESULTS},
         output:
             png=report(
                 f"{R}/figures/{figure.name}.png",
@@ -62,7 +62,6 @@ for figure in folds.figures:
         params:
             figure=figure.name,
             caption=figure.caption,
-            runs=study.runs(),
             code=code_of("figure_of_study", f"rovsim.reporting.figures.{figure.name}"),
         script:
             "../scripts/figure_of_study.py"
@@ -121,14 +120,7 @@ rule tables:
 rule report:
     "Write the report of the study, on one page."
     input:
-        comparison=f"{R}/comparison.json",
-        ladder=f"{R}/ladder.json",
-        timing=f"{R}/timing.json",
-        where=f"{R}/where.json",
-        diagnosis=f"{R}/diagnosis.json",
-        published_errors=PUBLISHED_ERRORS,
-        pitfalls=[f"{R}/pitfalls.json"] if folds.pitfalls else [],
-        quality=expand(f"{R}/quality/{{run}}.json", run=study.runs()),
+        **RESULTS,
         figures=expand(f"{R}/figures/{{name}}.png", name=[*FIGURES, *study.figures()]),
     output:
         report(f"{R}/report.html", caption="../report/report.rst", category="Study"),
@@ -138,7 +130,6 @@ rule report:
         f"{R}/benchmarks/report.tsv"
     params:
         campaign=study.name,
-        runs=study.runs(),
         given=depends.given(),
         code=code_of("report"),
     script:

@@ -9,6 +9,6 @@ if __name__ == "__main__":
         draw_study(
             figure=rule.params.figure,
             contents=rule.contents(*STUDY_RESULTS),
-            quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
+            quality={path.stem: path for path in rule.paths("quality")},
             out=rule.output("png"),
         )

@@ -9,7 +9,7 @@ if __name__ == "__main__":
         write_report(
             campaign=rule.params.campaign,
             contents=rule.contents(*STUDY_RESULTS),
-            quality=dict(zip(rule.params.runs, rule.paths("quality"), strict=True)),
+            quality={path.stem: path for path in rule.paths("quality")},
             figures=rule.paths("figures"),
             given=rule.params.given,
             catalogue=rule.catalogue,

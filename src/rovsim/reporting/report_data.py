@@ -221,6 +221,15 @@ REPLAYED = {
 }
 
 
+# Attributes of ReportData that are a part of another one.
+PART_OF = {"disturbance": "diagnosis"}
+
+
+def read_by(figure: FigureKind) -> list[str]:
+    """List the attributes of ReportData that a figure of the study is drawn of."""
+    return [PART_OF.get(name, name) for name in figure.takes]
+
+
 def list_study_figures() -> list[FigureKind]:
     """List the figures that are drawn once."""
     return [figure for figure in list_figures().values() if not _is_of_run(figure)]
