@@ -102,8 +102,6 @@ def run(line: str, folder: Path) -> str:
     """Type a command into a shell that has the environment alone; what it said, if it failed."""
     for name, own in OWN.items():
         line = line.replace(name, own)
-    if new := re.match(r"rovsim add .*model=(\S+)", line):
-        (folder / new[1]).unlink(missing_ok=True)  # of `prepare`: its reader has none of that name
     words = ["bash", "-c", f"source .venv/bin/activate && {line}"]
     known = {k: v for k, v in os.environ.items() if k in ("HOME", "PATH", "LANG", "ROVSIM_CACHE")}
     if line.startswith(("rovsim ui", "mlflow ui")):

@@ -240,8 +240,7 @@ def test_what_mlflow_cannot_keep_is_no_error_of_a_diagnosis(campaign, tmp_path, 
 @pytest.mark.usefixtures("two_found")
 def test_values_that_were_found_one_by_one_are_told(capsys):
     for effects, told in (("lift,thruster_lag", True), ("lift", False), ("thruster_lag", False)):
-        words = ["diagnosis=diagnosis.json", "model=new.yaml", "force=true"]
-        main(["add", *words, f"effects=[{effects}]"])
+        main(["add", "diagnosis=diagnosis.json", "model=new.yaml", f"effects=[{effects}]"])
         said = " ".join(capsys.readouterr().out.split())
         assert ("found without the other effects" in said) == told
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from fuzz.hostile import TEXTS
-from rovsim.application.settings import CommandSettings
+from rovsim.application.settings import WritingSettings
 from rovsim.apps.cli.main import main
 from rovsim.apps.cli.output import choose_folder
 from rovsim.core.array_files import read_arrays, write_arrays
@@ -137,8 +137,8 @@ def test_a_place_that_cannot_be_written_is_said(tmp_path):
         with pytest.raises(BadInput, match="cannot be written"):
             write_json(path, {})
     with pytest.raises(BadInput, match=r"file: is not a folder"):
-        choose_folder(CommandSettings(out=str(tmp_path / "file" / "deeper" / "out")), "")
-    new = CommandSettings(out=str(tmp_path / "not" / "yet"))
+        choose_folder(WritingSettings(out=str(tmp_path / "file" / "deeper" / "out")), "")
+    new = WritingSettings(out=str(tmp_path / "not" / "yet"))
     assert choose_folder(new, "") == tmp_path / "not" / "yet"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "folder"]
 
@@ -182,22 +182,34 @@ def test_a_result_replaces_an_older_one_and_no_other_file(tmp_path, monkeypatch,
     assert "which rovsim did not write" in " ".join(capsys.readouterr().err.split())
 
 
-def test_a_model_that_was_changed_by_hand_is_replaced_only_by_force(tmp_path, monkeypatch, capsys):
+def test_a_model_that_was_changed_by_hand_is_kept(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     several_effects().write(tmp_path / "diagnosis.json")
-    words = ["add", "diagnosis=diagnosis.json", "model=new.yaml", "--quiet"]
+    words = ["add", "diagnosis=diagnosis.json", "model=new.yaml"]
     (tmp_path / "new.yaml").touch()  # nothing to lose
     main(words)
     first = (tmp_path / "new.yaml").read_text()
-    (tmp_path / "new.yaml").write_text(f"{first}# lag measured on 3 May\n")
-    with pytest.raises(SystemExit, match="2"):
+    main(words)  # the same bytes
+    assert {p.name for p in tmp_path.iterdir()} == {"diagnosis.json", "new.yaml"}
+    assert "is kept" not in capsys.readouterr().out
+    for name, note in (
+        ("new.earlier.yaml", "lag of 3 May"),
+        ("new.earlier-2.yaml", "and of 4 May"),
+    ):
+        (tmp_path / "new.yaml").write_text(f"{first}# {note}\n")
         main(words)
-    assert "measured on 3 May" in (tmp_path / "new.yaml").read_text()
-    said = " ".join(capsys.readouterr().err.split())
-    assert "new.yaml: there is one already, with another content" in said
-    assert "replace it with force=true" in said
-    main([*words, "force=true"])
-    assert (tmp_path / "new.yaml").read_text() == first
+        assert note in (tmp_path / name).read_text()
+        assert (tmp_path / "new.yaml").read_text() == first
+        assert f"It is kept as {name}" in " ".join(capsys.readouterr().out.split())
+
+
+def test_nothing_is_added_to_what_keeps_its_velocity(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    several_effects().write(tmp_path / "diagnosis.json")
+    with pytest.raises(SystemExit, match="2"):
+        main(["add", "diagnosis=diagnosis.json", "model=new.yaml", "to=zero_acceleration"])
+    assert "keeps its velocity whatever acts on it" in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "new.yaml").exists()
 
 
 def test_a_model_does_not_replace_another_diagnosis(tmp_path, monkeypatch):

@@ -12,5 +12,4 @@ if __name__ == "__main__":
             catalogue=rule.catalogue,
             out=rule.output(),
             story={},
-            force=True,  # Snakemake removes what it makes anew
         )

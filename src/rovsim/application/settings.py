@@ -113,12 +113,10 @@ class CommandSettings(Section):
 
     Attributes:
         effects_file: files that declare the user's own effects.
-        out: where the command writes; None: a folder under results/.
         output: what it prints.
     """
 
     effects_file: PathText | list[PathText] | None = None
-    out: PathText | None
     output: Literal["text", "json", "quiet"] = "text"
 
     @property
@@ -127,7 +125,17 @@ class CommandSettings(Section):
         return [Path(name) for name in as_list(self.effects_file or [])]
 
 
-class CampaignSettings(SimulationSections, CommandSettings):
+class WritingSettings(CommandSettings):
+    """Settings of commands that write where `out` says.
+
+    Attributes:
+        out: file or folder; None: a place under results/.
+    """
+
+    out: PathText | None
+
+
+class CampaignSettings(SimulationSections, WritingSettings):
     """Settings of every command on a campaign.
 
     Attributes:
@@ -171,7 +179,7 @@ class Settings(WorkbenchSettings):
         know: parameters, as effect.parameter, that a planned flight should make better known.
         fly: log of commands that the tank flies as one more train run.
         files: files and folders of recordings to be looked into.
-        force: whether a campaign.yaml or a model file that is there is replaced.
+        force: whether a campaign.yaml that is there is replaced.
         study: which residuals the workflow trains.
         folds: each run held out once.
         timing: of the inference of residuals.

@@ -8,6 +8,7 @@ import shutil
 import tempfile
 from contextlib import contextmanager
 from hashlib import sha256
+from itertools import count
 from pathlib import Path
 from socket import gethostname
 from typing import Any, Iterator, Mapping, TextIO
@@ -175,21 +176,20 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
-def write_new(path: Path, text: str) -> None:
-    """Write UTF-8 text atomically, where no file is, an empty one, or one with the same text.
+def write_beside(path: Path, text: str) -> Path | None:
+    """Write UTF-8 text atomically; what stood there and says something else is kept beside it.
 
-    Raises:
-        BadInput: there is a file with another content.
+    Returns:
+        The name under which that is kept: the first that is free of NAME.earlier.yaml,
+        NAME.earlier-2.yaml, … None where nothing else stood there.
     """
-    content = text.encode("utf-8")
+    kept, content = None, text.encode("utf-8")
     if path.is_file() and path.read_bytes() not in (b"", content):
-        raise BadInput(
-            "there is one already, with another content",
-            where=path,
-            expected="a name that is free",
-            remedy="Give another name, move that file away, or replace it with force=true.",
-        )
+        names = (f".earlier-{k}" if k > 1 else ".earlier" for k in count(1))
+        kept = next(p for name in names if not (p := path.with_stem(path.stem + name)).exists())
+        copy_file(path, kept)
     write_bytes(path, content)
+    return kept
 
 
 def write_json(path: Path, content: Any) -> None:

@@ -63,6 +63,13 @@ def add_effects(
     _check_names(names, by_name, source)
     vehicle = build_model(diagnosis.base, source, catalogue).vehicle
     base = load_model(to, vehicle, catalogue)
+    if base.inert:
+        raise BadInput(
+            "keeps its velocity whatever acts on it",
+            where=f"to={to}",
+            expected="a model of physics, that effects can change",
+            remedy="Add them to=nominal, or to a model file.",
+        )
     entries = [EffectEntry.of(by_name[name], source) for name in names]
     on_vehicle = catalogue.on(base.vehicle)
     new_effects = build_effects(entries, on_vehicle)

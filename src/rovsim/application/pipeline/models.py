@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Mapping, Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.core.files import require_replaceable, write_new, write_text
+from rovsim.core.files import require_replaceable, write_beside
 from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import as_list, is_name
 from rovsim.diagnosis import apply
@@ -114,9 +114,10 @@ def write_with_effects(
     catalogue: Catalogue,
     out: Path,
     story: Mapping[str, object],
-    force: bool = False,
-) -> apply.Added:
+) -> tuple[apply.Added, Path | None]:
     """Write a model file: a base with effects that a diagnosis fitted.
+
+    Another model of that name, in which values may have been changed by hand, is kept beside it.
 
     Args:
         diagnosis: its file.
@@ -125,11 +126,12 @@ def write_with_effects(
         catalogue: all effects.
         out: the model file.
         story: further entries of its provenance.
-        force: whether a model file that is there is replaced, whatever it says.
+
+    Returns:
+        The model, and the file in which another one of that name is kept, if there was one.
 
     Raises:
-        BadInput: no such diagnosis, effect or model, or `out` is another file of the user's, or
-            another model and `force` is false.
+        BadInput: no such diagnosis, effect or model, or `out` is another file of the user's.
     """
     if out.resolve() == diagnosis.resolve():
         raise BadInput(
@@ -142,5 +144,4 @@ def write_with_effects(
     fitted = Diagnosis.read(diagnosis)
     added = apply.add_effects(fitted, diagnosis, base, effects, catalogue)
     text = model_text(added.model, provenance={"base": base, "effects": added.names, **story})
-    (write_text if force else write_new)(out, text)
-    return added
+    return added, write_beside(out, text)

@@ -4,7 +4,7 @@ import json
 import os
 from pathlib import Path
 
-from rovsim.application.settings import CommandSettings
+from rovsim.application.settings import CommandSettings, WritingSettings
 from rovsim.core.columns import fold
 from rovsim.core.errors import BadInput
 
@@ -22,7 +22,7 @@ def join_files(text: str, files: str, *became: str) -> str:
     return "\n".join([text, "", files, *(line for part in became if part for line in fold(part))])
 
 
-def choose_folder(settings: CommandSettings, default: str) -> Path:
+def choose_folder(settings: WritingSettings, default: str) -> Path:
     """Return the folder that a command writes to, which need not exist yet.
 
     Raises:

@@ -111,19 +111,17 @@ class Campaign:
         path: Spec,
         effects: Sequence[str] | None = None,
         to: Spec = "nominal",
-        force: bool = False,
     ) -> ShownModel:
         """Write a model with the effects that a diagnosis selected, or with those named.
 
-        Another model that is there is replaced only with `force`.
+        Another model of that name is kept beside it, as NAME.earlier.yaml.
 
         Raises:
-            BadInput: an effect that the diagnosis does not have, a place that cannot be written, or
-                another model that is there.
+            BadInput: an effect that the diagnosis does not have, or a place that cannot be written.
         """
         story = {"diagnosis": str(diagnosis.path), **describe_origin(self.catalogue)}
         out = Path(path)
-        write_with_effects(diagnosis.path, fspath(to), effects, self.catalogue, out, story, force)
+        write_with_effects(diagnosis.path, fspath(to), effects, self.catalogue, out, story)
         return self.model(out)
 
     def train(

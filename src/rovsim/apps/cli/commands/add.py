@@ -1,12 +1,11 @@
 """Write a model file with the effects that a diagnosis found.
 
 rovsim add diagnosis=OUT/diagnosis.json model=NEW.yaml [effects=[id,…]] [to=nominal|FILE]
-           [force=true]
 
 Takes the selected effects with their fitted values and intervals, or the named ones of the ranking,
 and adds them to the base model `to`; with effects_file=OUT/proposed_effect.py the law that the
 diagnosis proposes and the effects beside it. NEW.yaml is plain YAML, and a model wherever a model
-is asked. Another model of that name is replaced only with force=true.
+is asked. Another model of that name is kept beside it, as NEW.earlier.yaml.
 """
 
 from pathlib import Path
@@ -31,6 +30,8 @@ ALONE = (
     "twice. `rovsim diagnose campaign=DIR model={model}` tells what is missing then, or too much."
 )
 
+KEPT = "What stood there said something else. It is kept as {kept}."
+
 
 class Settings(CommandSettings):
     """What `rovsim add` takes."""
@@ -39,7 +40,6 @@ class Settings(CommandSettings):
     model: str | list[str]
     to: str
     effects: list[str] | None
-    force: bool
 
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
@@ -54,10 +54,10 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             remedy="`rovsim diagnose campaign=DIR out=OUT` writes a diagnosis.",
         )
     story = {"diagnosis": settings.diagnosis, **describe_origin(catalogue)}
-    diagnosis, effects, force = Path(settings.diagnosis), settings.effects, settings.force
-    extended, names, diagnosed, one_by_one = write_with_effects(
-        diagnosis, base, effects, catalogue, Path(model), story, force
+    added, kept = write_with_effects(
+        Path(settings.diagnosis), base, settings.effects, catalogue, Path(model), story
     )
+    extended, names, diagnosed, one_by_one = added
     text = f"{base} + {' + '.join(names)}"
     if not names:
         source = "the diagnosis selected" if settings.effects is None else "effects=[] names"
@@ -66,6 +66,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         text += f".\n{OTHER.format(base=base)}"
     if one_by_one:
         text += f".\n{ALONE.format(model=model)}"
+    if kept:
+        text += f".\n{KEPT.format(kept=kept)}"
     warning = warn_totals(extended.body)
     if warning:
         text += f".\n{warning}"
@@ -74,6 +76,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         "effects": names,
         "diagnosed": diagnosed,
         "one_by_one": one_by_one,
+        "kept": str(kept) if kept else None,
         "warning": warning,
     }
     lines = [line for paragraph in f"{model}: {text}".splitlines() for line in fold(paragraph)]

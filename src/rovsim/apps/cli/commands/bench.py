@@ -15,7 +15,7 @@ import numpy as np
 
 from rovsim.application.pipeline.measured_campaign import measure
 from rovsim.application.sections import SimulationSections
-from rovsim.application.settings import BenchSettings, CommandSettings
+from rovsim.application.settings import BenchSettings, WritingSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import measure_accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
@@ -37,7 +37,7 @@ UNFINISHED = "bench.unfinished.json"  # as far as it is, beside the result
 LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 
 
-class Settings(SimulationSections, CommandSettings):
+class Settings(SimulationSections, WritingSettings):
     """What `rovsim bench` takes."""
 
     tank: TankSettings

@@ -15,7 +15,7 @@ project's own need the extra rovsim[benchmark].
 
 from pathlib import Path
 
-from rovsim.application.settings import BlindSettings, CommandSettings
+from rovsim.application.settings import BlindSettings, WritingSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.blind.pictures import write_pictures
 from rovsim.benchmarks.blind.run import Benchmark, read_answers
@@ -28,7 +28,7 @@ from rovsim.reporting.pages.marked import replace_tables
 from rovsim.results.blind_benchmark import BlindSummary
 
 
-class Settings(CommandSettings):
+class Settings(WritingSettings):
     """What `rovsim blind` takes."""
 
     blind: BlindSettings

@@ -8,7 +8,7 @@ in the Python that its FMI tool loads (docs/elsewhere.md). Needs the extra rovsi
 
 from pathlib import Path
 
-from rovsim.application.settings import CommandSettings
+from rovsim.application.settings import WritingSettings
 from rovsim.apps.cli.output import say
 from rovsim.apps.fmi.unit import write_unit
 from rovsim.core.errors import BadInput
@@ -19,7 +19,7 @@ from rovsim.dynamics.model_file import load_model
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 
-class Settings(CommandSettings):
+class Settings(WritingSettings):
     """What `rovsim fmu` takes."""
 
     model: str | list[str]

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from shlex import quote
 
-from rovsim.application.settings import CommandSettings
+from rovsim.application.settings import WritingSettings
 from rovsim.apps.cli.output import choose_folder, say
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import Catalogue
@@ -26,7 +26,7 @@ from rovsim.intake.proposal import CampaignProposal
 from rovsim.intake.write import check_place, write_proposal
 
 
-class Settings(CommandSettings):
+class Settings(WritingSettings):
     """What `rovsim init` takes."""
 
     files: list[str]

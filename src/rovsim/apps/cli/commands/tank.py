@@ -14,7 +14,7 @@ DIR gets campaign.yaml, a QTM export and a command log per run, and truth.yaml.
 from itertools import count
 from pathlib import Path
 
-from rovsim.application.settings import CommandSettings
+from rovsim.application.settings import WritingSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.progress import reported
 from rovsim.core.signs import minus
@@ -24,7 +24,7 @@ from rovsim.simulation.synthetic_tank.sent_log import described_by
 from rovsim.simulation.synthetic_tank.settings import TankRun, TankSettings
 
 
-class Settings(CommandSettings):
+class Settings(WritingSettings):
     """What `rovsim tank` takes."""
 
     tank: TankSettings
