@@ -133,6 +133,11 @@ def failing(capsys, *words):
         (["compare", "campaign=/nowhere"], "/nowhere"),
         (["compare", "campaigm=x"], "campaigm"),
         (["add", "diagnosis=x.json", "model=new"], "Did you mean model=new.yaml"),
+        (["add", "diagnosis=x.json", "out=new.yaml"], "does not use 'out'"),
+        (["compare", "campaign=x", "model=nominal", "model=a.yaml"], "'model' is given 2 times"),
+        (["compare", "campaign=x", "seed=1", "seed=1"], "Leave one of them out"),
+        (["compare", "model=nominal,zero_acceleration"], r"model=\[nominal,zero_acceleration\]"),
+        (["compare", "campaign=/,/"], "For a run with each, add -m"),
         (["compare", "oops"], "has no '='"),
         (["compare", "filter=savgoll", "campaign=x"], "Did you mean 'savgol'"),
         (["compare", "replay.stepp=1", "campaign=x"], "Did you mean 'replay.step'"),
@@ -169,7 +174,7 @@ def test_a_key_that_a_command_would_ignore_is_refused(words, said, capsys):
 def test_what_stands_beside_any_command_is_not_refused():
     words = ["seed=1", "+experiment=kth_tank_2025", "hydra/launcher=joblib", "tracking.name=a"]
     for command in commands():
-        require_taken(command, [*words, "out=x", "output=quiet", "effects_file=e.py"])
+        require_taken(command, [*words, "output=quiet", "effects_file=e.py"])
     require_taken("diagnose", ["filter=savgol", "signals.filter.kind=none", "replay.step=0.1"])
 
 

@@ -22,6 +22,7 @@ FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json
 OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
 COMMANDS = Path(__file__).with_name("commands")
 SWEPT = ("campaign", "model", "effects_file", "fly")  # of these: paths, of which -m takes several
+LISTS = ("model", "effects", "effects_file")  # of these: lists, in brackets
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -66,9 +67,24 @@ def _main(words: list[str]) -> None:
     words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
     files = [word for word in words if command in FILES and is_file(word)]
     overrides = [override(word, sweep) for word in words if word not in files]
+    _require_distinct(overrides)
     if files:
         overrides.append(f"{FILES[command]}=[{','.join(map(quoted, files))}]")
     _run(command, overrides, sweep)
+
+
+def _require_distinct(overrides: Sequence[str]) -> None:
+    """Refuse a key that is given twice, of which Hydra would take the last."""
+    keys = [word.partition("=")[0] for word in overrides]
+    for key in keys:
+        if keys.count(key) > 1:
+            several = f"For several, {key}=[A,B]." if key in LISTS else "Leave one of them out."
+            raise BadInput(
+                f"'{key}' is given {keys.count(key)} times",
+                where="command line",
+                expected="each key once",
+                remedy=several,
+            )
 
 
 def _run(command: str, overrides: list[str], sweep: bool) -> None:
@@ -139,11 +155,24 @@ def override(word: str, sweep: bool = False) -> str:
         return word
     if value.startswith("[") and value.endswith("]"):
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
-    if sweep and key in SWEPT and not os.path.exists(value):
+    if key in SWEPT and not os.path.exists(value):
         paths = listed(value)
         if all(os.path.exists(path) or path in BUILT_IN for path in paths):
+            if len(paths) > 1 and not sweep:
+                raise _several(key, value)
             return f"{key}={','.join(map(quoted, paths)) or 'null'}"
     return f"{key}={quoted(value)}"
+
+
+def _several(key: str, value: str) -> BadInput:
+    """Make the error for several paths where only a sweep takes them so."""
+    brackets = f"For all of them at once, {key}=[{value}]. " if key in LISTS else ""
+    return BadInput(
+        f"'{value}' is several",
+        where=f"command line, {key}",
+        expected="one, or -m for one after the other",
+        remedy=f"{brackets}For a run with each, add -m.",
+    )
 
 
 def listed(text: str) -> list[str]:
