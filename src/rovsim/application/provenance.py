@@ -176,7 +176,7 @@ def describe_given(
         return given
     vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
     recorded = digest_files(campaign, recordings)
-    return given | {"recordings": recorded, "vehicle": _sha256(vehicle)[:16]}
+    return given | {"recordings": recorded, "vehicle": sha256_of(vehicle)[:16]}
 
 
 def add_origin(given: Mapping[str, Any], catalogue: Catalogue) -> dict[str, Any]:
@@ -206,9 +206,10 @@ def _digest_each(
     campaign: Campaign, files: Sequence[Path], known: Mapping[str, str]
 ) -> dict[str, str]:
     present = {relpath(path, campaign.folder): path for path in files if path.is_file()}
-    return {name: known.get(name) or _sha256(path)[:16] for name, path in present.items()}
+    return {name: known.get(name) or sha256_of(path)[:16] for name, path in present.items()}
 
 
-def _sha256(path: Path) -> str:
+def sha256_of(path: Path) -> str:
+    """The SHA-256 of a file, in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -15,5 +15,6 @@ timing            `timing.json`, `bench.json`
 published_errors  `published_errors.json`
 pitfalls          `pitfalls.json`
 blind_benchmark   `summary.json` of the blind benchmark
+finished_run      `finished.json` of a run of a sweep
 design_benchmark  `CASE.json` of the benchmark of designs
 """

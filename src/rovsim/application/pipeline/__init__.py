@@ -13,6 +13,7 @@ given_diagnosis    reads a diagnosis that a user gives, and checks that it is of
 shown_diagnosis    a diagnosis with figures, tracked; made by another process
 design             the flight that would tell most
 result_cache       keeps diagnoses, and finds them again where nothing changed
+finished_runs      runs of a sweep that are complete, kept where nothing changed
 refit              the nominal model with its own parameters fitted
 training           a learned residual on top of a model, and how long its predictions take
 comparison         replays, scores, conditions and forces of several models together

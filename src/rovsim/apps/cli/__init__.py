@@ -8,5 +8,6 @@ commands    the commands
 opening     opens the campaign of a command, and finds where it writes
 output      prints results, as text or JSON
 sweep       a Hydra multirun, and one job of it
+unfinished  a run of a sweep, unless it is finished
 completion  what the shell offers for the Tab key
 """

@@ -14,7 +14,7 @@ from typing import Any, Sequence
 from rovsim.application.configuration import compose, settings_of, sweep_folder
 from rovsim.application.settings import Settings
 from rovsim.apps.cli.complaint import describe_os_error, warn
-from rovsim.apps.cli.dispatch import run_command
+from rovsim.apps.cli.unfinished import CONTINUED, run_unfinished
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import make_folder, write_text
 from rovsim.core.model_names import name_learned
@@ -38,21 +38,31 @@ def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
         BadInput: there is no launcher, a campaign cannot be read, or some of the runs failed; all
             others are done.
     """
-    import hydra
-
-    from rovsim.application.conf_search import first_folder
-
     check_launcher(overrides)
     check_campaigns(campaigns)
     words = [word for word in overrides if not word.startswith(f"{FOLDER}=")]
     folder = choose_sweep_folder(sweep_folder(first_values(overrides)), given=words != [*overrides])
     for path in folder.rglob(FAILED):
         path.unlink()
+    try:
+        _run_all(words, folder)
+    except KeyboardInterrupt:
+        if any(f"command={name}" in words for name in CONTINUED):
+            warn(f"the same sweep with {FOLDER}={folder} goes on where this one ends")
+        raise
+    refuse_failed(folder)
+
+
+def _run_all(words: Sequence[str], folder: Path) -> None:
+    """Let Hydra run all combinations of the overrides, in inner folders of a folder."""
+    import hydra
+
+    from rovsim.application.conf_search import first_folder
+
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # errors come here, as they are
     literal = str(folder).replace("\\", "\\\\").replace("'", "\\'")
     sys.argv = ["rovsim", "--multirun", *words, f"{FOLDER}='{literal}'"]
     hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()
-    refuse_failed(folder)
 
 
 def choose_sweep_folder(folder: Path, given: bool) -> Path:
@@ -107,7 +117,7 @@ def job(composed: Any) -> None:
     try:
         settings = name_run(settings_of(composed), hydra.overrides.task)
         out = choose_out(settings.out, hydra.runtime.output_dir, hydra.sweep.subdir)
-        run_command(settings.model_copy(update={"out": out}))
+        run_unfinished(settings, Path(out))
     except (RovsimError, OSError) as error:
         if isinstance(error, BrokenPipeError):
             raise
