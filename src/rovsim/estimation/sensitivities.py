@@ -18,6 +18,7 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.residual_source import Linearised, step_back
 
+ROUNDING = 1e-6  # standard deviations: a fainter difference is that of rounded numbers
 FAINT = 0.1  # standard deviations by which a whole scale moves all readings together
 SLOPE = 0.5  # of a one-sided difference: if the central one keeps less, it is curvature
 
@@ -135,18 +136,20 @@ def _columns(
 
 
 def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
-    """Derivatives (k, 6, n) of each run, set to zero where the difference is only curvature.
+    """Derivatives (k, 6, n) of each run, zero where the difference is only curvature or rounding.
 
     A small tilt of a vehicle that moves in a plane acts by its square. Its one-sided difference is
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
-    stepped_back = {
-        i: step_back(seen.hypothesis, i) for i in np.flatnonzero(lengths < FAINT).tolist()
-    }
+    faint_ones = np.flatnonzero((lengths > ROUNDING) & (lengths < FAINT)).tolist()
+    stepped_back = {i: step_back(seen.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
-    if not possible or not seen.is_finite:
+    scale = np.where(lengths > ROUNDING, 1.0, 0.0)[:, None, None]
+    if not seen.is_finite:
         return seen.J
+    if not possible:
+        return [scale * J for J in seen.J]
     faint = list(possible)
     sizes = np.array([(seen.hypothesis.x - h.x)[i] for i, h in possible.items()])[:, None, None]
     outputs = bank.evaluate([h.model for h in possible.values()])
@@ -154,7 +157,6 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
         0.5 * (J[faint] + (e - e_back) / sizes)
         for J, e, e_back in zip(seen.J, seen.e, outputs, strict=True)
     ]
-    scale = np.ones((len(lengths), 1, 1))
     scale[faint, 0, 0] = measure_columns(bank, central) >= SLOPE * lengths[faint]
     return [scale * J for J in seen.J]
 
