@@ -129,7 +129,7 @@ rule report:
     benchmark:
         f"{R}/benchmarks/report.tsv"
     params:
-        campaign=study.name,
+        name=study.name,
         given=depends.given(),
         code=code_of("report"),
     script:
@@ -152,7 +152,7 @@ rule track:
     benchmark:
         f"{R}/benchmarks/track.tsv"
     params:
-        campaign=study.name,
+        experiment=study.name,
         settings=study.settings.tracking.model_dump_json(),
         diagnosis=depends.section(DiagnosisSettings),
         code=code_of("track"),

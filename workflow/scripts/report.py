@@ -7,7 +7,7 @@ from rovsim.reporting.report_data import STUDY_RESULTS
 if __name__ == "__main__":
     with job(snakemake) as rule:
         write_report(
-            campaign=rule.params.campaign,
+            name=rule.params.name,
             contents=rule.contents(*STUDY_RESULTS),
             quality={path.stem: path for path in rule.paths("quality")},
             figures=rule.paths("figures"),

@@ -11,7 +11,7 @@ if __name__ == "__main__":
     with job(snakemake) as rule:
         runs = track_study(
             settings=rule.section(TrackingSettings),
-            campaign=rule.params.campaign,
+            experiment=rule.params.experiment,
             files=StudyFiles(
                 comparison=rule.path("comparison"),
                 ladder=rule.path("ladder"),

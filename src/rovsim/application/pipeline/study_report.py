@@ -12,7 +12,7 @@ from rovsim.reporting.report_data import ReportData, describe_figure
 
 
 def write_report(
-    campaign: str,
+    name: str,
     contents: Mapping[str, Path],
     quality: Mapping[str, Path],
     figures: Sequence[Path],
@@ -23,7 +23,7 @@ def write_report(
     """Write the report of a study: everything on one page.
 
     Args:
-        campaign: its name.
+        name: of the campaign.
         contents: files by the name of their content.
         quality: reports on quality, by run.
         figures: files of the pictures.
@@ -33,7 +33,7 @@ def write_report(
     """
     data, pictures = ReportData.read(contents, quality), [_read_picture(path) for path in figures]
     story = add_origin(given, catalogue)
-    report.write(out, report.Report(campaign, data, pictures, story, catalogue))
+    report.write(out, report.Report(name, data, pictures, story, catalogue))
 
 
 def _read_picture(path: Path) -> Picture:

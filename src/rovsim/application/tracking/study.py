@@ -37,13 +37,13 @@ class StudyFiles:
 
 
 def track_study(
-    settings: TrackingSettings, campaign: str, files: StudyFiles, diagnosing: Mapping[str, Any]
+    settings: TrackingSettings, experiment: str, files: StudyFiles, diagnosing: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Log a study.
 
     Args:
         settings: where MLflow keeps runs.
-        campaign: its name, which is also that of the experiment.
+        experiment: name of the campaign.
         files: that are logged.
         diagnosing: settings of the diagnosis, nested plain values.
 
@@ -55,15 +55,17 @@ def track_study(
     by_model = {path.parent.name: path for path in files.models}
     figures = [path for path in files.kept if path.stem in MODEL_FIGURES]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
-    study = TrackedRun(experiment=campaign, name="study", tags={"model": "study"}, files=files.kept)
+    study = TrackedRun(
+        experiment=experiment, name="study", tags={"model": "study"}, files=files.kept
+    )
     parent = track(settings, study)
     diagnosed = track_diagnosis(
-        settings, campaign, NOMINAL, diagnosis, diagnosing, of_steps, parent
+        settings, experiment, NOMINAL, diagnosis, diagnosing, of_steps, parent
     )
     runs: dict[str, Any] = {"study": parent, "diagnosis": diagnosed}
     for name, entry in Comparison.read(files.comparison).models.items():
         of_model = TrackedRun(
-            experiment=campaign,
+            experiment=experiment,
             name=name,
             parent=parent,
             scores=entry.runs,
