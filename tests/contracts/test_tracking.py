@@ -242,12 +242,14 @@ def test_every_run_of_a_study_has_figures_and_trained_models_what_they_were_trai
     learned.parent.mkdir()
     learned.write_text(MODEL)
     kept = [tmp_path / name for name in ("ladder.png", "where.png")]
-    for path in (*kept, learned.with_name("residual.npz")):
+    report = tmp_path / "report.html"
+    for path in (*kept, report, learned.with_name("residual.npz")):
         path.write_bytes(b"made up")
     names = {name: tmp_path / f"{name}.json" for name in ("comparison", "ladder", "diagnosis")}
     uri = f"sqlite:///{tmp_path / 'mlflow.db'}"
     settings = TrackingSettings(uri=uri, artifacts=str(tmp_path / "kept"))
-    runs = track_study(settings, "tank", StudyFiles(models=[learned], kept=kept, **names), {})
+    written = StudyFiles(models=[learned], figures=kept, report=report, **names)
+    runs = track_study(settings, "tank", written, {})
     client = MlflowClient(tracking_uri=uri)
 
     def files(number):
@@ -256,7 +258,7 @@ def test_every_run_of_a_study_has_figures_and_trained_models_what_they_were_trai
     steps = {name: n for name, n in runs.pop("diagnosis").items() if name != "diagnosis"}
     assert steps
     assert all(files(number) == {"diagnosis.json", "ladder.png"} for number in steps.values())
-    assert files(runs["study"]) == {"ladder.png", "where.png"}
+    assert files(runs["study"]) == {"ladder.png", "where.png", "report.html"}
     assert files(runs["nominal"]) == {"ladder.png"}
     assert files(runs["knn_6dof"]) == {"model.yaml", "residual.npz", "ladder.png"}
     logged = client.get_run(runs["knn_6dof"]).data.params

@@ -109,7 +109,6 @@ if folds.published:
         benchmark:
             f"{R}/benchmarks/against_published.tsv"
         params:
-            runs=folds.runs,
             code=code_of("against_published"),
         script:
             "../scripts/against_published.py"
@@ -130,9 +129,7 @@ if folds.pitfalls:
             f"{R}/benchmarks/pitfalls.tsv"
         params:
             settings=depends.section(SimulationSections),
-            learners={
-                kind: depends.learner(kind).model_dump_json() for kind in ("knn", "gp")
-            },
+            learners={kind: depends.learner(kind) for kind in ("knn", "gp")},
             code=code_of("pitfalls", MODEL_FILES),
         script:
             "../scripts/pitfalls.py"

@@ -154,7 +154,7 @@ rule track:
     params:
         experiment=study.name,
         settings=study.settings.tracking.model_dump_json(),
-        diagnosis=depends.section(DiagnosisSettings),
+        diagnosing=depends.plain(DiagnosisSettings),
         code=code_of("track"),
     script:
         "../scripts/track.py"

@@ -2,14 +2,12 @@
 
 from rovsim.application.pipeline.held_out import compare_with_published
 from rovsim.application.snakemake_job import job
-from rovsim.results.comparison import Comparison
 
 if __name__ == "__main__":
     with job(snakemake) as rule:
-        comparisons = [Comparison.read(path) for path in rule.paths("comparisons")]
         compare_with_published(
             published=rule.path("published"),
-            comparisons=dict(zip(rule.params.runs, comparisons, strict=True)),
+            comparisons=rule.paths("comparisons"),
             motions=rule.motions(),
             out=rule.output("published_errors"),
             tables=rule.output("csv").parent,

@@ -11,7 +11,7 @@ from rovsim.evaluation.held_out.published_errors import (
     find_demanded,
     read_published,
 )
-from rovsim.learning.settings import LearnerSettings
+from rovsim.learning.learner import learner_settings
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.comparison import Comparison
 from rovsim.results.pitfalls import Pitfalls
@@ -27,7 +27,7 @@ def score_held_out(
 
 def compare_with_published(
     published: Path,
-    comparisons: Mapping[str, Comparison],
+    comparisons: Sequence[Path],
     motions: Sequence[Motion],
     out: Path,
     tables: Path,
@@ -36,8 +36,8 @@ def compare_with_published(
 
     Args:
         published: csv of the errors of others.
-        comparisons: by held-out run, the scores of models that never saw it.
-        motions: these runs.
+        comparisons: files, for each held-out run, of the scores of models that never saw it.
+        motions: these runs, in the same order.
         out: the file.
         tables: the folder.
 
@@ -47,7 +47,8 @@ def compare_with_published(
     from rovsim.reporting.tables import tabulate_published_errors  # a fold is scored without it
 
     demanded_axes = {motion.run.id: find_demanded(motion.commands) for motion in motions}
-    comparison = compare_published(read_published(published), comparisons, demanded_axes)
+    scores = dict(zip(demanded_axes, map(Comparison.read, comparisons), strict=True))
+    comparison = compare_published(read_published(published), scores, demanded_axes)
     tabulate_published_errors(comparison).write(tables, "published_errors")
     comparison.write(out)
 
@@ -55,7 +56,7 @@ def compare_with_published(
 def measure_pitfalls_by_run(
     motions: Sequence[Motion],
     models: Sequence[Model],
-    learners: Mapping[str, LearnerSettings],
+    learners: Mapping[str, Mapping[str, object]],
     settings: SimulationSettings,
 ) -> Pitfalls:
     """Measure on each held-out run what common mistakes cost.
@@ -63,15 +64,21 @@ def measure_pitfalls_by_run(
     Args:
         motions: all runs.
         models: for each run, the model with the effects found while that run was held out.
-        learners: settings, by kind of residual.
+        learners: by kind of residual, settings as in conf/residual.
         settings: how runs are cleaned and replayed.
+
+    Raises:
+        BadInput: a value in the settings of a learner is not allowed.
     """
+    checked = {
+        kind: learner_settings(dict(given), "conf/residual") for kind, given in learners.items()
+    }
     runs = {
         test.run.id: measure_pitfalls(
             model,
             [m for m in motions if m.run.id != test.run.id],
             test,
-            dict(learners),
+            checked,
             settings,
         )
         for test, model in zip(motions, models, strict=True)

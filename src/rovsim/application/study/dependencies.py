@@ -13,7 +13,6 @@ from rovsim.application.study.study import Study
 from rovsim.core.schema import Section
 from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.learning.learner import learner_settings
-from rovsim.learning.settings import LearnerSettings
 from rovsim.measurement.campaign import Campaign
 
 # Left out of digests, with all that they alone import: settings are parameters of rules already.
@@ -35,6 +34,10 @@ class Dependencies:
         """Return a part of the settings as JSON: what a rule reads, and runs again for."""
         return select(self.study.settings, kind).model_dump_json()
 
+    def plain(self, kind: type[Section]) -> dict[str, Any]:
+        """Return a part of the settings as plain values, for a rule that tells of it."""
+        return select(self.study.settings, kind).model_dump(mode="json")
+
     def signal(self, *names: str) -> str:
         """Return the settings of parts of the signal chain as JSON."""
         return self.study.settings.signals.model_dump_json(include=set(names))
@@ -50,9 +53,9 @@ class Dependencies:
         settings = self.study.settings.model_copy(update=choice)
         return select(settings, TrainingSettings).model_dump_json()
 
-    def learner(self, kind: str) -> LearnerSettings:
+    def learner(self, kind: str) -> dict[str, Any]:
         """Return the settings of a kind of residual, even if the configuration chose another."""
-        return learner_settings(self._residual(kind), "conf/residual")
+        return learner_settings(self._residual(kind), "conf/residual").model_dump(mode="json")
 
     def _residual(self, kind: str) -> Mapping[str, object]:
         """Return the section of a kind of residual; composed once, since Hydra is slow."""

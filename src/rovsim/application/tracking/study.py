@@ -26,14 +26,16 @@ class StudyFiles:
         ladder: of models.
         diagnosis: of the nominal model.
         models: model files, of the models that have one.
-        kept: files that are kept as artifacts of the study.
+        figures: of the study.
+        report: of the study.
     """
 
     comparison: Path
     ladder: Path
     diagnosis: Path
     models: Sequence[Path]
-    kept: Sequence[Path]
+    figures: Sequence[Path]
+    report: Path
 
 
 def track_study(
@@ -53,10 +55,13 @@ def track_study(
     ladder, diagnosis = Ladder.read(files.ladder), Diagnosis.read(files.diagnosis)
     errors = ladder.errors
     by_model = {path.parent.name: path for path in files.models}
-    figures = [path for path in files.kept if path.stem in MODEL_FIGURES]
+    figures = [path for path in files.figures if path.stem in MODEL_FIGURES]
     of_steps = [files.diagnosis, *(path for path in figures if path.stem == "ladder")]
     study = TrackedRun(
-        experiment=experiment, name="study", tags={"model": "study"}, files=files.kept
+        experiment=experiment,
+        name="study",
+        tags={"model": "study"},
+        files=[*files.figures, files.report],
     )
     parent = track(settings, study)
     diagnosed = track_diagnosis(
