@@ -1,6 +1,7 @@
 """Logs of commands that are sent as they are: of one plan, and of some seconds."""
 
 import errno
+import hashlib
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -31,6 +32,7 @@ def planned(x: float, log: str) -> Designed:
     found = Experiment(
         seconds=10.0,
         model="nominal",
+        commands_sha256=hashlib.sha256(log.encode()).hexdigest(),
         manoeuvre="designed",
         expects=Expected(),
         baselines={},

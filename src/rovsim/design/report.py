@@ -1,11 +1,14 @@
 """A plan as `experiment.json` holds it."""
 
+from hashlib import sha256
+
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.odds import odds_of
 from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
+from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.envelope import find_extremes
 from rovsim.design.expected_information import NEGLIGIBLE, ExpectedInformation
 from rovsim.design.instructions import instruct
@@ -13,6 +16,7 @@ from rovsim.design.plan import Plan
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
 from rovsim.design.safe_flights import SafeFlight
 from rovsim.design.settings import Question
+from rovsim.dynamics.model import Model
 from rovsim.results.base import or_none
 from rovsim.results.experiment import (
     Expected,
@@ -25,32 +29,38 @@ from rovsim.results.experiment import (
 )
 
 
-def report_plan(plan: Plan, model: str, question: Question, site: Site) -> Experiment:
+def report_plan(
+    plan: Plan, model: Model, question: Question, site: Site, log: str | None = None
+) -> Experiment:
     """What is written of a plan.
 
     Args:
         plan: the flight and what it tells.
-        model: what was known, by name.
+        model: what was known.
         question: what was asked.
         site: whose axes the start is given in.
+        log: text of the file of commands; None where none is written.
     """
     problem, best = plan.problem, plan.best
     start = describe_start(problem.pilot.start, best.flight.heading, site)
+    expects = _expect(problem.prior, best.expected)
+    wider = warn_of_wider(model, {name: std.now for name, std in expects.std.items()})
     return Experiment(
         seconds=question.seconds,
-        model=model,
+        model=model.name,
         between=question.between,
         know=question.know,
+        commands_sha256=None if log is None else sha256(log.encode()).hexdigest(),
         start=start,
         manoeuvre=best.flight.name,
-        expects=_expect(problem.prior, best.expected),
+        expects=expects,
         baselines={
             name: _compare(problem.prior, best.expected, usual)
             for name, usual in plan.baselines.items()
         },
         keeps=_keep(best.paths, site),
         instructions=tuple(instruct(best.flight, problem.axes, start, question.design.limits)),
-        warnings=plan.warnings,
+        warnings=(*plan.warnings, *wider),
     )
 
 

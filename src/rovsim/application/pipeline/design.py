@@ -2,7 +2,6 @@
 
 import textwrap
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Sequence
 
@@ -12,7 +11,6 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import appearing_together, write_text
 from rovsim.core.progress import staged
 from rovsim.core.run import Commands
-from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.plan import STAGES, Plan, plan
 from rovsim.design.report import report_plan
 from rovsim.design.settings import Question
@@ -35,7 +33,7 @@ class Designed:
     """A planned flight, as it is written.
 
     Attributes:
-        experiment: the result, without the digest of the log.
+        experiment: the result.
         log: text of the file of commands, in the format of the campaign's own logs.
         picture: what the figure shows.
     """
@@ -74,13 +72,10 @@ def design(
     with staged("designing", STAGES):
         flight_plan = plan(model, data.runs, question, columns, catalogue)
     site = next(iter(data.motions.values())).site
-    experiment = report_plan(flight_plan, model.name, question, site)
-    warnings = warn_of_wider(model, {n: std.now for n, std in experiment.expects.std.items()})
-    experiment = experiment.model_copy(update={"warnings": (*experiment.warnings, *warnings)})
     commands = flight_plan.best.flight.commands
-    return Designed(
-        experiment, format_commands(commands, log), _picture(flight_plan, commands, log)
-    )
+    sent = format_commands(commands, log)
+    experiment = report_plan(flight_plan, model, question, site, sent)
+    return Designed(experiment, sent, _picture(flight_plan, commands, log))
 
 
 def write_flight(out: Path, found: Designed) -> None:
@@ -89,8 +84,7 @@ def write_flight(out: Path, found: Designed) -> None:
     Raises:
         BadInput: `out` cannot be written to.
     """
-    digest = sha256(found.log.encode()).hexdigest()
-    experiment = found.experiment.model_copy(update={"commands_sha256": digest})
+    experiment = found.experiment
     with appearing_together(out, last="experiment.json") as folder:
         write_text(folder / experiment.commands, found.log)
         save(draw_flight(found.picture), folder, "experiment")

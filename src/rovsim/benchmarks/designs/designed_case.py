@@ -41,7 +41,8 @@ class DesignedCase:
     @cached_property
     def experiment(self) -> Experiment:
         """What `rovsim design` would write of the plan."""
-        return report_plan(self.plan, "nominal", self.question, self.plan.problem.setup.site)
+        model, site = nominal(self.data.vehicle), self.plan.problem.setup.site
+        return report_plan(self.plan, model, self.question, site)
 
     @cached_property
     def best_usual(self) -> CandidateFlight | None:
