@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.model import Model, nominal
 from rovsim.estimation.observer.observed_run import ObservedRun

@@ -23,7 +23,7 @@ from rovsim.apps.cli.main import main as rovsim
 from rovsim.core.files import read_json
 from rovsim.core.rotations import to_euler
 from rovsim.measurement.loading import load_campaign
-from rovsim.measurement.recording.reading import read_run
+from rovsim.measurement.recording.run_files import read_run
 
 ROOT = Path(__file__).parents[1]
 PRACTICE, OWN = 600.0, 1200.0  # s, wanted: to "the error falls", and to a first verdict

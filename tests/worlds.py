@@ -10,7 +10,7 @@ from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Autopilot, Effect, Wrench
 from rovsim.dynamics.model import Model, nominal
-from rovsim.dynamics.user_effects.reading import read_effects
+from rovsim.dynamics.user_effects.effects_file import read_effects
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.synthetic_tank.settings import SUITABLE

@@ -11,14 +11,14 @@ from scipy.spatial.transform import Rotation
 
 from recordings import campaign_content, write_campaign, write_run
 from rovsim.application.pipeline.quality import judge_recording
-from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle, read_recording
 from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import conjugate, from_euler, to_euler
 from rovsim.core.shipped import conf_names
 from rovsim.core.yaml_files import read_yaml, write_yaml
 from rovsim.dynamics.vehicle import load_vehicle
-from rovsim.dynamics.vehicle.units import doubt_units
+from rovsim.dynamics.vehicle.implausible_numbers import doubt_units
 from rovsim.evaluation.commanded_motion.clocks import tell_following
 from rovsim.evaluation.commanded_motion.cross_correlation import cross_correlate
 from rovsim.evaluation.commanded_motion.doubts import find_doubts

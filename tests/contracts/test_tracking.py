@@ -11,7 +11,7 @@ from mlflow.tracking import MlflowClient
 
 from rovsim.application.configuration import compose
 from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import TrackedRun, ranking, tell_ranking, track
+from rovsim.application.tracking.mlflow_run import TrackedRun, ranking, tell_ranking, track
 from rovsim.application.tracking.study import StudyFiles, track_study
 from rovsim.apps.cli.main import override
 from rovsim.apps.cli.sweep import (

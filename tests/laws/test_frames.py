@@ -10,7 +10,7 @@ from rovsim.core import rotations
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.exports import Export
-from rovsim.measurement.recording.reading import to_ned
+from rovsim.measurement.recording.run_files import to_ned
 
 numbers = st.floats(-1.0, 1.0, allow_subnormal=False)
 vectors = arrays(float, 3, elements=numbers)

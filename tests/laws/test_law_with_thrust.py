@@ -15,7 +15,7 @@ from rovsim.diagnosis.equations.with_thrust import (
     list_thrust_terms,
     push_at,
 )
-from rovsim.dynamics.engine.reading import Actuators, example_reading
+from rovsim.dynamics.engine.kernel_inputs import Actuators, example_reading
 from rovsim.dynamics.laws.thrust_law import OTHER, THRUSTERS
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive

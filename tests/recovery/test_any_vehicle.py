@@ -8,7 +8,7 @@ import yaml
 
 from rovsim.application.configuration import compose
 from rovsim.application.pipeline.measured_campaign import measure, open_campaign
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.application.settings import select
 from rovsim.core.errors import BadInput
 from rovsim.diagnosis.campaign_diagnosis import diagnose_campaign

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from recordings import write_campaign, write_lines
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.core.axes import AXES
 from rovsim.core.rotations import to_euler
 from rovsim.dynamics.model import nominal

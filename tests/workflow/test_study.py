@@ -164,7 +164,7 @@ def test_what_tells_of_results_depends_on_nothing_that_computes_them():
     report, tracked = _depends_on("report"), _depends_on("track")
     assert {"rovsim.reporting.words.verdict", "rovsim.dynamics.effects.damping"} <= report
     assert not {"rovsim.dynamics.engine.equation", "rovsim.simulation.replay"} & report
-    assert "rovsim.application.tracking.runs" in tracked
+    assert "rovsim.application.tracking.mlflow_run" in tracked
     assert {name.split(".")[1] for name in tracked} == {"application", "core", "results"}
     assert "rovsim.reporting.html.report" not in _depends_on("tables")
 

@@ -1,6 +1,6 @@
 """Read one raw export."""
 
-from rovsim.application.pipeline.reading import read_recording
+from rovsim.application.pipeline.recorded_run import read_recording
 from rovsim.application.snakemake_job import job
 
 if __name__ == "__main__":

@@ -103,7 +103,7 @@ class Job:
     @property
     def vehicle(self) -> "Vehicle":
         """The vehicle of the campaign."""
-        from rovsim.application.pipeline.reading import load_campaign_vehicle
+        from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 
         return load_campaign_vehicle(self.campaign)
 

@@ -11,7 +11,7 @@ from typing import Iterable, Iterator, Mapping, Sequence
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics import effects
 from rovsim.dynamics.effects.base import Effect, Requirement, Wrench
-from rovsim.dynamics.user_effects.reading import check_effects, read_effects
+from rovsim.dynamics.user_effects.effects_file import check_effects, read_effects
 from rovsim.dynamics.user_effects.trials import try_on
 from rovsim.dynamics.vehicle import Vehicle
 

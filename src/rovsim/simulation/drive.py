@@ -142,7 +142,7 @@ class Drive:
         """The columns that the engine takes: forces, angles, then those that its effects read.
 
         Columns of channels that this model does not have are zero. The order is that of
-        `rovsim.dynamics.engine.reading`.
+        `rovsim.dynamics.engine.kernel_inputs`.
 
         Returns:
             Array (k, n + s), or (k, n + s + actuators + channels) where effects read something.

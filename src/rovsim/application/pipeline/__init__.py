@@ -1,6 +1,6 @@
 """The way of the data, one step a file: commands, workbench and workflow call the same functions.
 
-reading            raw exports of a run -> its recording, and what was wrong with them
+recorded_run       raw exports of a run -> its recording, and what was wrong with them
 quality            a recording -> a report on its quality, with doubts about it
 motion             poses of a run -> its motion
 measured_campaign  a whole campaign -> motions, poses before the filter, quality

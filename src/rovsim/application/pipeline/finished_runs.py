@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from rovsim.application.pipeline.models import load_models
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.application.provenance import provenance, sha256_of
 from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput

@@ -6,7 +6,7 @@ from typing import Mapping
 
 from rovsim.application.pipeline.motion import derive_motion
 from rovsim.application.pipeline.quality import judge_recording
-from rovsim.application.pipeline.reading import load_campaign_vehicle, read_recording
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle, read_recording
 from rovsim.core.bounded_cache import Remade
 from rovsim.core.errors import BadInput
 from rovsim.core.progress import counted

@@ -1,7 +1,7 @@
 """Judge the quality of a recording, by itself and beside its vehicle and the other runs."""
 
-from rovsim.application.pipeline.reading import load_campaign_vehicle
-from rovsim.dynamics.vehicle.units import doubt_units
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
+from rovsim.dynamics.vehicle.implausible_numbers import doubt_units
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.quality.assessment import report_quality

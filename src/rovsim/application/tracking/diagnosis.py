@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, Iterable, Mapping
 
 from rovsim.application.settings import TrackingSettings
-from rovsim.application.tracking.runs import TrackedRun, track
+from rovsim.application.tracking.mlflow_run import TrackedRun, track
 from rovsim.core.mappings import leaves
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import LadderStep

@@ -6,8 +6,8 @@ from typing import Any, Mapping, Sequence
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
+from rovsim.application.tracking.mlflow_run import TrackedRun, track
 from rovsim.application.tracking.ranking_view import RANKED_BY
-from rovsim.application.tracking.runs import TrackedRun, track
 from rovsim.core.model_names import NOMINAL
 from rovsim.core.yaml_files import read_yaml
 from rovsim.results.comparison import Comparison

@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 from scipy.linalg import LinAlgWarning
 from sklearn.exceptions import ConvergenceWarning
 
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.benchmarks.blind.library import Problem, problem
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.model import nominal

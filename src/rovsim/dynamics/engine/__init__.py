@@ -4,7 +4,7 @@ types            what the engine passes around
 vectors          small vectors as tuples, which live in registers
 equation         Fossen's equation of motion
 uncommon_forces  of a waterplane, of products of velocities, of control surfaces
-reading          what effects may read beside the state
+kernel_inputs    what effects may read beside the state
 as_tuples        one parameter set, one step and one state, out of arrays of all
 integration      its integration over steps
 observer         a model along a measurement, corrected by it

@@ -73,7 +73,7 @@ Written by rovsim.dynamics.engine.modules, so that Numba can keep what it compil
 """
 
 from rovsim.dynamics.compilation.compiled import MATHS, inline_anew, keep_address
-from rovsim.dynamics.engine.reading import BY_ADDRESS
+from rovsim.dynamics.engine.kernel_inputs import BY_ADDRESS
 {imports}{kernels}
 
 @keep_address(BY_ADDRESS, **MATHS)
@@ -82,7 +82,7 @@ def attached(at, p, layout, acting):
 {pushes}    return tau
 '''
 IMPORTS = """\
-from rovsim.dynamics.engine.reading import actuators_at, first_channel, layout_of, reading_at
+from rovsim.dynamics.engine.kernel_inputs import actuators_at, first_channel, layout_of, reading_at
 from rovsim.dynamics.engine.vectors import add6
 """
 KERNEL = """

@@ -167,7 +167,8 @@ class Inputs(NamedTuple):
     Attributes:
         wrench: (r, k, 6) mean thruster wrench over each step, body axes, N and N m.
         acting: (r, k, n + s) mean forces of the n thruster components, N, and angles of the s
-            control surfaces, rad; then the further columns of `rovsim.dynamics.engine.reading`.
+            control surfaces, rad; then the further columns of
+            `rovsim.dynamics.engine.kernel_inputs`.
         demand: (k, 6) pilot demands in [-1, 1].
         row: (m,) which of the r variants belongs to each of m parameter sets.
         duration: (k,) length of the recording that the step belongs to, s.

@@ -119,7 +119,7 @@ def _moving(rest: At, random: np.random.Generator) -> At:
 
 def _read(at: At, acting: Array, channels: Any, there: Actuating, beyond: float) -> _Reading:
     """An instant with actuators of `acting` (5, k): forces / STRONGEST, commands, inflow (3, k)."""
-    from rovsim.dynamics.engine.reading import Actuators, ReadingAt
+    from rovsim.dynamics.engine.kernel_inputs import Actuators, ReadingAt
 
     force = STRONGEST * acting[0, : there.forces]
     inflow = np.ascontiguousarray(acting[2:, : there.places].T)

@@ -15,15 +15,15 @@ joined         puts several files of one run together
 one_run        refuses a file whose times begin again: it holds two recordings
 repairs        how many lines were repaired or left out
 tidying        sorts by time, and keeps each time once
-reading        reads the files of a run into a recording
+run_files      reads the files of a run into a recording
 repeated       removes poses that only repeat the line before
 recording      a run as it was logged, before any filter
 """
 
 from rovsim.core.run import Commands, RunInfo, Site
-from rovsim.measurement.recording.reading import read_run, site
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.repairs import Anomalies
+from rovsim.measurement.recording.run_files import read_run, site
 
 __all__ = [
     "Anomalies",

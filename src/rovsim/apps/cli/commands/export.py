@@ -16,7 +16,7 @@ from rovsim.application.export.sizes import Sized, flights
 from rovsim.application.export.targets import Target, target, targets
 from rovsim.application.export.write import TYPICAL, export_model, model_parts, write_export
 from rovsim.application.pipeline.measured_campaign import measure, open_campaign
-from rovsim.application.pipeline.reading import load_campaign_vehicle
+from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.application.settings import CampaignSettings
 from rovsim.apps.cli.output import say
 from rovsim.core.axes import AXES

@@ -27,7 +27,7 @@ class Wrench(Effect):
 
     Its kernel (`wrench`) or a helper may also use `at.actuators`, the forces, commands and inflow
     of the actuators, and `at.channels.NAME`, channels that were logged beside the commands and are
-    declared in `channels` (see `rovsim.dynamics.engine.reading`).
+    declared in `channels` (see `rovsim.dynamics.engine.kernel_inputs`).
     """
 
     channels: ClassVar[tuple[str, ...]] = ()

@@ -106,7 +106,7 @@ def _check_kernel(cls: type[Wrench], where: str) -> None:
     from numba import typeof, types
     from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
-    from rovsim.dynamics.engine.reading import example_reading
+    from rovsim.dynamics.engine.kernel_inputs import example_reading
     from rovsim.dynamics.engine.types import EXAMPLE
 
     wrench = inspect.getattr_static(cls, "wrench")
