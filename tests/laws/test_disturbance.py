@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from rovsim.diagnosis.equations.disturbance import smooth_stretch
-from rovsim.diagnosis.equations.spectrum import SEGMENT, find_spectrum
+from rovsim.diagnosis.equations.spectrum import SEGMENT_SECONDS, find_spectrum
 from rovsim.estimation.observer.axis_kernels import POSE
 from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
@@ -78,7 +78,7 @@ def test_a_push_that_swings_has_its_peak_where_it_swings():
 
 def test_a_white_force_is_flat_and_as_strong_as_it_was_made():
     rng = np.random.default_rng(4)
-    std, count = 2.0, round(40 * SEGMENT / PERIOD)  # N
+    std, count = 2.0, round(40 * SEGMENT_SECONDS / PERIOD)  # N
     runs = [along(0, std * rng.normal(size=n)) for n in (count, count // 2)]
     found = find_spectrum(runs, PERIOD)
     inner = found.density[2:-2, 0]  # not where the mean was taken out, nor at half the rate
@@ -89,7 +89,7 @@ def test_a_white_force_is_flat_and_as_strong_as_it_was_made():
 
 
 def test_a_longer_run_counts_more_and_a_push_that_lasts_does_not():
-    count = round(10 * SEGMENT / PERIOD)
+    count = round(10 * SEGMENT_SECONDS / PERIOD)
     still, swings = np.zeros(count), np.sin(2.0 * np.pi * 0.5 * PERIOD * np.arange(3 * count))
     runs = [along(5, still + 4.0), along(5, swings + 4.0), along(5, np.ones(20))]
     found = find_spectrum(runs, PERIOD)

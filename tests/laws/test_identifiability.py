@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import OF_DOUBTS, advise
+from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.ranking import OrderedEffect
 from rovsim.diagnosis.selection.withdrawn_probability import (
@@ -236,7 +236,7 @@ def test_a_filter_may_look_ahead_where_the_vehicle_seems_to_answer_too_early(del
         fit(alike()),
         selected=selected,
     )
-    assert (OF_DOUBTS["looks_ahead"] in advise(found, [], [], built_in())) == doubted
+    assert (ADVICE_ON_DOUBT["looks_ahead"] in advise(found, [], [], built_in())) == doubted
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
 from rovsim.diagnosis.equations.products.targets import TARGETS
-from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
+from rovsim.diagnosis.equations.products.variables import LATERAL_AXES, VARIABLES, tabulate
 from rovsim.diagnosis.equations.products.wording import write_equation
 from rovsim.dynamics.engine.types import EXAMPLE
 from rovsim.dynamics.laws.law import COEFFICIENTS, Law, Product
@@ -98,7 +98,7 @@ def test_the_search_sees_what_the_law_does(terms):
 
 def test_terms_along_the_body_turn_with_the_mirror():
     """Port and starboard exchanged: sway, roll and yaw change sign, and so does the push."""
-    turned = np.where(np.isin(np.arange(6), ODD), -1.0, 1.0)
+    turned = np.where(np.isin(np.arange(6), LATERAL_AXES), -1.0, 1.0)
     state = states()
     mirrored = state.copy()
     mirrored[:, 7:] *= turned

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.run import Site
-from rovsim.diagnosis.equations.products.variables import ODD
+from rovsim.diagnosis.equations.products.variables import LATERAL_AXES
 from rovsim.diagnosis.equations.with_thrust import (
     ThrustTerm,
     WithThrust,
@@ -84,7 +84,7 @@ def runs(*still):
 
 def test_terms_turn_with_the_mirror():
     """Port and starboard exchanged: sway, roll and yaw change sign, and so does the push."""
-    turned = np.where(np.isin(np.arange(6), ODD), -1.0, 1.0)
+    turned = np.where(np.isin(np.arange(6), LATERAL_AXES), -1.0, 1.0)
     terms, thrust = list_thrust_terms(runs(), model()), FORCE @ model().body.B.T
     one, other = (push_at(terms, NU * sign, thrust * sign) for sign in (1.0, turned))
     np.testing.assert_allclose(other, one * turned, atol=1e-12)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rovsim.diagnosis.selection.proposals import rank_proposals
 from rovsim.diagnosis.selection.vehicle_file.loose_file import (
-    FILE_LR,
+    PRIOR_ODDS_LR,
     Contender,
     LooseFile,
     cost_within,
@@ -23,7 +23,7 @@ from rovsim.estimation.sensitivities import CandidateColumns
 
 PENALTY = 10.0
 OFF = ("linear_damping", "quadratic_damping", "added_mass")
-LIMIT = PENALTY + FILE_LR  # of an effect with one number
+LIMIT = PENALTY + PRIOR_ODDS_LR  # of an effect with one number
 
 
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 6))

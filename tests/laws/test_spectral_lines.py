@@ -7,18 +7,18 @@ from hypothesis import strategies as st
 from scipy.signal import lfilter, lombscargle
 from scipy.stats import chi2, kstest
 
-from rovsim.diagnosis.structure.spectral_lines import FINE, Periodogram, fit_lines
+from rovsim.diagnosis.structure.spectral_lines import CLOCK_STEP_S, Periodogram, fit_lines
 
 
 def bins(random, count=300):
-    """Begins of bins 0.1 to 0.3 s long, as in the KTH tank, on steps of FINE."""
-    return FINE * np.cumsum(random.integers(10, 31, count))
+    """Begins of bins 0.1 to 0.3 s long, as in the KTH tank, on steps of CLOCK_STEP_S."""
+    return CLOCK_STEP_S * np.cumsum(random.integers(10, 31, count))
 
 
 def clock(time):
-    """Steps of FINE that hold the readings, and the frequencies of their lines, Hz."""
-    count = 2 * (round(time[-1] / FINE) + 1)
-    return count, np.arange(count // 2) / (count * FINE)
+    """Steps of CLOCK_STEP_S that hold the readings, and the frequencies of their lines, Hz."""
+    count = 2 * (round(time[-1] / CLOCK_STEP_S) + 1)
+    return count, np.arange(count // 2) / (count * CLOCK_STEP_S)
 
 
 @settings(max_examples=20, deadline=None)

@@ -16,7 +16,7 @@ FIX_SCALE = (
 )
 
 # What to record where none of an axis' motion was measured, with the columns of docs/formats.md.
-CHANNELS = (
+CHANNELS_TO_RECORD = (
     (
         ("surge", "sway"),
         "a position (x_m, y_m) or a velocity over ground (u_m_s, v_m_s, as a DVL gives it)",
@@ -26,12 +26,12 @@ CHANNELS = (
     (("yaw",), "a heading (yaw_rad) or a turn rate (r_rad_s)"),
 )
 
-NO_TRAIN = (
+ADD_TRAIN_RUN = (
     "Write `split: train` for a run in campaign.yaml that can be used: at least a minute in which "
     "the vehicle moves."
 )
 
-AWAY = (
+CORRECT_DIVERGING_MODEL = (
     "Correct the model first: look for a negative total drag, a wrong sign or a wrong unit in its "
     "file, or diagnose model=nominal."
 )
@@ -42,7 +42,7 @@ CHECK_UNITS = (
 )
 
 # What settles a doubt, where something does:
-OF_DOUBTS: dict[Doubt, str] = {
+ADVICE_ON_DOUBT: dict[Doubt, str] = {
     "looks_ahead": "A negative input_delay beside a pose_filter is what software leaves that "
     "smooths forwards and backwards, and so without delay: export the poses unsmoothed, and "
     "diagnose these.",
@@ -69,7 +69,7 @@ def advise(
         return _begin_again(diagnosis)
     parts = _doubt_units(diagnosis)
     doubts = {s.doubt for s in diagnosis.selected}
-    parts += [text for doubt, text in OF_DOUBTS.items() if doubt in doubts]
+    parts += [text for doubt, text in ADVICE_ON_DOUBT.items() if doubt in doubts]
     if groups:
         names = " and ".join(groups[0])
         parts.append(
@@ -98,9 +98,9 @@ def advise(
 def _begin_again(diagnosis: TrainDiagnosis) -> str:
     """Say what is needed where there was too little to judge anything."""
     if diagnosis.usable.lost:
-        return AWAY
+        return CORRECT_DIVERGING_MODEL
     if not diagnosis.usable.runs:
-        return NO_TRAIN
+        return ADD_TRAIN_RUN
     return (
         "Record train runs of at least a minute in which the vehicle moves: "
         f"only {diagnosis.usable.seconds:.0f} s could be used."
@@ -125,7 +125,7 @@ def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
     axes = diagnosis.usable.unmeasured
     return parts + [
         f"Record {channel}: without it nothing can be said about what acts in {', '.join(missing)}."
-        for group, channel in CHANNELS
+        for group, channel in CHANNELS_TO_RECORD
         if (missing := [axis for axis in axes if axis in group])
     ]
 

@@ -45,12 +45,12 @@ from rovsim.results.fitted import (
 )
 from rovsim.results.ladder import Ladder
 
-REFUSED = (
+REFUSED_EFFECTS_HINT = (
     "What is left could only be explained by effects that make replays of held-out stretches worse."
 )
-TOO_LITTLE = "There is too little data to say what is left."
-LISTED = 10  # effects of the ranking
-BESIDE_LAW = ("law", "stand_in")  # doubts of effects that stand in for a law
+TOO_LITTLE_DATA_HINT = "There is too little data to say what is left."
+MIN_LISTED_EFFECTS = 10  # of the ranking; those selected are listed in any case
+STAND_IN_DOUBTS = ("law", "stand_in")  # doubts of effects that stand in for a law
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +177,11 @@ def _ranked(one: RankedEffect) -> FittedEffect:
 def _listed(diagnosis: TrainDiagnosis) -> list[RankedEffect]:
     """List the first effects of the ranking, and the selected ones wherever they stand in it."""
     selected_ids = {s.term.id for s in diagnosis.selected}
-    return [r for k, r in enumerate(diagnosis.ranking) if k < LISTED or r.term.id in selected_ids]
+    return [
+        r
+        for k, r in enumerate(diagnosis.ranking)
+        if k < MIN_LISTED_EFFECTS or r.term.id in selected_ids
+    ]
 
 
 def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
@@ -196,16 +200,18 @@ def group_indistinguishable(rivals: Sequence[Rival]) -> list[list[str]]:
 def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     """Report what no effect of the catalogue explains, and a law for it, where one was found."""
     if not diagnosis.enough:
-        return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE)
+        return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
     if diagnosis.verdict != "unexplained":
         return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
     share = diagnosis.structures[0].share if diagnosis.structures else None
     return Unexplained(
         fraction=rounded(share),
         significant=True,
-        hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED,
+        hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED_EFFECTS_HINT,
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
-        stand_ins=tuple(sorted(s.term.id for s in diagnosis.selected if s.doubt in BESIDE_LAW)),
+        stand_ins=tuple(
+            sorted(s.term.id for s in diagnosis.selected if s.doubt in STAND_IN_DOUBTS)
+        ),
         disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
     )
 

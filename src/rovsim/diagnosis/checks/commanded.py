@@ -10,7 +10,7 @@ from rovsim.dynamics.vehicle import Vehicle
 from rovsim.estimation.observer.usable_runs import UsableRuns
 
 # Of a normalised command or demand, N, N m or rad: 4 us of a pulse, about what a log rounds to.
-RESTING = 0.01
+MAX_IDLE_AMPLITUDE = 0.01
 
 
 def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
@@ -27,7 +27,7 @@ def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
     if not logs:
         return ()
     amplitude = np.max([np.max(np.abs(log.value), axis=0) for log in logs], axis=0)
-    resting = amplitude <= RESTING
+    resting = amplitude <= MAX_IDLE_AMPLITUDE
     if logs[0].kind == "thruster":
         return _named(vehicle.command_columns, resting & ~np.array(vehicle.angles, bool))
     silent = np.isin(AXES, usable.still)

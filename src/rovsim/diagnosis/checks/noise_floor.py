@@ -21,7 +21,7 @@ from rovsim.evaluation.error_metrics import VelocityMoments, normalize, root_mea
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 
-DRAWS = 8  # of noise and disturbance along each test run; their errors are pooled
+DRAWS_PER_RUN = 8  # of noise and disturbance along each test run; their errors are pooled
 
 
 class NoiseFloor(NamedTuple):
@@ -90,12 +90,12 @@ class _PerfectModel:
         draws = self.noise.draws(run, self.random)
         pushes = self._push(draws, run)
         noisy = draws.resample_measurement_noise(
-            run.motion, self.model.mocap_view, self.signals, DRAWS
+            run.motion, self.model.mocap_view, self.signals, DRAWS_PER_RUN
         )
         reported = [motion.state for motion in noisy]
-        truth = np.tile(measured_state[windows.first], (DRAWS, 1, 1))
+        truth = np.tile(measured_state[windows.first], (DRAWS_PER_RUN, 1, 1))
         starts = np.array([state[windows.first] for state in reported])
-        models = [self.model] * DRAWS
+        models = [self.model] * DRAWS_PER_RUN
         actual = windows.compare(models, truth, pushes)
         predicted = windows.compare(models, starts)
         at = windows.compared
@@ -104,7 +104,7 @@ class _PerfectModel:
 
     def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Draw the disturbance of k integration steps: a wrench (draws, k, 6), N and N m."""
-        disturbance = draws.draw_disturbance(np.diff(run.grid), DRAWS)
+        disturbance = draws.draw_disturbance(np.diff(run.grid), DRAWS_PER_RUN)
         if self.noise.drift:
             disturbance += self._drift(run, self.noise.drift.rate)
         return np.asarray(disturbance @ self.model.M.T)
@@ -119,6 +119,6 @@ class _PerfectModel:
         at, steps = run.grid[:-1] - run.edges[0], np.diff(run.grid)
         response = np.stack([[np.interp(at, run.time, a) for a in p.T] for p in push])  # (2, 6, k)
         lead = run.motion.commands.before
-        kicks = self.random.normal(size=(DRAWS, 2, len(steps)))
+        kicks = self.random.normal(size=(DRAWS_PER_RUN, 2, len(steps)))
         kicks *= rate * np.sqrt(np.append(lead, steps[:-1]))
         return np.asarray(np.einsum("dck,cik->dki", np.cumsum(kicks, axis=2), response))

@@ -23,11 +23,12 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.sensitivities import CandidateColumns
 
 DETECTION_STDS = 2.0  # standard deviations: found in 97 of 100 such recordings
-OF_SIZE = ("N", "kg")  # how units begin of parameters that grow with the size of a vehicle
+# How units begin of parameters that grow with the size of a vehicle.
+SIZE_DEPENDENT_UNITS = ("N", "kg")
 # Scales of a threshold. ESCs stop at 0.06: that a deadband of 0.3 would show says nothing of that.
-USUAL = 2.5
+MAX_THRESHOLD_SCALES = 2.5
 # not observable where nobody logged them
-LOGGED: tuple[Requirement, ...] = ("commands", "demands", "thrusters")
+LOG_REQUIREMENTS: tuple[Requirement, ...] = ("commands", "demands", "thrusters")
 
 
 def list_not_observable(
@@ -99,12 +100,14 @@ def _list_telling(block: CandidateColumns, larger: float) -> list[tuple[int, flo
     candidate = block.candidate
     if block.secant is not None:
         values = candidate.start.given()
-        too_large = any(p.size(values[p.name]) > USUAL * p.scale for p in candidate.thresholds)
+        too_large = any(
+            p.size(values[p.name]) > MAX_THRESHOLD_SCALES * p.scale for p in candidate.thresholds
+        )
         return [] if too_large else [(block.secant, 1.0)]
     units = {p.name: p.unit for p in candidate.effect.parameters}
     pairs = zip(candidate.sloped, block.derivatives, strict=True)
     return [
-        (column, larger if units[name].startswith(OF_SIZE) else 1.0)
+        (column, larger if units[name].startswith(SIZE_DEPENDENT_UNITS) else 1.0)
         for name, column in pairs
         if name in (candidate.effect.telling or (name,))
     ]
@@ -116,5 +119,5 @@ def _find_unlogged(runs: Sequence[ObservedRun], catalogue: Catalogue, vehicle: V
     return {
         name
         for name, effect in catalogue.on(vehicle).items()
-        if effect.requires in LOGGED and effect.requires not in means
+        if effect.requires in LOG_REQUIREMENTS and effect.requires not in means
     }

@@ -19,25 +19,19 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.diagnosis import Standstill
 from rovsim.simulation.samples import Samples
 
-STILL = 0.5 * EXCITED  # m/s, rad/s: slower than any axis that counts as moved
-SHORTEST = 1.0  # s; a vehicle that reverses its motion stands still for less
-GAINED = 3.0 * EXCITED  # m/s, rad/s that the model would gain: far more than noise
-BLOCKS = (
-    0.5,
-    1.0,
-    2.0,
-    4.0,
-    8.0,
-    16.0,
-)  # s over which errors are averaged while vehicles move; a standstill is compared with its length
+MAX_REST_SPEED = 0.5 * EXCITED  # m/s, rad/s: slower than any axis that counts as moved
+MIN_REST_SECONDS = 1.0  # s; a vehicle that reverses its motion stands still for less
+MIN_SPEED_GAIN = 3.0 * EXCITED  # m/s, rad/s that the model would gain: far more than noise
+# s over which errors are averaged while vehicles move; a standstill is compared with its length.
+BLOCK_SECONDS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 MIN_BLOCKS = 10  # blocks of a length; if there are fewer, shorter blocks are used
-USUAL = 95.0  # percentile of the model's error while the vehicle moves
-BEYOND = 3.0  # times that percentile: a standstill has a larger error
-# Vehicles follow the model if, where its acceleration is more than SHOWN of that at the standstill,
-# the median error is less than FOLLOWED of it.
-SHOWN, FOLLOWED = 0.5, 0.75
-LONG = 0.2  # s in all for which the model accelerates so much, at least
-TINY = 1e-9  # m/s2, rad/s2: keeps ratios finite where a model has no error
+USUAL_PERCENTILE = 95.0  # percentile of the model's error while the vehicle moves
+MIN_ERROR_RATIO = 3.0  # times that percentile: a standstill has a larger error
+# Vehicles follow the model if, where its acceleration is more than MIN_ACCELERATION_SHARE of that
+# at the standstill, the median error is less than MAX_ERROR_SHARE of it.
+MIN_ACCELERATION_SHARE, MAX_ERROR_SHARE = 0.5, 0.75
+MIN_ACCELERATED_SECONDS = 0.2  # s in all for which the model accelerates so much, at least
+MIN_TYPICAL_ERROR = 1e-9  # m/s2, rad/s2: keeps ratios finite where a model has no error
 
 Spans = list[tuple[float, float]]
 
@@ -64,7 +58,7 @@ class _Moving(NamedTuple):
         a_sim: acceleration (n, 6) of the model.
         a_res: its error (n, 6), a_real - a_sim.
         step: duration (n,) of each sample, s.
-        blocks: means of the error (b, 6) over b blocks, of every length in `BLOCKS`.
+        blocks: means of the error (b, 6) over b blocks, of every length in `BLOCK_SECONDS`.
         length: of each block (b,), s.
     """
 
@@ -79,15 +73,21 @@ class _Moving(NamedTuple):
 
         Infinite where there are no blocks.
         """
-        fits = [x for x in BLOCKS if x <= lasts and np.sum(self.length == x) >= MIN_BLOCKS]
-        blocks = self.blocks[self.length == max(fits, default=BLOCKS[0])]
-        return np.percentile(np.abs(blocks), USUAL, axis=0) if len(blocks) else np.full(6, np.inf)
+        fits = [x for x in BLOCK_SECONDS if x <= lasts and np.sum(self.length == x) >= MIN_BLOCKS]
+        blocks = self.blocks[self.length == max(fits, default=BLOCK_SECONDS[0])]
+        return (
+            np.percentile(np.abs(blocks), USUAL_PERCENTILE, axis=0)
+            if len(blocks)
+            else np.full(6, np.inf)
+        )
 
     def followed(self, axis: int, size: float) -> bool:
         """Whether vehicles follow the model where it accelerates by about `size` on an axis."""
         sim, res = np.abs(self.a_sim[:, axis]), np.abs(self.a_res[:, axis])
-        large = sim > SHOWN * size
-        return self.step[large].sum() > LONG and bool(np.median(res[large] / sim[large]) < FOLLOWED)
+        large = sim > MIN_ACCELERATION_SHARE * size
+        return self.step[large].sum() > MIN_ACCELERATED_SECONDS and bool(
+            np.median(res[large] / sim[large]) < MAX_ERROR_SHARE
+        )
 
 
 def find_standstills(runs: Iterable[tuple[Motion, Samples]]) -> tuple[Standstill, ...]:
@@ -101,7 +101,7 @@ def find_standstills(runs: Iterable[tuple[Motion, Samples]]) -> tuple[Standstill
     moving_parts: list[_Moving] = []
     for motion, samples in runs:
         axes = find_measured(motion.measured)
-        at_rest = (np.abs(samples.nu) < STILL)[:, axes].all(axis=1)
+        at_rest = (np.abs(samples.nu) < MAX_REST_SPEED)[:, axes].all(axis=1)
         run_rests = list(_list_rests(motion, samples, at_rest))
         rests[motion.run.id] = run_rests, _list_spans(motion)
         moving_parts.append(_find_moving(motion, samples, ~at_rest))
@@ -119,7 +119,7 @@ def _list_rests(motion: Motion, samples: Samples, still: Array) -> Iterator[_Res
     axes, time = find_measured(motion.measured), motion.time[samples.index]
     for a, b in find_stretches(still):
         begin, end = float(time[a]), float(time[b - 1])
-        if end - begin >= SHORTEST:
+        if end - begin >= MIN_REST_SECONDS:
             yield _Rest(begin, end, samples.a_res[a:b].mean(axis=0) * axes)
 
 
@@ -131,8 +131,8 @@ def _find_moving(motion: Motion, samples: Samples, which: Array) -> _Moving:
     parts = [
         (samples.a_res[index].mean(axis=0), length)
         for a, b in find_stretches(which)
-        for length in BLOCKS
-        if length == BLOCKS[0] or time[b - 1] - time[a] >= length
+        for length in BLOCK_SECONDS
+        if length == BLOCK_SECONDS[0] or time[b - 1] - time[a] >= length
         for index in np.array_split(np.arange(a, b), max(1, int((time[b - 1] - time[a]) / length)))
     ]
     blocks = np.array([block for block, _ in parts]).reshape(-1, len(AXES))
@@ -183,10 +183,10 @@ def _find_axis(rest: _Rest, moving: _Moving) -> int | None:
     The model must gain speed there, and vehicles must follow it elsewhere.
     """
     error, duration = np.abs(rest.missed), rest.end - rest.begin
-    typical = np.maximum(moving.usual(duration), TINY)
-    ratio = np.where(error * duration > GAINED, error / typical, 0.0)
+    typical = np.maximum(moving.usual(duration), MIN_TYPICAL_ERROR)
+    ratio = np.where(error * duration > MIN_SPEED_GAIN, error / typical, 0.0)
     axis = int(np.argmax(ratio))
-    significant = ratio[axis] > BEYOND and moving.followed(axis, float(error[axis]))
+    significant = ratio[axis] > MIN_ERROR_RATIO and moving.followed(axis, float(error[axis]))
     return axis if significant else None
 
 
@@ -195,7 +195,7 @@ def _list_spans(motion: Motion) -> Spans:
     spans: Spans = []
     for a, b in motion.segments():
         begin, end = float(motion.time[a]), float(motion.time[b - 1])
-        if spans and begin - spans[-1][1] < SHORTEST:
+        if spans and begin - spans[-1][1] < MIN_REST_SECONDS:
             begin = spans.pop()[0]
         spans.append((begin, end))
     return spans
@@ -204,4 +204,4 @@ def _list_spans(motion: Motion) -> Spans:
 def _without(spans: Spans, begin: float, end: float) -> Spans:
     """Take the stretch from `begin` to `end` out of spans, s; short remains are left out."""
     parts = [x for a, b in spans for x in ((a, min(b, begin)), (max(a, end), b))]
-    return [(round(a, 2), round(b, 2)) for a, b in parts if b - a >= SHORTEST]
+    return [(round(a, 2), round(b, 2)) for a, b in parts if b - a >= MIN_REST_SECONDS]

@@ -16,7 +16,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.file_effects import GAIN, ONE_GAIN, SHARE, spread_of_file
 from rovsim.estimation.observer.hypothesis import Term
 
-WIDTHS = 10.0  # usual relative errors: a factor of 20 of drag or added mass, 2.7 of thrust
+MAX_ERROR_STDS = 10.0  # usual relative errors: a factor of 20 of drag or added mass, 2.7 of thrust
 
 
 def list_absurd(base: Model, terms: Sequence[Term]) -> list[str]:
@@ -44,7 +44,7 @@ def _tell_gain(base: Model, term: Term) -> Iterator[str]:
     """Yield the common gain of the thrusters, if it is absurdly far from 1 either way."""
     for name in ONE_GAIN if term.id == ThrusterGain.id else ():
         gain = term.effect[name]  # negative: reversed thrusters, which is another fault
-        if abs(np.log(max(abs(gain), 1e-12))) > WIDTHS * GAIN:
+        if abs(np.log(max(abs(gain), 1e-12))) > MAX_ERROR_STDS * GAIN:
             yield f"{term.id}.{name} is {minus(f'{gain:.2g}')}"
 
 
@@ -64,4 +64,4 @@ def _highest(base: Model, term: Term, parameter: Parameter) -> float:
     """Highest value of a parameter, in its unit, that is not absurd."""
     share = SHARE[term.id]
     spread = spread_of_file(base, type(term.effect), parameter) * parameter.scale
-    return spread / share * float(np.exp(WIDTHS * share))
+    return spread / share * float(np.exp(MAX_ERROR_STDS * share))

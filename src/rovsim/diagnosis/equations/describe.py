@@ -23,7 +23,8 @@ from rovsim.results.diagnosis import (
 )
 from rovsim.results.fitted import FittedEffect, FittedValue
 
-LINE = 0.2  # s between two rows of a force in time: what the readings resolve (sudden_pushes.py)
+# s between two rows of a force in time: what the readings resolve (sudden_pushes.py).
+ROW_SECONDS = 0.2
 
 
 def rounded(value: float | None) -> float | None:
@@ -55,7 +56,7 @@ def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedVal
 
 
 def describe_force(force: ForceInTime) -> Disturbance:
-    """Describe a force in time, with a row about every `LINE` s for each run."""
+    """Describe a force in time, with a row about every `ROW_SECONDS` for each run."""
     rows = zip(force.runs, force.time, force.place, force.force, strict=True)
     return Disturbance(
         axes=force.axes,
@@ -87,7 +88,7 @@ def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
 
 def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfRun:
     """Describe the force along one run: times (n,), places (n, 3) and wrenches (n, 6)."""
-    stride = max(1, round(LINE / float(np.median(np.diff(time))))) if len(time) > 1 else 1
+    stride = max(1, round(ROW_SECONDS / float(np.median(np.diff(time))))) if len(time) > 1 else 1
     return ForceOfRun(
         run=run,
         time_s=tuple(np.round(time[::stride], 2).tolist()),

@@ -22,7 +22,8 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-APART, STRONG, LISTED = 1.0, 2.0, 8  # s between pushes, RMS that one stands out by, how many
+# s between pushes, RMS that one stands out by, how many.
+MIN_PUSH_SPACING_S, MIN_PUSH_RMS, MAX_LISTED_PUSHES = 1.0, 2.0, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +204,11 @@ def _find_pushes(
     for run, force, place in zip(runs, forces, places, strict=True):
         for i in index:
             size = np.abs(force[:, i]) / max(rms[i], 1e-12)
-            peaks, _ = find_peaks(size, height=STRONG, distance=max(1, round(APART / run.period)))
+            peaks, _ = find_peaks(
+                size,
+                height=MIN_PUSH_RMS,
+                distance=max(1, round(MIN_PUSH_SPACING_S / run.period)),
+            )
             ranked += [
                 (
                     float(size[k]),
@@ -218,4 +223,4 @@ def _find_pushes(
                 for k in peaks
             ]
     ranked.sort(key=lambda one: -one[0])
-    return [push for _, push in ranked[:LISTED]]
+    return [push for _, push in ranked[:MAX_LISTED_PUSHES]]

@@ -29,7 +29,7 @@ def write_effect(
         method: source of the method that computes the effect, not indented.
         start: parameter values that a fit begins from; empty where the defaults will do.
     """
-    return FILE.format(
+    return FILE_TEMPLATE.format(
         story=story,
         meaning=form.meaning,
         imports=imports,
@@ -57,7 +57,7 @@ def _parameter(n: Number) -> str:
     return f'        Parameter("{n.name}", "{n.unit}", r"{n.symbol}"{bounds}, scale={n.scale:g}),'
 
 
-FILE = '''\
+FILE_TEMPLATE = '''\
 """{story}
 
 A proposal: read it, change it, and see with `rovsim compare effects_file=…` what it is worth.

@@ -13,7 +13,7 @@ from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, proje
 from rovsim.diagnosis.equations.products.library import push
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
-from rovsim.diagnosis.structure.residual import FALSE_ALARM
+from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -51,7 +51,7 @@ class LawFits:
     @property
     def chance(self) -> float:
         """What the best of all terms gains by chance, less its penalty (Bonferroni's bound)."""
-        return max(0.0, float(chi2.isf(FALSE_ALARM / self.candidates, 1)) - self.penalty)
+        return max(0.0, float(chi2.isf(FALSE_ALARM_RATE / self.candidates, 1)) - self.penalty)
 
     def fit_unless_below(
         self, form: Form, h: Hypothesis, current: Fit, least: float

@@ -22,7 +22,8 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 
 HALF_LAW_MARGIN = 2.0  # times what chance allows: a fit to all runs does not change so much
 THRUST_LAWS_TRIED = 4  # laws of the thrust that are fitted: those best to first order
-NEAR = 0.5  # of what products explain: a law of the thrust is not fitted if it may explain less
+# Of what products explain: a law of the thrust is not fitted if it may explain less.
+MIN_SHARE_OF_PRODUCTS = 0.5
 
 
 def search_laws(selection: SearchResult) -> FittedLaw | None:
@@ -87,7 +88,9 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
         return None
     columns = fits.project(fit, terms, middle_of(fits.runs), push_thrust)
     explained = find_alone(columns.gram) - fits.penalty
-    threshold = max(fits.chance, 0.0 if grown is None else NEAR * (grown.score - score))
+    threshold = max(
+        fits.chance, 0.0 if grown is None else MIN_SHARE_OF_PRODUCTS * (grown.score - score)
+    )
     order = np.argsort(-explained, kind="stable")[:THRUST_LAWS_TRIED]
     laws = {
         int(k): (WithThrust(columns.terms[k]), begin(columns, int(k), fit.hypothesis))

@@ -20,12 +20,12 @@ from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
 from rovsim.diagnosis.structure.residual import Structure, split_by_axis
 
-# A function is suspect if its likelihood-ratio statistic exceeds SUSPECT. FAINT is enough if the
-# fitted parameters could have explained more than the share RESEMBLES of its power. By chance, the
-# best of all functions of an axis reaches 15 in one campaign of fifteen and 8 in most, but only few
-# functions are so similar to accepted effects.
-SUSPECT, RESEMBLES, FAINT = 15.0, 0.5, 8.0
-TRIED = 3  # laws that are fitted
+# A function is suspect if its likelihood-ratio statistic exceeds MIN_LR_OF_MASKED, or
+# MIN_LR_OF_SIMILAR if the fitted parameters could have explained more than MIN_EXPLAINABLE_SHARE of
+# its power. By chance, the best of all functions of an axis reaches 15 in one campaign of fifteen
+# and 8 in most, but only few functions are so similar to accepted effects.
+MIN_LR_OF_MASKED, MIN_EXPLAINABLE_SHARE, MIN_LR_OF_SIMILAR = 15.0, 0.5, 8.0
+LAWS_TRIED = 3  # fitted
 
 
 def find_masked_laws(selection: SearchResult) -> list[Structure]:
@@ -46,7 +46,7 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     fits = LawFits(selection, len(terms))
     columns = fits.project(fit, terms, middle_of(runs))
     order = np.argsort(-find_alone(columns.gram), kind="stable")
-    kinds = choose_kinds([columns.terms[k] for k in order])[:TRIED]
+    kinds = choose_kinds([columns.terms[k] for k in order])[:LAWS_TRIED]
     score = workspace.score(fit)
     for law in fit_products(fits, fit, (), kinds, columns).values():
         if fits.is_worth(law, fit, score):
@@ -70,6 +70,7 @@ def _find_suspect(selection: SearchResult) -> Structure | None:
         )
         for residual in split_by_axis(selection.best, bank)
         for dependence in list_dependences(residual, tables)
-        if dependence.statistic > (FAINT if dependence.taken > RESEMBLES else SUSPECT)
+        if dependence.statistic
+        > (MIN_LR_OF_SIMILAR if dependence.taken > MIN_EXPLAINABLE_SHARE else MIN_LR_OF_MASKED)
     ]
     return max(structures, key=lambda dependence: dependence.times_limit, default=None)

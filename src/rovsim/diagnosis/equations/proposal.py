@@ -22,7 +22,7 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import score_windows
 from rovsim.results.base import or_nan
 
-STORY = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
+ORIGIN_SENTENCE = "Proposed by `rovsim diagnose` for what no effect of the catalogue explains."
 MIN_ERROR_REDUCTION = 0.05  # of the error of replays: less is not worth an equation
 
 
@@ -86,7 +86,7 @@ class ProposedLaw:
     @property
     def source(self) -> str:
         """The law as an effect, in Python."""
-        return self.form.write(PROPOSED, self.law, self.numbers, STORY)
+        return self.form.write(PROPOSED, self.law, self.numbers, ORIGIN_SENTENCE)
 
 
 def propose_law(

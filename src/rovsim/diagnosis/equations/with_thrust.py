@@ -16,8 +16,13 @@ from rovsim.core.axes import AXES, FORCE, VELOCITY
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns
-from rovsim.diagnosis.equations.products.products import KERNEL
-from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, Variable, write_unit
+from rovsim.diagnosis.equations.products.products import KERNEL_TEMPLATE
+from rovsim.diagnosis.equations.products.variables import (
+    LATERAL_AXES,
+    VARIABLES,
+    Variable,
+    write_unit,
+)
 from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.laws.codes import NONE, SIZE
@@ -26,12 +31,19 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
-THRUST = tuple(
+DIRECTION_NAMES = ("ahead", "to starboard", "downwards", "in roll", "in pitch", "in yaw")
+THRUST_VARIABLES = tuple(
     Variable(
-        f"T_{X}", f"T_{X}", f"T_{X}", int(j >= 3), 0, 0, j in ODD, f"the thrust {name} (T_{X})"
+        f"T_{X}",
+        f"T_{X}",
+        f"T_{X}",
+        int(j >= 3),
+        0,
+        0,
+        j in LATERAL_AXES,
+        f"the thrust {name} (T_{X})",
     )
-    for j, (X, name) in enumerate(zip(FORCE, NAMES, strict=True))
+    for j, (X, name) in enumerate(zip(FORCE, DIRECTION_NAMES, strict=True))
 )  # powers of m, s and rad in their units; each has one of N, too
 
 
@@ -62,7 +74,7 @@ class ThrustTerm:
     @property
     def factors(self) -> tuple[Variable, ...]:
         """The factors of the term, without its coefficient."""
-        primary, *secondary = (THRUST[j] for j in self.thrusts)
+        primary, *secondary = (THRUST_VARIABLES[j] for j in self.thrusts)
         if self.unsigned:
             code, latex = f"abs({primary.code})", f"|{primary.latex}|"
             primary = replace(primary, code=code, latex=latex, odd=False)
@@ -95,7 +107,7 @@ def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustT
     moving = [int(i) for i in np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))]
     driven = [j for j in range(6) if np.abs(B[j]).max() > 1e-3]
     terms = (term for i in moving for j in driven for term in _of(i, j, moving, driven))
-    return [term for term in dict.fromkeys(terms) if term.odd == (term.on in ODD)]
+    return [term for term in dict.fromkeys(terms) if term.odd == (term.on in LATERAL_AXES)]
 
 
 def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterator[ThrustTerm]:
@@ -245,7 +257,7 @@ class WithThrust(Form):
             base="Wrench",
             imports="",
             start={},
-            method=KERNEL.format(body=indent("\n".join(self._lines(law)), "    ")),
+            method=KERNEL_TEMPLATE.format(body=indent("\n".join(self._lines(law)), "    ")),
         )
 
     def _lines(self, law: Term) -> Iterator[str]:
@@ -253,7 +265,7 @@ class WithThrust(Form):
         t = self.term
         yield "F = at.actuators.force"
         for j, row in dict(zip(t.thrusts, "bd", strict=False)).items():
-            yield f"{THRUST[j].code} = {_sum(law, row)}  # thrust {NAMES[j]}"
+            yield f"{THRUST_VARIABLES[j].code} = {_sum(law, row)}  # thrust {DIRECTION_NAMES[j]}"
         if NONE < t.factor < OTHER:
             yield f"{VARIABLES[t.factor % SIZE].code} = at.nu_r[{t.factor % SIZE}]"
         yield f"push = {' * '.join((f'p.{AXES[t.on]}', *(f.code for f in t.factors)))}"

@@ -16,8 +16,8 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.observed_run import BLOCK, number_blocks
 from rovsim.estimation.observer.sandwich import estimate_covariance
 
-LASTING = (BLOCK, 3.0 * BLOCK)  # s: how long such pushes and such drifts last
-BLOCKS_EACH = 3  # for each parameter: fewer blocks do not tell how much blocks differ
+CLUSTER_SECONDS = (BLOCK, 3.0 * BLOCK)  # s: how long such pushes and such drifts last
+MIN_BLOCKS_PER_PARAMETER = 3  # fewer blocks do not tell how much blocks differ
 
 
 def drop_unsure(selection: SearchResult) -> SearchResult:
@@ -36,11 +36,12 @@ def drop_unsure(selection: SearchResult) -> SearchResult:
 def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
     """Numbers of the terms that are not worth their penalty with the covariance between blocks."""
     h, unsure = fit.hypothesis, set()
-    for seconds in LASTING:
+    for seconds in CLUSTER_SECONDS:
         blocks = number_blocks(workspace.bank.runs, seconds)
         rows = workspace.bank.whiten(fit.linearised.rows, fit.noise)
         as_blocks_see = replace(fit, covariance=estimate_covariance(rows, blocks))
-        limit = len(np.unique(blocks)) // BLOCKS_EACH  # numbers that so many blocks can judge
+        # numbers that so many blocks can judge
+        limit = len(np.unique(blocks)) // MIN_BLOCKS_PER_PARAMETER
         for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
             few_enough = term.vanishes and 0 < len(columns) <= limit
             if few_enough and as_blocks_see.distance(columns) < workspace.penalty * term.choices:

@@ -21,10 +21,10 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.camera import Smoothing
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
-DELAY, LAG = InputDelay.id, ThrusterLag.id
+DELAY_ID, LAG_ID = InputDelay.id, ThrusterLag.id
 # Frames: later by so much, and no more, is a latency, not a lower cutoff. Two stages between frames
 # are one frame later than two from frame to frame.
-BETWEEN_FRAMES = (0.5, 1.5)
+LATENCY_FRAMES = (0.5, 1.5)
 
 
 class SearchStart(NamedTuple):
@@ -114,12 +114,12 @@ def absorb_delay(
 
 def has_delay(h: Hypothesis) -> bool:
     """Whether the hypothesis contains an `input_delay`."""
-    return any(term.id == DELAY for term in h.terms)
+    return any(term.id == DELAY_ID for term in h.terms)
 
 
 def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
     """Fit the hypothesis with an `input_delay` in place of any that it has."""
-    without_delay = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY))
+    without_delay = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY_ID))
     return selection.fit(without_delay.with_term(Term(InputDelay(), ("delay",))))
 
 
@@ -130,7 +130,7 @@ def _without_short_lag(h: Hypothesis, smoothing: Smoothing) -> Hypothesis | None
     apart: it depends more on the cutoff, which the noise gives only roughly.
     """
     for k, term in enumerate(h.terms):
-        if term.id == LAG and term.effect["time_constant"] < BETWEEN_FRAMES[1] * smoothing.frame:
+        if term.id == LAG_ID and term.effect["time_constant"] < LATENCY_FRAMES[1] * smoothing.frame:
             return h.without(k)
     return None
 
@@ -144,7 +144,7 @@ def _absorb(
         The fit and the slower filter; None and the filter as it was where no such filter fits.
     """
     h = at.hypothesis
-    k = next(i for i, term in enumerate(h.terms) if term.id == DELAY)
+    k = next(i for i, term in enumerate(h.terms) if term.id == DELAY_ID)
     delay, column = h.terms[k].effect["delay"], h.columns[k][0]
     std = float(at.std[column] * h.terms[k].parameters[0].scale)
     finer = _refine(smoothing, delay, std)
@@ -169,7 +169,7 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
     """
     total_delay = _delay(smoothing.cutoff) + smoothing.latency + delay
     latency = total_delay - _delay(smoothing.noise_cutoff)
-    low, high = BETWEEN_FRAMES
+    low, high = LATENCY_FRAMES
     if low * smoothing.frame < latency < high * smoothing.frame:
         return replace(smoothing, cutoff=smoothing.noise_cutoff, latency=latency)
     cutoff = 1.0 / (np.pi * total_delay) if total_delay > 0.0 else np.inf

@@ -28,11 +28,11 @@ from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
-ROUNDS = 3  # of trials, where none of the first additions is accepted
+TRIAL_ROUNDS = 3  # of trials, where none of the first additions is accepted
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
 # Of what the last addition explained: while more is sought, less is not worth a swap.
 MIN_SWAP_SHARE = 0.01
-DETERMINED = 0.5  # scales: the standard deviation of a shape, by which two scales are told apart
+MAX_SHAPE_STD = 0.5  # scales: the standard deviation of a shape, by which two scales are told apart
 
 
 def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit | None:
@@ -50,7 +50,7 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
     """
     proposals, file = list_promising(workspace, current), LooseFile(workspace)
     loose = has_loose_file(current.hypothesis)
-    for _ in range(ROUNDS):
+    for _ in range(TRIAL_ROUNDS):
         level = sum(
             p.net_decrease > NEARLY_BEST_SHARE * proposals[0].net_decrease for p in proposals
         )
@@ -183,7 +183,7 @@ def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
         if shape:
             trial = workspace.fit(h.replaced(i, replace(term, free=(*term.free, *shape))))
             columns = trial.hypothesis.columns[i][-len(shape) :]
-            determined = trial.is_finite and (trial.std[columns] < DETERMINED).all()
+            determined = trial.is_finite and (trial.std[columns] < MAX_SHAPE_STD).all()
             if determined and workspace.score(trial) > workspace.score(current) - MIN_LR_OF_SWAP:
                 return free_shape(workspace, prune(workspace, trial))
     return current

@@ -25,10 +25,10 @@ from rovsim.estimation.file_effects import DRAG, free_terms, mark_gain
 from rovsim.estimation.fit import PRIOR_STD, Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
-ROUNDS = 2  # the filters suit the model and the noise of the round before
+FIT_ROUNDS = 2  # the filters suit the model and the noise of the round before
 # Ways in which commands could act.
-ACTUATION = (ThrusterGain.id, OnboardControl.id)
-ALWAYS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ConstantWrench, InputDelay)
+ACTUATION_IDS = (ThrusterGain.id, OnboardControl.id)
+COMMON_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ConstantWrench, InputDelay)
 
 
 def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:
@@ -52,13 +52,13 @@ def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -
         for other_workspace, fit in results[1:]
         for best_term in best_fit.hypothesis.terms
         for term in fit.hypothesis.terms
-        if best_term.id in ACTUATION and term.id in ACTUATION and term.id not in names
+        if best_term.id in ACTUATION_IDS and term.id in ACTUATION_IDS and term.id not in names
     )
     return SearchResult(best_workspace, best_fit, rivals, PRIOR_STD)
 
 
 def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesis]:
-    common_terms = free_terms(base, moved, ALWAYS)
+    common_terms = free_terms(base, moved, COMMON_EFFECTS)
     starts = [(*common_terms, *free_terms(base, moved, [ThrusterGain]))]
     if kind == "demand":
         loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
@@ -69,7 +69,7 @@ def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesi
 def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[SearchWorkspace, Fit]:
     """Fit a hypothesis, and twice again with filters and noise that suit the fit before."""
     fit = workspace.fit(start, PRIOR_STD)
-    for _ in range(ROUNDS):
+    for _ in range(FIT_ROUNDS):
         workspace = workspace.update_after(fit)
         fit = workspace.fit(fit.hypothesis, PRIOR_STD)
     return workspace, fit

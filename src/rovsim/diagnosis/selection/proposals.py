@@ -11,7 +11,7 @@ from rovsim.estimation.observer.hypothesis import Term
 from rovsim.estimation.observer.least_squares import Reduction, select_columns, solve_bounded
 from rovsim.estimation.sensitivities import CandidateColumns
 
-TRUSTED = 3.0  # scales from its start: how far a first-order prediction is believed
+MAX_LINEAR_STEP = 3.0  # scales from its start: how far a first-order prediction is believed
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ def _predict_reduction(G: Array, block: CandidateColumns, penalty: float) -> Red
     if block.secant is None:
         return select_columns(H, b, penalty)
     s = 1 + block.secant
-    low, high = block.candidate.term(block.candidate.sloped).step_limits(TRUSTED)
+    low, high = block.candidate.term(block.candidate.sloped).step_limits(MAX_LINEAR_STEP)
     return solve_bounded(H, b + G[index, s], 2.0 * G[0, s] + G[s, s], low, high)
 
 

@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
-ABOUT = np.arange(-2.0, 2.5, 0.5)  # in resolutions: values about the best of the grid
+NEARBY_STEPS = np.arange(-2.0, 2.5, 0.5)  # in resolutions: values about the best of the grid
 
 
 def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> Hypothesis:
@@ -28,7 +28,7 @@ def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> H
     for parameter, column in parameters:
         if parameter.tried:
             h = _choose(workspace, h, column, np.array(parameter.tried) / parameter.scale)
-            nearby = ABOUT * parameter.resolution / parameter.scale
+            nearby = NEARBY_STEPS * parameter.resolution / parameter.scale
             h = _choose(workspace, h, column, h.x[column] + nearby)
     return h
 

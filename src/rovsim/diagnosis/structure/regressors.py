@@ -10,7 +10,7 @@ from scipy.stats import chi2
 
 from rovsim.core.axes import AXES
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE, AxisResidual, Structure
 from rovsim.dynamics.laws.law import SMOOTH
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
@@ -18,18 +18,19 @@ from rovsim.estimation.observer.sandwich import find_inflation
 
 # The velocity measured at an instant shares noise with the readings around it, and so would be
 # correlated with their innovations. A little earlier it is not, and the motion changes little.
-EARLIER = 0.2  # s
-MEMORIES = (0.5, 2.0)  # s
-INDEPENDENT = 1e-6  # of a column's power: if less is left, the fitted parameters explain it already
+LOOK_BACK_SECONDS = 0.2  # s
+MEMORY_SECONDS = (0.5, 2.0)  # s
+# Of a column's power: if less is left, the fitted parameters explain it already.
+MIN_INDEPENDENT_SHARE = 1e-6
 
 
 def earlier_states(run: ObservedRun) -> Array:
-    """States (n, 13) measured `EARLIER` s before each of n readings; zero where none was measured.
+    """States (n, 13) measured `LOOK_BACK_SECONDS` before each of n readings; zero where none was.
 
     A state is the position in m NED, the quaternion body to world, and the body velocity (FRD) in
     m/s and rad/s.
     """
-    past = max(1, round(EARLIER / run.period))
+    past = max(1, round(LOOK_BACK_SECONDS / run.period))
     at = np.clip(run.innovation_samples - past, 0, len(run.motion.time) - 1)
     return np.nan_to_num(run.motion.state[at])
 
@@ -71,7 +72,7 @@ def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
         table[f"{axis} velocity, squared"] = np.abs(v) * v
         table[f"{axis} velocity, cubed"] = v**3
         table[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
-        for memory in MEMORIES:
+        for memory in MEMORY_SECONDS:
             table[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
     for i, j in combinations(range(6), 2):
         table[f"{AXES[i]} times {AXES[j]} velocity"] = nu[:, i] * nu[:, j]
@@ -109,7 +110,7 @@ def find_dependence(
         residual: what a fit leaves on one axis.
         tables: values (n_run,) of all functions, of each run.
     """
-    limit = chi2.isf(FALSE_ALARM / (len(AXES) * len(tables[0])), 1)
+    limit = chi2.isf(FALSE_ALARM_RATE / (len(AXES) * len(tables[0])), 1)
     for d in list_dependences(residual, tables):
         yield from residual.weigh(d.name, size=d.size, statistic=d.statistic, limit=limit)
 
@@ -131,7 +132,7 @@ def list_dependences(
         column = residual.respond(pushes)
         independent = column - basis @ (basis.T @ column)
         power, total_power = float(independent @ independent), float(column @ column)
-        if power < INDEPENDENT * total_power or size == 0.0:
+        if power < MIN_INDEPENDENT_SHARE * total_power or size == 0.0:
             continue
         factor = float(independent @ target) / power
         # only the part counts that no fitted parameter could have explained

@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.structure.unknown_thrust import (
-    SPIN,
+    SPIN_UP_SECONDS,
     find_jumps,
     find_lost_commands,
     mark_undecided,
@@ -21,13 +21,14 @@ from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-FALSE_ALARM = 0.002  # of all tests of one kind of structure together
-MATTERS = 0.25  # of the disturbance's standard deviation: less changes no score
+FALSE_ALARM_RATE = 0.002  # of all tests of one kind of structure together
+MIN_SIZE_STDS = 0.25  # of the disturbance's standard deviation: less changes no score
 # Disturbances of axes that nobody measured reach the others through couplings of the motion, and
 # sums of channels err together: what is left is not quite white. Of development recordings replayed
 # with the true model, three of 36 had a structure at 1.0 to 1.3 times the limit of white noise.
-CHANNELS = 1.5  # times the limit, where channels were measured and not full poses
-NOTICED = 1.0  # standard deviations: removing a smaller push would cost more than it does harm
+CHANNELS_LIMIT_FACTOR = 1.5  # times the limit, where channels were measured and not full poses
+# Standard deviations: removing a smaller push would cost more than it does harm.
+MIN_REMOVED_STDS = 1.0
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class AxisResidual:
     @property
     def _margin(self) -> float:
         """Factor of the limits that chance allows, as what is left of channels is not white."""
-        return CHANNELS if self.of_channels else 1.0
+        return CHANNELS_LIMIT_FACTOR if self.of_channels else 1.0
 
     def respond(self, pushes: Sequence[Array]) -> Array:
         """Filter pushes (n_run,) of each run, m/s2 or rad/s2, as the innovations would show them.
@@ -106,7 +107,7 @@ class AxisResidual:
             moment: whether it is a single push.
         """
         limit *= self._margin
-        if statistic > limit and size > MATTERS * self.disturbance_std:
+        if statistic > limit and size > MIN_SIZE_STDS * self.disturbance_std:
             share = min(1.0, (size / self.disturbance_std) ** 2)
             yield Structure(self.axis, what, float(share), float(statistic / limit), moment)
 
@@ -178,8 +179,11 @@ def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -
     for (begin, end), by in zip(lost, off, strict=True):
         response = respond(run.overlapping(begin, end).astype(float), f, run)
         share = min(1.0, (end - begin) / run.period)
-        if by * share * np.sqrt(response @ response) > NOTICED:
-            columns += [response, respond(run.overlapping(end, end + SPIN).astype(float), f, run)]
+        if by * share * np.sqrt(response @ response) > MIN_REMOVED_STDS:
+            columns += [
+                response,
+                respond(run.overlapping(end, end + SPIN_UP_SECONDS).astype(float), f, run),
+            ]
     if not columns:
         return w
     rows = np.stack(columns)

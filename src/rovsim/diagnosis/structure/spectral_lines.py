@@ -18,18 +18,19 @@ from scipy.ndimage import median_filter
 from scipy.stats import chi2
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.structure.residual import FALSE_ALARM, AxisResidual, Structure
+from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE, AxisResidual, Structure
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-HIGHEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
+MAX_FREQUENCY_HZ = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 # s: step of the fine clock. Bins begin at such steps, and frames at 100 Hz are one step apart.
 # Where readings lie between steps, a line of 5 Hz loses 0.8 % of its power: sinc(5 * 0.01)^2
 # (uniform rounding).
-FINE = 0.01
+CLOCK_STEP_S = 0.01
 # Steps of frequency, two for each that the longest run resolves. A line is compared with the 32
 # frequencies on either side, of which it and its leakage fill a few.
-NEIGHBOURS = 65
-SINGULAR = 1e-6  # of the largest determinant: with less, sine and cosine are the same column
+MEDIAN_WINDOW_LINES = 65
+# Of the largest determinant: with less, sine and cosine are the same column.
+MIN_DETERMINANT_SHARE = 1e-6
 COMBS = ((1,), (1, 2, 3), (1, 3, 5))  # overtones: a sine, a saw tooth, a square wave
 
 Envelope = Callable[[ObservedRun], Array]
@@ -66,7 +67,7 @@ class Periodogram:
         k = self.usable[0] if len(self.usable) else 0
         level = np.ones_like(self.total)
         white = chi2.median(2 * len(self.power))
-        level[k:] = median_filter(self.total[k:], NEIGHBOURS) / white
+        level[k:] = median_filter(self.total[k:], MEDIAN_WINDOW_LINES) / white
         return np.asarray(self.total / np.maximum(1.0, level))
 
 
@@ -100,7 +101,7 @@ def _judge_comb(
     k_best = int(np.argmax(beyond_noise))
     k = candidates[k_best]
     tests = len(spectrum.usable) * len(COMBS) * len(ENVELOPES) * len(AXES)
-    limit = chi2.isf(FALSE_ALARM / tests, 2 * len(comb) * len(residual.runs))
+    limit = chi2.isf(FALSE_ALARM_RATE / tests, 2 * len(comb) * len(residual.runs))
     if beyond_noise[k_best] <= limit:
         return
     lines = [m * k for m in comb]
@@ -132,9 +133,10 @@ def _measure_power(residual: AxisResidual, envelope: Envelope) -> Periodogram:
     """Compute the periodogram of an axis, for lines whose amplitude follows an envelope."""
     longest = max(run.time[-1] for run in residual.runs)
     highest = 0.5 / min(run.period for run in residual.runs)
-    count = next_fast_len(2 * int(longest / FINE + 1.0))  # twice as dense as its length gives
-    frequency = np.arange(int(highest * count * FINE) + 1) / (count * FINE)
-    usable = np.flatnonzero((frequency >= 1.0 / longest) & (frequency <= HIGHEST))
+    # twice as dense as its length gives
+    count = next_fast_len(2 * int(longest / CLOCK_STEP_S + 1.0))
+    frequency = np.arange(int(highest * count * CLOCK_STEP_S) + 1) / (count * CLOCK_STEP_S)
+    usable = np.flatnonzero((frequency >= 1.0 / longest) & (frequency <= MAX_FREQUENCY_HZ))
     envelopes = [envelope(run) for run in residual.runs]
     times = [run.time[run.settled] for run in residual.runs]
     inputs = zip(residual.white, envelopes, times, strict=True)
@@ -152,9 +154,10 @@ def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
         count: steps of the fine clock, at least up to the last reading.
 
     Returns:
-        Chi-square (count // 2,) that lines explain; the frequency of line k is k / (count FINE) Hz.
+        Chi-square (count // 2,) that lines explain; the frequency of line k is
+        k / (count CLOCK_STEP_S) Hz.
     """
-    at = np.round(time / FINE).astype(int)
+    at = np.round(time / CLOCK_STEP_S).astype(int)
     weighted, power = np.zeros((2, count))
     np.add.at(weighted, at, white * envelope)
     np.add.at(power, at, envelope**2)
@@ -170,7 +173,9 @@ def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
     a, b = line.real, -line.imag
     size = cosine * sine - product**2
     numerator = a**2 * sine + b**2 * cosine - 2.0 * a * b * product
-    return np.divide(numerator, size, out=np.zeros_like(a), where=size > SINGULAR * total**2)
+    return np.divide(
+        numerator, size, out=np.zeros_like(a), where=size > MIN_DETERMINANT_SHARE * total**2
+    )
 
 
 def _even(run: ObservedRun) -> Array:

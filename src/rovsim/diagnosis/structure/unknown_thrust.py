@@ -9,8 +9,8 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-SPIN = 0.3  # s within which propellers and motors follow a command
-FEW = 0.05  # of all lines: at most so many count as lost, those with the largest changes
+SPIN_UP_SECONDS = 0.3  # s within which propellers and motors follow a command
+MAX_LOST_SHARE = 0.05  # of all lines: at most so many count as lost, those with the largest changes
 
 
 def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
@@ -31,7 +31,7 @@ def find_lost_commands(run: ObservedRun, path: ThrustPath) -> Array:
         return np.empty((0, 2))
     change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
     change[steps < LONG_STEP * np.median(steps)] = 0.0
-    jumps = change > max(0.0, np.quantile(change, 1.0 - FEW))
+    jumps = change > max(0.0, np.quantile(change, 1.0 - MAX_LOST_SHARE))
     lead = commands.before
     at = path.effective_time(commands.time - run.edges[0] + lead) - lead
     return np.column_stack([at[:-1][jumps], at[1:][jumps]])
@@ -46,7 +46,7 @@ def find_jumps(run: ObservedRun, model: Model, lost: Array) -> Array:
     a = run.drives.of([model])[0].wrench @ model.body.M_inv.T
     elapsed = run.edges - run.edges[0]
     begin = np.maximum(np.searchsorted(elapsed, lost[:, 0]) - 2, 0)
-    end = np.searchsorted(elapsed, lost[:, 1] + SPIN)
+    end = np.searchsorted(elapsed, lost[:, 1] + SPIN_UP_SECONDS)
     spans = zip(begin, end, strict=True)
     return np.array([np.max(np.abs(a[i : j + 1] - a[i]), axis=0) for i, j in spans]).reshape(-1, 6)
 
@@ -63,7 +63,7 @@ def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
 
 def mark_unlogged(run: ObservedRun, lost: Array) -> Array:
     """Mask (n,) of innovations in gaps (g, 2), and after them until thrusters have followed."""
-    return _mark(run, lost + np.array([0.0, SPIN]))
+    return _mark(run, lost + np.array([0.0, SPIN_UP_SECONDS]))
 
 
 def _mark(run: ObservedRun, times: Array) -> Array:

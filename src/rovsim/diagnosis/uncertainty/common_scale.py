@@ -21,10 +21,11 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-INERTIA = ("added_mass", "payload")
+INERTIA_IDS = ("added_mass", "payload")
 GAIN_NAME = f"{ThrusterGain.id}.{ONE_GAIN[0]}"
-UNKNOWN = 0.03  # relative standard deviation: a scale that is known better is not reported
-GOES_ALONG = 0.5  # of a value's variance: if more comes from the scale, the value is listed
+MIN_SCALE_STD = 0.03  # relative standard deviation: a scale that is known better is not reported
+# Of a value's variance: if more comes from the scale, the value is listed.
+MIN_SCALE_SHARE = 0.5
 
 
 @dataclass(frozen=True)
@@ -86,12 +87,14 @@ def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | Non
     """
     names, std = fit.hypothesis.parameter_names, GAIN_SCALE * np.sqrt(variance)
     share = variance * along**2 / np.maximum(np.diag(fit.covariance), 1e-300)
-    affected = [n for n, s in zip(names, share, strict=True) if s > GOES_ALONG]
-    return CommonScale(float(std), tuple(affected)) if std > UNKNOWN and affected else None
+    affected = [n for n, s in zip(names, share, strict=True) if s > MIN_SCALE_SHARE]
+    return CommonScale(float(std), tuple(affected)) if std > MIN_SCALE_STD and affected else None
 
 
 def _may_share(h: Hypothesis, runs: Sequence[ObservedRun]) -> bool:
     """Whether inertia and drag were fitted, under commands whose force was not measured."""
     ids = {term.id for term in h.terms}
     logged = {run.motion.commands.kind for run in runs}
-    return bool(ids & set(INERTIA)) and bool(ids & {d.id for d in DRAG}) and "wrench" not in logged
+    return (
+        bool(ids & set(INERTIA_IDS)) and bool(ids & {d.id for d in DRAG}) and "wrench" not in logged
+    )

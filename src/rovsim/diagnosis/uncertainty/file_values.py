@@ -32,7 +32,7 @@ from scipy.stats import chi2
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
 from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_new
-from rovsim.diagnosis.structure.residual import FALSE_ALARM
+from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale, describe_scale
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 from rovsim.estimation.file_effects import FILE_EFFECT_IDS, mark_gain, share_of_file
@@ -42,8 +42,9 @@ from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.windows import score_windows
 
-TOLD = 0.7  # of the standard deviation before the runs: if more is left, they told nothing
-MISSED = 0.01  # share of the error in 2 s windows: if it grows by less, a value is not needed
+MAX_STD_RATIO = 0.7  # of the standard deviation before the runs: if more is left, they told nothing
+# Share of the error in 2 s windows: if it grows by less, a value is not needed.
+MAX_ERROR_GROWTH = 0.01
 
 
 def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
@@ -57,7 +58,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     pairs = [(type(t.effect), p) for t in h.terms for p in t.parameters]
     share = np.array([share_of_file(h.base, *one) for one in pairs])
     tested, count = new & (share > 0.0), int(np.sum(share > 0.0))
-    if not tested.any() or whole.distance(tested) > chi2.isf(FALSE_ALARM, tested.sum()):
+    if not tested.any() or whole.distance(tested) > chi2.isf(FALSE_ALARM_RATE, tested.sum()):
         return False
     prior_std, spread, one = know_file(selected, h).std[tested], share[tested], np.eye(tested.sum())
     information = solve(whole.covariance[np.ix_(tested, tested)], one)
@@ -82,7 +83,7 @@ def settle_whole_file(
         The final fit, and the common scale; None where that is known.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
-    undetermined = new & (whole.std > TOLD * know_file(selected, h).std)
+    undetermined = new & (whole.std > MAX_STD_RATIO * know_file(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
     accepted = {term.id for term in selected.terms}
     sure_gain = _name_gain(whole)
@@ -97,7 +98,7 @@ def settle_whole_file(
         error_all, error_reduced, *errors_extended = _measure(
             [h, _leave_out(whole, dropped), *trials], bank
         )
-        if error_reduced <= (1.0 + MISSED) * error_all:
+        if error_reduced <= (1.0 + MAX_ERROR_GROWTH) * error_all:
             break
         ids.add(candidates[int(np.argmin(errors_extended))])
         dropped = undetermined | ~np.isin(owner, list(ids))
@@ -114,7 +115,7 @@ def _name_gain(whole: Fit) -> set[str]:
     Replays cannot decide this: all other values, wrong by its inverse, would compensate.
     """
     gain = mark_gain(whole.hypothesis)
-    significant = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM, 1)
+    significant = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM_RATE, 1)
     return {ThrusterGain.id} if significant else set()
 
 
@@ -164,7 +165,7 @@ def _is_sure(whole: Fit, offset: Array, own: Array) -> bool:
     cross = V[np.ix_(own, gain)]
     conditional = V[np.ix_(own, own)] - cross @ cross.T / V[np.ix_(gain, gain)]
     distance = offset[own] @ solve(conditional, offset[own])
-    return bool(distance > chi2.isf(FALSE_ALARM, max(1, own.sum())))
+    return bool(distance > chi2.isf(FALSE_ALARM_RATE, max(1, own.sum())))
 
 
 def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:

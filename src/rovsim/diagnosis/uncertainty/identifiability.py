@@ -7,9 +7,10 @@ from scipy.stats import chi2
 
 from rovsim.estimation.fit import Fit
 
-ALIKE = 0.95  # correlation; each would be three times as sure if the other were known
+# Correlation; each would be three times as sure if the other were known.
+CONFUSED_CORRELATION = 0.95
 UNSURE_STDS = 2.0  # standard deviations: the value could as well be that of absence
-DOUBT = 0.01  # chance of values as far from absence
+MIN_ABSENCE_CHANCE = 0.01  # chance of values as far from absence
 
 
 def group_joint_parameters(fit: Fit) -> list[list[str]]:
@@ -19,7 +20,7 @@ def group_joint_parameters(fit: Fit) -> list[list[str]]:
     """
     names = fit.hypothesis.parameter_names
     unsure = np.flatnonzero(np.abs(fit.z_scores) < UNSURE_STDS)
-    joint = np.abs(fit.correlation[np.ix_(unsure, unsure)]) > ALIKE
+    joint = np.abs(fit.correlation[np.ix_(unsure, unsure)]) > CONFUSED_CORRELATION
     groups = [[names[k] for k in unsure[group]] for group in group_connected(joint)]
     return sorted((g for g in groups if len(g) > 1), key=lambda g: (-len(g), g))
 
@@ -43,4 +44,4 @@ def find_doubtful(fit: Fit) -> int | None:
         if columns and term.id not in joint_ids:
             chances[i] = chi2.sf(fit.distance(columns), len(columns))
     likeliest = int(np.argmax(chances))
-    return likeliest if chances[likeliest] > DOUBT else None
+    return likeliest if chances[likeliest] > MIN_ABSENCE_CHANCE else None

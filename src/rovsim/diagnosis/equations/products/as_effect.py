@@ -20,7 +20,7 @@ from rovsim.dynamics.laws.law import COEFFICIENTS, Law, Product
 from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-MARGIN = 0.5  # m outside of where the vehicle was: a centre may lie a little apart
+PLACE_MARGIN_M = 0.5  # m outside of where the vehicle was: a centre may lie a little apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class CoveredRegion:
         """Range of each coordinate of a law's place, by name, in MoCap coordinates, m."""
         edges = np.sort(self.reach * self.site.axes, axis=0)
         return {
-            n: Bounds(float(low - MARGIN), float(high + MARGIN))
+            n: Bounds(float(low - PLACE_MARGIN_M), float(high + PLACE_MARGIN_M))
             for n, low, high in zip("xyz", *edges, strict=True)
         }
 

@@ -18,8 +18,8 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.noise import RunFilters
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 
-BLOCKS = 3  # groups of time blocks, each of which is left out once by the regression
-NEGLIGIBLE = 1e-9  # m/s2 or rad/s2: acceleration of an axis by a wrench with an RMS of 1 N
+FOLDS = 3  # groups of time blocks, each of which is left out once by the regression
+MIN_ACCELERATION = 1e-9  # m/s2 or rad/s2: acceleration of an axis by a wrench with an RMS of 1 N
 
 # Evaluates terms with a coefficient of 1 along a run, as `library.push` does: (c, n, 6).
 Wrenches = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]
@@ -67,7 +67,7 @@ def project(
     """
     model, noise = fit.hypothesis.model, fit.noise
     white, derivatives = bank.whiten(fit.linearised.e, noise), bank.whiten(fit.linearised.J, noise)
-    block = number_blocks(bank.runs) % BLOCKS
+    block = number_blocks(bank.runs) % FOLDS
     size = _measure_size(terms, model, bank.runs, middle, wrenches)
     acts = np.flatnonzero(size > 0.0)
     acting_terms = tuple(terms[int(k)] for k in acts)
@@ -106,7 +106,7 @@ def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters)
     out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
     for i in np.flatnonzero(run.axes):
         acceleration = accelerations[:, :, i]
-        acts = np.flatnonzero(np.abs(acceleration).max(axis=1) > NEGLIGIBLE)
+        acts = np.flatnonzero(np.abs(acceleration).max(axis=1) > MIN_ACCELERATION)
         if len(acts):
             out[i, acts] = respond(acceleration[acts], filters.filters[i], run)
     return out

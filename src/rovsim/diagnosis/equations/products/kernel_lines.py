@@ -5,7 +5,7 @@ from typing import Iterator, Sequence
 from rovsim.core.axes import FORCE
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import FLOWS, TARGETS, WORLD_FORCES
-from rovsim.diagnosis.equations.products.variables import IN_CODE, VARIABLES
+from rovsim.diagnosis.equations.products.variables import VARIABLES, VELOCITIES_IN_CODE
 from rovsim.dynamics.laws.codes import (
     DEEP,
     DIRECTION,
@@ -62,7 +62,7 @@ def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
     if used & {SPEED, DIRECTION} or any(TARGETS[t.on].is_water for t in terms):
         axes |= {0, 1, 2}
     for i in sorted(axes):
-        yield f"{IN_CODE[i]} = at.nu_r[{i}]"
+        yield f"{VELOCITIES_IN_CODE[i]} = at.nu_r[{i}]"
     if used & {SPEED, DIRECTION}:
         yield "U = sqrt(u * u + v * v + w * w)"
     for i in sorted({(k - DOWN) % 3 for k in used if DOWN <= k < SPEED}):
@@ -97,7 +97,7 @@ def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:
         law: gives the drag coefficients of surge, sway and heave.
     """
     yield "# drag in water that moves, less that in still water, with the model's coefficients"
-    for j, (f, v) in enumerate(zip("xyz", IN_CODE[:3], strict=True)):
+    for j, (f, v) in enumerate(zip("xyz", VELOCITIES_IN_CODE[:3], strict=True)):
         parts = [f"at.R[{i}][{j}] * {w}" for i, w in enumerate(flow) if w != "0.0"]
         a, b = (float(f"{law.effect[f'{kind}{j}']:.6g}") for kind in ("linear", "quadratic"))
         yield f"a = {v} - ({' + '.join(parts)})"

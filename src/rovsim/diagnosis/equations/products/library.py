@@ -14,7 +14,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
-from rovsim.diagnosis.equations.products.variables import ODD, VARIABLES, tabulate
+from rovsim.diagnosis.equations.products.variables import LATERAL_AXES, VARIABLES, tabulate
 from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.laws.codes import (
     DEEP,
@@ -34,8 +34,9 @@ from rovsim.dynamics.laws.codes import (
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-SPACING, WIDTH = 1.0, 0.6  # m: grid of places tried, and width of each; a fit changes both
-MOST_PLACES = 60  # on the grid: those where the vehicle was most often
+# m: grid of places tried, and width of each; a fit changes both.
+GRID_SPACING_M, PLACE_WIDTH_M = 1.0, 0.6
+MAX_PLACES = 60  # on the grid: those where the vehicle was most often
 
 
 @dataclass(frozen=True)
@@ -58,10 +59,10 @@ class LawTerm:
         return self.on, self.factors
 
 
-Known = tuple[float | None, float | None]  # m north and east of a law's place, or None
+KnownPlace = tuple[float | None, float | None]  # m north and east of a law's place, or None
 
 
-def list_terms(runs: Sequence[ObservedRun], known: Known = (None, None)) -> list[LawTerm]:
+def list_terms(runs: Sequence[ObservedRun], known: KnownPlace = (None, None)) -> list[LawTerm]:
     """List all candidate terms that runs could show.
 
     Terms along axes of the world and those of a place are only listed if all axes in which the
@@ -94,7 +95,7 @@ def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
     """
     for factors in _products([int(j) for j in moving]):
         odd = sum(bool(VARIABLES[k].odd) for k in factors) % 2 == 1
-        if odd == (i in ODD) and factors not in ((i, i, i), (SIGN + i,)):
+        if odd == (i in LATERAL_AXES) and factors not in ((i, i, i), (SIGN + i,)):
             yield LawTerm(i, factors)
 
 
@@ -142,15 +143,17 @@ def _at(place: tuple[float, float]) -> Iterator[LawTerm]:
 def list_places(runs: Sequence[ObservedRun]) -> list[tuple[float, float]]:
     """List places on a grid that the vehicle visited, m north and east, the most visited first."""
     path = np.concatenate([run.motion.state[run.motion.usable, :2] for run in runs])
-    cells, count = np.unique(np.round(path / SPACING).astype(int), axis=0, return_counts=True)
-    order = np.argsort(-count, kind="stable")[:MOST_PLACES]
-    return [(float(n) * SPACING, float(e) * SPACING) for n, e in cells[order]]
+    cells, count = np.unique(
+        np.round(path / GRID_SPACING_M).astype(int), axis=0, return_counts=True
+    )
+    order = np.argsort(-count, kind="stable")[:MAX_PLACES]
+    return [(float(n) * GRID_SPACING_M, float(e) * GRID_SPACING_M) for n, e in cells[order]]
 
 
 def middle_of(runs: Sequence[ObservedRun]) -> Array:
     """Mean position (3,) in NED of all runs and the width tried first, m, as one array (4,)."""
     path = np.concatenate([run.motion.state[run.motion.usable, :3] for run in runs])
-    return np.append(np.mean(path, axis=0), WIDTH)
+    return np.append(np.mean(path, axis=0), PLACE_WIDTH_M)
 
 
 def drag_of(model: Model) -> tuple[Array, Array]:

@@ -25,13 +25,13 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.laws.law import COEFFICIENTS
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
-PLACES = {  # unit, symbol and scale of a place's numbers
+PLACE_PARAMETERS = {  # unit, symbol and scale of a place's numbers
     "x": ("m", "x_0", 0.5),
     "y": ("m", "y_0", 0.5),
     "z": ("m", "z_0", 0.5),
     "width": ("m", "s", 0.2),
 }
-KERNEL = '''\
+KERNEL_TEMPLATE = '''\
 @staticmethod
 def wrench(at, p):
     """Wrench at CO along the body's axes: ahead, starboard, down."""
@@ -76,7 +76,7 @@ class Products(Form):
             numbers.append(Number(name, unit, symbol, value, value_std, scale))
         parameters = {p.name: p for p in law.parameters}
         for name in list_moved(self.terms):
-            unit, symbol, scale = PLACES[name]
+            unit, symbol, scale = PLACE_PARAMETERS[name]
             value, low, high = (
                 law.effect[name],
                 stated(parameters[name].low),
@@ -102,7 +102,7 @@ class Products(Form):
             story,
             base="Wrench",
             imports=f"from math import {', '.join(maths)}\n\n" if maths else "",
-            method=KERNEL.format(body=indent(code, "    ")),
+            method=KERNEL_TEMPLATE.format(body=indent(code, "    ")),
             start=round_start(numbers) if placed else {},
         )
 

@@ -16,9 +16,9 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm
 
-FIRST = 6  # single terms that explain most alone: proposed in any case
-KEPT = 150  # columns in the regression: the terms that explain most alone
-RIDGE = 1e-7  # of the largest eigenvalue: smaller ones of the Gram matrix are raised to it
+SINGLE_TERMS_PROPOSED = 6  # in any case: those that explain most alone
+MAX_REGRESSION_COLUMNS = 150  # the terms that explain most alone
+MIN_EIGENVALUE_SHARE = 1e-7  # of the largest: smaller ones of the Gram matrix are raised to it
 
 
 def propose(columns: Columns, steps: int) -> list[LawTerm]:
@@ -36,7 +36,11 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
     counts = Counter(k for G in subsets for k in _follow(G, steps))
     reductions = find_alone(gram)
     order = sorted(counts, key=lambda k: (-counts[k], -reductions[k]))
-    order += [int(k) for k in np.argsort(-reductions, kind="stable")[:FIRST] if k not in counts]
+    order += [
+        int(k)
+        for k in np.argsort(-reductions, kind="stable")[:SINGLE_TERMS_PROPOSED]
+        if k not in counts
+    ]
     return [columns.terms[k] for k in order]
 
 
@@ -65,7 +69,7 @@ def _follow(G: Array, steps: int) -> list[int]:
     """
     from pysindy import FROLS
 
-    places = np.sort(np.argsort(-find_alone(G), kind="stable")[:KEPT])
+    places = np.sort(np.argsort(-find_alone(G), kind="stable")[:MAX_REGRESSION_COLUMNS])
     H, b = G[1:, 1:][np.ix_(places, places)], G[1:, 0][places]
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     X, y = _as_rows(H / np.outer(scale, scale), b / scale)
@@ -90,5 +94,5 @@ def _as_rows(H: Array, b: Array) -> tuple[Array, Array]:
         instead of one row for each reading.
     """
     values, vectors = np.linalg.eigh(H)
-    root = np.sqrt(np.maximum(values, RIDGE * values[-1]))
+    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE_SHARE * values[-1]))
     return root[:, None] * vectors.T, (vectors.T @ b) / root

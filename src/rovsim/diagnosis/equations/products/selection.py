@@ -15,7 +15,7 @@ from rovsim.diagnosis.equations.products.as_effect import (
 )
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import (
-    Known,
+    KnownPlace,
     LawTerm,
     list_terms,
     middle_of,
@@ -26,7 +26,7 @@ from rovsim.dynamics.laws.law import TERMS
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
-TRIED = 5  # terms that are fitted before one is added
+TERMS_TRIED = 5  # fitted before one is added
 
 
 def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
@@ -44,7 +44,7 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
     fit, law = fits.selection.fit(start), None
     score = fits.workspace.score(fit)
     while len(terms) < TERMS and fit.is_finite:
-        fixed_place: Known = (None, None)
+        fixed_place: KnownPlace = (None, None)
         if law is not None:
             middle, fixed_place = stay(middle, list_moved(terms), place_of(law.law, site))
         used_kinds = [t.kind for t in terms]
@@ -52,7 +52,7 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
         columns = fits.project(fit, remaining, middle)
         if len(columns.terms) < TERMS:
             break
-        kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TRIED]
+        kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TERMS_TRIED]
         laws = fit_products(fits, fit, terms, kinds, columns)
         kind = next(
             (k for k, candidate in laws.items() if fits.is_worth(candidate, fit, score)), None
@@ -88,7 +88,7 @@ def fit_products(
     return fits.fit_each({k: (Products((*terms, k)), at) for k, at in starts.items()}, fit)
 
 
-def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, Known]:
+def stay(middle: Array, moved: Sequence[str], place: Array) -> tuple[Array, KnownPlace]:
     """Keep those coordinates of a place that the law has fitted.
 
     Args:

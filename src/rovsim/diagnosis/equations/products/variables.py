@@ -14,8 +14,9 @@ from rovsim.core.axes import AXES, VELOCITY
 from rovsim.core.rotations import matrix
 from rovsim.dynamics.laws.law import SMOOTH, STILL, TILT
 
-IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")  # in kernels, where `p` are the parameters
-ODD = (1, 3, 5)  # axes that change sign when port and starboard are exchanged
+# In kernels, where `p` are the parameters.
+VELOCITIES_IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")
+LATERAL_AXES = (1, 3, 5)  # axes that change sign when port and starboard are exchanged
 
 
 @dataclass(frozen=True)
@@ -56,9 +57,9 @@ def _velocities() -> list[Variable]:
         Variable(
             kind.format(VELOCITY[i]),
             latex.format(VELOCITY[i]),
-            code.format(IN_CODE[i]),
+            code.format(VELOCITIES_IN_CODE[i]),
             *_unit_of_velocity(i, kind),
-            i in ODD and kind != "|{}|",
+            i in LATERAL_AXES and kind != "|{}|",
             meaning.format(axis),
         )
         for kind, latex, code, meaning in kinds

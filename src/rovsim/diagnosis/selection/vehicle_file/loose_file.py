@@ -31,7 +31,7 @@ from rovsim.estimation.observer.least_squares import eliminate_columns, solve
 
 # Prior odds: each of some thirty special effects is missing in one of thirty cases, whereas a value
 # of a loose file is wrong in any case.
-FILE_LR = lr_statistic_of(odds=1000.0)
+PRIOR_ODDS_LR = lr_statistic_of(odds=1000.0)
 
 
 class FileNumber(NamedTuple):
@@ -114,7 +114,7 @@ class LooseFile:
         """The least loss that justifies a term beside a loose file; 0 for a file effect."""
         if term.id in FILE_EFFECT_IDS:
             return 0.0
-        return self.workspace.penalty * term.choices + FILE_LR
+        return self.workspace.penalty * term.choices + PRIOR_ODDS_LR
 
     def explains(self, fit: Fit, name: str) -> bool:
         """Whether all of the file together explains what a special effect of a fit does."""

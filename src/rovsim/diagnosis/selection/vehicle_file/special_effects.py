@@ -23,7 +23,7 @@ from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 # Times its limit, to first order: another effect that leaves more in its place is not fitted.
-WORTH_FITTING = 30.0
+MAX_LOSS_FACTOR = 30.0
 
 
 class Alternative(NamedTuple):
@@ -79,7 +79,7 @@ def _list_alternatives(file: LooseFile, term: Term, rest: Removed) -> Iterator[A
     if term.id in FILE_EFFECT_IDS:
         return
     yield Alternative(ThrusterGain.id, rest.hypothesis, 0.0)
-    workspace, largest_loss = file.workspace, WORTH_FITTING * file.find_limit(term)
+    workspace, largest_loss = file.workspace, MAX_LOSS_FACTOR * file.find_limit(term)
     for p in find_swaps(workspace, term, rest, workspace.settings.trials):
         if p.term.id in FILE_EFFECT_IDS or rest.ss_increase - p.net_decrease > largest_loss:
             continue

@@ -2,7 +2,7 @@
 
 from rovsim.diagnosis.selection.pruning import drop_parameters, prune
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
-from rovsim.diagnosis.selection.vehicle_file.loose_file import FILE_LR, LooseFile
+from rovsim.diagnosis.selection.vehicle_file.loose_file import PRIOR_ODDS_LR, LooseFile
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.file_effects import (
     FILE_EFFECT_IDS,
@@ -30,7 +30,7 @@ def prefer_file(workspace: SearchWorkspace, current: Fit) -> Fit:
 def _is_as_good(file: LooseFile, fewer: Fit, current: Fit, term: Term) -> bool:
     """Whether more of the file makes up for a special term, as far as such a term is rare."""
     if not has_loose_file(current.hypothesis):
-        return file.workspace.score(fewer) > file.workspace.score(current) - FILE_LR
+        return file.workspace.score(fewer) > file.workspace.score(current) - PRIOR_ODDS_LR
     return file.measure_cost(fewer) - file.measure_cost(current) <= file.find_limit(term)
 
 
@@ -54,7 +54,7 @@ def suspect_loose_file(workspace: SearchWorkspace, current: Fit) -> Fit:
         return current
     loose = add_file_effects(workspace, reduced)
     # first-order predictions of many numbers together may be five times what a fit makes of them
-    likely_enough = workspace.score(loose) > workspace.score(current) - FILE_LR
+    likely_enough = workspace.score(loose) > workspace.score(current) - PRIOR_ODDS_LR
     if not (has_loose_file(loose.hypothesis) and likely_enough):
         return current
     return loose if workspace.find_relevant(loose, [reduced.hypothesis.model])[0] else current
