@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
+from rovsim.estimation.observer.autoregression import MIN_COUPLING, Stretches, fit_autoregression
 from rovsim.estimation.observer.innovations import ErrorDynamics
 
 LENGTHS = (1500, 2500)
@@ -107,6 +107,6 @@ def test_axes_are_coupled_if_each_drives_the_other_all_the_time():
     assert ErrorDynamics(damping, np.abs(damping), stiffness).coupling == 0.0
     damping[SWAY, YAW] = -0.5
     assert ErrorDynamics(damping, np.abs(damping), stiffness).coupling == pytest.approx(1.0)
-    assert COUPLED < 1.0
+    assert MIN_COUPLING < 1.0
     to_and_fro = 1.6 * np.abs(damping)
     assert ErrorDynamics(damping, to_and_fro, stiffness).coupling == 0.0

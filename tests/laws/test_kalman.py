@@ -11,9 +11,9 @@ from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
 from rovsim.estimation.observer.axis_kernels import (
-    LEAST_DRIVING,
+    MIN_DRIVING_VARIANCE,
+    MIN_NOISE_SHARE,
     POSE,
-    SOLVABLE,
     characteristic,
     filter_kept,
     misfit,
@@ -61,8 +61,10 @@ def test_the_riccati_equation_is_solved_as_by_the_general_solver(noise):
     own = AxisNoise(disturbance_std, correlation_time, measurement_std)
     f = design_filter(binned, H, AxisErrorDynamics(d), own)
     n, r = len(f.C), measurement_std**2
-    Q = SOLVABLE * r * np.eye(n)
-    Q[-1, -1] = disturbance_std**2 * (1.0 - np.exp(-2.0 * H / correlation_time)) + LEAST_DRIVING
+    Q = MIN_NOISE_SHARE * r * np.eye(n)
+    Q[-1, -1] = (
+        disturbance_std**2 * (1.0 - np.exp(-2.0 * H / correlation_time)) + MIN_DRIVING_VARIANCE
+    )
     P = solve_discrete_are(f.F.T, f.C[:, None], Q, np.array([[r]]))
     assert f.variance == pytest.approx(f.C @ P @ f.C + r, rel=1e-6)
     np.testing.assert_allclose(f.gain, P @ f.C / (f.C @ P @ f.C + r), rtol=1e-4, atol=1e-9)

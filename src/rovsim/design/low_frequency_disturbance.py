@@ -19,7 +19,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.innovations import observe
 from rovsim.estimation.observer.kalman import AxisErrorDynamics
 from rovsim.estimation.observer.noise import Noise, RunFilters, design_filters
-from rovsim.estimation.observer.observed_run import BLOCK, ObservedRun, number_blocks
+from rovsim.estimation.observer.observed_run import BLOCK_SECONDS, ObservedRun, number_blocks
 
 LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
 CHANCE = 2.0  # standard errors: less may be the short disturbance
@@ -70,7 +70,7 @@ class LowFrequencyDisturbance:
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
         """Draw accelerations (steps, 6) over steps of h s."""
-        return self.mean + self.spread * gauss_markov.draw(steps, h / BLOCK, random)
+        return self.mean + self.spread * gauss_markov.draw(steps, h / BLOCK_SECONDS, random)
 
 
 def estimate_disturbance(
@@ -91,7 +91,9 @@ def estimate_disturbance(
     blocks: list[Array] = []
     for run in runs:
         blocks += _average(run, _follow(model, run, design_filters(slow, error_dynamics, run)))
-    return LowFrequencyDisturbance.of_blocks(np.array(blocks) * model.body.free, BLOCK, noise)
+    return LowFrequencyDisturbance.of_blocks(
+        np.array(blocks) * model.body.free, BLOCK_SECONDS, noise
+    )
 
 
 def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
@@ -108,4 +110,4 @@ def _average(run: ObservedRun, push: Array) -> list[Array]:
     """Means (6,) of a push (n, 6) over blocks; those shorter than half a block are left out."""
     settled, number = push[run.settled], number_blocks([run])
     blocks = (settled[number == k] for k in np.unique(number))
-    return [block.mean(axis=0) for block in blocks if len(block) * run.period > 0.5 * BLOCK]
+    return [block.mean(axis=0) for block in blocks if len(block) * run.period > 0.5 * BLOCK_SECONDS]

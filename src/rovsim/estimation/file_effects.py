@@ -21,23 +21,23 @@ PER_AXIS = (*DRAG, AddedMass, ConstantWrench)
 ONE_GAIN = ("all",)  # of all thrusters
 FILE_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ThrusterGain)
 FILE_EFFECT_IDS = frozenset(effect.id for effect in FILE_EFFECTS)
-SEVERAL = 3  # file effects: of fewer, the rest of the file may well be right
+MIN_LOOSE_EFFECTS = 3  # file effects: of fewer, the rest of the file may well be right
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a
 # BlueROV2, both from tests in a tank (von Benzon et al. 2022, J. Mar. Sci. Eng. 10, 1898; Wu 2018,
 # Flinders University, of the lighter vehicle with six thrusters), differ by 0.41 in its logarithm,
 # RMS over the axes: 0.29 for each of them, the two builds included. Drag: theirs differs by 1.2 at
 # 0.3 m/s and 0.6 rad/s (by factors of 5 to 6 in translation): so far off is another laboratory's
 # file. That one's own is off by a third is assumed, not measured.
-SHARE = {"added_mass": 0.3, "linear_damping": 0.3, "quadratic_damping": 0.3}
+FILE_RELATIVE_STDS = {"added_mass": 0.3, "linear_damping": 0.3, "quadratic_damping": 0.3}
 # Thrusters: assumed, too; a battery of 4 cells gives 12.8 to 16.8 V, the curve is of one voltage.
-GAIN = 0.1
+GAIN_RELATIVE_STD = 0.1
 GAIN_SCALE = next(p.scale for p in ThrusterGain.parameters if p.name in ONE_GAIN)
 # What a file states as zero, the ballast and its place may be off by one of the parameter's scales.
 
 
 def has_loose_file(h: Hypothesis) -> bool:
     """Whether so many file effects were accepted that the whole file is probably a little off."""
-    return sum(term.id in FILE_EFFECT_IDS for term in h.terms) >= SEVERAL
+    return sum(term.id in FILE_EFFECT_IDS for term in h.terms) >= MIN_LOOSE_EFFECTS
 
 
 def mark_gain(h: Hypothesis) -> Array:
@@ -56,14 +56,14 @@ def penalize_gain(h: Hypothesis) -> float:
     """
     if not has_loose_file(h):
         return 0.0
-    offset = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN
+    offset = (h.x - h.absence)[mark_gain(h)] * GAIN_SCALE / GAIN_RELATIVE_STD
     return float(np.sum(cauchy(offset**2)))
 
 
 def spread_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> float:
     """How far the vehicle file may be off in one of its values, in scales of the parameter."""
     if effect.id == ThrusterGain.id:
-        return GAIN / parameter.scale
+        return GAIN_RELATIVE_STD / parameter.scale
     return max(1.0, share_of_file(base, effect, parameter))
 
 
@@ -74,7 +74,7 @@ def share_of_file(base: Model, effect: type[Effect], parameter: Parameter) -> fl
     """
     bounds = _physical_bounds(base).get(effect.id, {}).get(parameter.name)
     file_value = 0.0 if bounds is None else -bounds.low
-    return SHARE.get(effect.id, 0.0) * file_value / parameter.scale
+    return FILE_RELATIVE_STDS.get(effect.id, 0.0) * file_value / parameter.scale
 
 
 def free_terms(

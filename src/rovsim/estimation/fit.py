@@ -19,10 +19,10 @@ from rovsim.estimation.prior import Prior
 # stays near where it began.
 PRIOR_STD = 10.0
 POLISHING_ROUNDS = 2  # the noise of the first is already the right one
-LEAST_STD = 1e-12  # scales: a standard deviation that may be divided by
+MIN_STD = 1e-12  # scales: a standard deviation that may be divided by
 # Times the reduction that its derivatives predict: so much more a fit may yet reach. Of 234 that
 # were given up and went on all the same one gained more (5, of 1), and none what it had to reach.
-REACHABLE = 4.0
+MAX_REDUCTION_FACTOR = 4.0
 
 
 class GivenUp(Exception):
@@ -64,12 +64,12 @@ class Fit:
     @property
     def z_scores(self) -> Array:
         """Distance of the free parameters (k,) from changing nothing, in standard deviations."""
-        return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, LEAST_STD)
+        return (self.hypothesis.x - self.hypothesis.absence) / np.maximum(self.std, MIN_STD)
 
     @property
     def correlation(self) -> Array:
         """Correlation (k, k) of the free parameters."""
-        std = np.maximum(self.std, LEAST_STD)
+        std = np.maximum(self.std, MIN_STD)
         return np.asarray(self.covariance / np.outer(std, std))
 
     def distance(self, own: Sequence[int] | Array) -> float:
@@ -116,7 +116,7 @@ def fit_or_give_up(
 
     def monitor(seen: Linearised, predicted_reduction: float) -> None:
         two_log_likelihood = bank.fit_noise(seen.e, noise).two_log_likelihood
-        if two_log_likelihood + REACHABLE * predicted_reduction < least:
+        if two_log_likelihood + MAX_REDUCTION_FACTOR * predicted_reduction < least:
             raise GivenUp
 
     prior = Prior.around(first.hypothesis.x, prior_std)

@@ -12,7 +12,7 @@ from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.residual_source import Linearised, ResidualSource
 from rovsim.estimation.prior import Prior
 
-MOST_ITERATIONS = 12  # bounds a fit that creeps along a valley; it is judged where it stands then
+MAX_ITERATIONS = 12  # bounds a fit that creeps along a valley; it is judged where it stands then
 STEP_TOLERANCE = 0.02  # standard deviations: a smaller step changes nothing anyone could see
 # Of what the model does not explain: a wrong model need not be fitted finely.
 MISFIT_TOLERANCE = 1e-2
@@ -50,7 +50,7 @@ def levenberg_marquardt(
     if not len(start.x) or not current.is_finite:
         return current
     quadratic = problem.expand(current)
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         step, ended = _find_reducing_step(problem, quadratic, damping), False
         exact = current.hypothesis is quadratic.hypothesis and not rough
         if step is None and exact:

@@ -20,8 +20,8 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.usable_runs import select_usable
 
 # A curve measured on the bench; gain, masses and drag are known to one scale only.
-GAINS = Bounds(0.5, 2.0)
-ROUNDS = 3  # the filters suit the noise of the round before
+GAIN_BOUNDS = Bounds(0.5, 2.0)
+FIT_ROUNDS = 3  # the filters suit the noise of the round before
 
 
 def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
@@ -33,7 +33,7 @@ def refit_nominal(base: Model, train: Sequence[ObservedRun]) -> Model:
     if not usable.enough:
         return base.called(REFITTED)
     hypothesis, noise = _start(base, usable.moved), FIRST_NOISE
-    for _ in range(ROUNDS):
+    for _ in range(FIT_ROUNDS):
         result = fit(hypothesis, FilterBank.design(usable.runs, base, noise), noise)
         hypothesis, noise = _fix_at_bounds(result.hypothesis), result.noise
     return hypothesis.model.called(REFITTED)
@@ -44,7 +44,7 @@ def _start(base: Model, moved: Sequence[str]) -> Hypothesis:
     terms = free_terms(
         base, moved, [effect for effect in FILE_EFFECTS if effect is not ThrusterGain]
     )
-    gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAINS))
+    gain = Term(ThrusterGain(), ONE_GAIN, dict.fromkeys(ONE_GAIN, GAIN_BOUNDS))
     return Hypothesis(base, (*terms, gain))
 
 

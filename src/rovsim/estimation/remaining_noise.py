@@ -14,16 +14,16 @@ from rovsim.estimation.observer.noise import FIRST_NOISE, Noise
 from rovsim.estimation.observer.noise_fit import NoiseFit
 from rovsim.estimation.sensitivities import Sensitivities
 
-DRAW = 0  # seed
+SEED = 0
 MIN_READINGS = 10_000  # of fewer, several remainders are drawn, or their noise would be chance
-ROUNDS = 10  # at most, where the noise is not yet known
+MAX_NOISE_ROUNDS = 10  # at most, where the noise is not yet known
 LOG_STD_TOLERANCE = 0.1  # of the disturbance: it has converged if it changes by less
 MIN_LR_OF_OWN_NOISE = 1.0  # a hypothesis' own noise has converged if the gain is less
-SHRINK = 1e-4  # of each column's own square: parallel candidates share
+RIDGE_SHARE = 1e-4  # of each column's own square: parallel candidates share
 
 
 def fit_remaining_noise(
-    sensitivities: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = ROUNDS
+    sensitivities: Sensitivities, at: Hypothesis, noise: Noise, rounds: int = MAX_NOISE_ROUNDS
 ) -> Noise:
     """Fit the noise to what is left when a hypothesis and all candidates act together.
 
@@ -71,7 +71,7 @@ def _fit_own_noise(bank: FilterBank, model: Model, noise: Noise) -> NoiseFit:
         drift=noise.drift,
     )
     fit = NoiseFit(noise, -np.inf)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_NOISE_ROUNDS):
         bank = bank.redesign(model, fit.noise)
         refit = bank.fit_noise(bank.innovations(model), start)
         if not refit.two_log_likelihood > fit.two_log_likelihood + MIN_LR_OF_OWN_NOISE:
@@ -103,10 +103,10 @@ def draw_remainder(
     size = np.sqrt(np.diag(H))
     size[size == 0.0] = 1.0
     eigenvalues, vectors = np.linalg.eigh(H / np.outer(size, size))
-    eigenvalues = np.maximum(eigenvalues, 0.0) + SHRINK
+    eigenvalues = np.maximum(eigenvalues, 0.0) + RIDGE_SHARE
     draws = -(-MIN_READINGS // len(target))
     # by the symmetric root: unlike eigenvectors it hardly changes with a rounding
-    normals = vectors.T @ np.random.default_rng(DRAW).normal(size=(draws, len(H))).T
+    normals = vectors.T @ np.random.default_rng(SEED).normal(size=(draws, len(H))).T
     solution = vectors.T @ (white @ target / size) / eigenvalues
     coefficients = (
         vectors @ (normals / np.sqrt(eigenvalues)[:, None] - solution[:, None])

@@ -18,9 +18,9 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.residual_source import Linearised, step_back
 
-ROUNDING = 1e-6  # standard deviations: a fainter difference is that of rounded numbers
-FAINT = 0.1  # standard deviations by which a whole scale moves all readings together
-SLOPE = 0.5  # of a one-sided difference: if the central one keeps less, it is curvature
+MAX_ROUNDING_STDS = 1e-6  # standard deviations: a fainter difference is that of rounded numbers
+MIN_VISIBLE_STDS = 0.1  # standard deviations by which a whole scale moves all readings together
+MIN_CENTRAL_SHARE = 0.5  # of a one-sided difference: with less it is curvature
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,10 +142,10 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
-    faint_ones = np.flatnonzero((lengths > ROUNDING) & (lengths < FAINT)).tolist()
+    faint_ones = np.flatnonzero((lengths > MAX_ROUNDING_STDS) & (lengths < MIN_VISIBLE_STDS)).tolist()
     stepped_back = {i: step_back(seen.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
-    scale = np.where(lengths > ROUNDING, 1.0, 0.0)[:, None, None]
+    scale = np.where(lengths > MAX_ROUNDING_STDS, 1.0, 0.0)[:, None, None]
     if not seen.is_finite:
         return seen.J
     if not possible:
@@ -157,7 +157,7 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
         0.5 * (J[faint] + (e - e_back) / sizes)
         for J, e, e_back in zip(seen.J, seen.e, outputs, strict=True)
     ]
-    scale[faint, 0, 0] = measure_columns(bank, central) >= SLOPE * lengths[faint]
+    scale[faint, 0, 0] = measure_columns(bank, central) >= MIN_CENTRAL_SHARE * lengths[faint]
     return [scale * J for J in seen.J]
 
 

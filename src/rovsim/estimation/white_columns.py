@@ -22,9 +22,9 @@ from rovsim.estimation.sensitivities import Sensitivities, relinearise_candidate
 
 # Of the square of a derivative: if one has turned by more, the accepted effects changed columns.
 # Chosen on a marker 0.1 m beside CO, which turned its own by 0.2: one drag passed for another.
-CHANGED_SQUARE = 0.1
+MAX_TURNED_SQUARE = 0.1
 # Of a column's own square, in six digits: what free parameters leave less of is theirs.
-EXPLAINED = 1e-6
+MIN_UNEXPLAINED_SHARE = 1e-6
 
 
 class _White(NamedTuple):
@@ -93,7 +93,7 @@ class WhiteColumns:
         pairs = [(k, by_name[name]) for k, name in enumerate(names) if name in by_name]
         rows = self.bank.flatten([J.astype(np.float32) for J in seen.J], self.noise)
         columns = self._whiten(h).columns
-        return any(_turned(rows[k], columns[j]) > CHANGED_SQUARE for k, j in pairs)
+        return any(_turned(rows[k], columns[j]) > MAX_TURNED_SQUARE for k, j in pairs)
 
     def _whiten(self, at: Hypothesis) -> _White:
         loops = _list_loops(at.model)
@@ -125,7 +125,9 @@ class WhiteColumns:
         G = np.block([[gram(white_rows), cross], [cross.T, gram_columns]])
         places = [0, *range(len(white_rows), len(G))]
         projected = project_out(G, range(1, len(white_rows)))[np.ix_(places, places)]
-        explained = 1 + np.flatnonzero(np.diag(projected)[1:] < EXPLAINED * np.diag(gram_columns))
+        explained = 1 + np.flatnonzero(
+            np.diag(projected)[1:] < MIN_UNEXPLAINED_SHARE * np.diag(gram_columns)
+        )
         projected[explained], projected[:, explained] = 0.0, 0.0
         projected.setflags(write=False)
         return projected

@@ -13,7 +13,12 @@ from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Parameter
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
-from rovsim.estimation.file_effects import GAIN, ONE_GAIN, SHARE, spread_of_file
+from rovsim.estimation.file_effects import (
+    FILE_RELATIVE_STDS,
+    GAIN_RELATIVE_STD,
+    ONE_GAIN,
+    spread_of_file,
+)
 from rovsim.estimation.observer.hypothesis import Term
 
 MAX_ERROR_STDS = 10.0  # usual relative errors: a factor of 20 of drag or added mass, 2.7 of thrust
@@ -44,7 +49,7 @@ def _tell_gain(base: Model, term: Term) -> Iterator[str]:
     """Yield the common gain of the thrusters, if it is absurdly far from 1 either way."""
     for name in ONE_GAIN if term.id == ThrusterGain.id else ():
         gain = term.effect[name]  # negative: reversed thrusters, which is another fault
-        if abs(np.log(max(abs(gain), 1e-12))) > MAX_ERROR_STDS * GAIN:
+        if abs(np.log(max(abs(gain), 1e-12))) > MAX_ERROR_STDS * GAIN_RELATIVE_STD:
             yield f"{term.id}.{name} is {minus(f'{gain:.2g}')}"
 
 
@@ -62,6 +67,6 @@ def _tell_stated(base: Model, term: Term) -> Iterator[str]:
 
 def _highest(base: Model, term: Term, parameter: Parameter) -> float:
     """Highest value of a parameter, in its unit, that is not absurd."""
-    share = SHARE[term.id]
+    share = FILE_RELATIVE_STDS[term.id]
     spread = spread_of_file(base, type(term.effect), parameter) * parameter.scale
     return spread / share * float(np.exp(MAX_ERROR_STDS * share))

@@ -13,10 +13,10 @@ import numpy as np
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.observed_run import BLOCK, number_blocks
+from rovsim.estimation.observer.observed_run import BLOCK_SECONDS, number_blocks
 from rovsim.estimation.observer.sandwich import estimate_covariance
 
-CLUSTER_SECONDS = (BLOCK, 3.0 * BLOCK)  # s: how long such pushes and such drifts last
+CLUSTER_SECONDS = (BLOCK_SECONDS, 3.0 * BLOCK_SECONDS)  # how long such pushes and drifts last
 MIN_BLOCKS_PER_PARAMETER = 3  # fewer blocks do not tell how much blocks differ
 
 

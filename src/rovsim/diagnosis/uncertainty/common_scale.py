@@ -16,7 +16,7 @@ from numpy import ndarray as Array
 
 from rovsim.diagnosis.uncertainty.nuisance_parameters import free_nuisance
 from rovsim.dynamics.effects.thrusters import ThrusterGain
-from rovsim.estimation.file_effects import DRAG, GAIN, GAIN_SCALE, ONE_GAIN
+from rovsim.estimation.file_effects import DRAG, GAIN_RELATIVE_STD, GAIN_SCALE, ONE_GAIN
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -74,7 +74,7 @@ def _free_gain(fit: Fit, runs: Sequence[ObservedRun]) -> tuple[float, Array]:
     if nuisance is None:
         return 0.0, np.zeros(len(fit.std))
     information = max(float(nuisance.information[0, 0]), 0.0)
-    return 1.0 / (information + (GAIN_SCALE / GAIN) ** 2), nuisance.along[:, 0]
+    return 1.0 / (information + (GAIN_SCALE / GAIN_RELATIVE_STD) ** 2), nuisance.along[:, 0]
 
 
 def describe_scale(fit: Fit, variance: float, along: Array) -> CommonScale | None:

@@ -17,12 +17,12 @@ from numpy import ndarray as Array
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 # Readings before the present one, in growing groups whose sum counts: about a second at 20 Hz.
-GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))
+LAG_GROUPS = ((1, 1), (2, 2), (3, 4), (5, 8), (9, 16))
 # Longitudinal and lateral, which a plane of symmetry keeps apart.
 SUBSYSTEMS = ((0, 2, 4), (1, 3, 5))
 # 1/s: two axes that always drive each other this fast do so within what the filters, whose
 # bandwidth is about 1 Hz, take for a disturbance. A torpedo's sway and yaw: 0.6.
-COUPLED = 0.4
+MIN_COUPLING = 0.4
 
 
 class Stretches(NamedTuple):
@@ -81,7 +81,7 @@ def fit_autoregression(
         draws: innovations (6, n), whitened axis by axis; each might be the true ones.
         stretches: where they begin, and which are there.
     """
-    weights, spread, lr_statistic = np.zeros((6, 6, len(GROUPS))), np.ones(6), 0.0
+    weights, spread, lr_statistic = np.zeros((6, 6, len(LAG_GROUPS))), np.ones(6), 0.0
     for axes in SUBSYSTEMS:
         past = [np.concatenate([_past(z[j], stretches.first) for j in axes]) for z in draws]
         for i in axes:
@@ -105,6 +105,6 @@ def _past(z: Array, first: Array) -> Array:
     return np.stack(
         [
             total[..., np.maximum(index - a + 1, first)] - total[..., np.maximum(index - b, first)]
-            for a, b in GROUPS
+            for a, b in LAG_GROUPS
         ]
     )

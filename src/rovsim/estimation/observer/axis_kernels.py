@@ -13,11 +13,11 @@ import numpy as np
 from numba import njit
 
 POSE, BIN_MEAN, SUM = 0, 1, 2  # what is read of an axis
-MOST_DOUBLINGS = 60  # of the time that is over: far more than any filter takes to settle
-CONVERGED = 1e-13  # of what there is, that a doubling still adds
+MAX_DOUBLINGS = 60  # of the time that is over: far more than any filter takes to settle
+DOUBLING_TOLERANCE = 1e-13  # of what there is, that a doubling still adds
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
-SOLVABLE, LEAST_DRIVING = 1e-6, 1e-12
-READ_AS_IS = 1e-4  # of the noise that adds up
+MIN_NOISE_SHARE, MIN_DRIVING_VARIANCE = 1e-6, 1e-12
+READING_NOISE_SHARE = 1e-4  # of the noise that adds up
 # A division by zero gives what is not finite: it ends no search among noises that cannot be.
 FROM_PYTHON: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
 # Called by compiled functions alone; what makes one callable from outside takes as long to compile.
@@ -125,14 +125,14 @@ def solve_steady_state(
         C[1] = -0.5 * h  # the mean over a bin is the velocity at its middle
     else:
         put_rows(F, moved, 2)
-    add_to_diagonal(Q, SOLVABLE * r)
-    Q[disturbed, disturbed] = disturbance_std**2 * (1.0 - phi**2) + LEAST_DRIVING
+    add_to_diagonal(Q, MIN_NOISE_SHARE * r)
+    Q[disturbed, disturbed] = disturbance_std**2 * (1.0 - phi**2) + MIN_DRIVING_VARIANCE
     if n == 4:
         F[3, 3], C[3] = slow, 1.0
         Q[3, 3] = bias_std**2 * (1.0 - slow**2)
         noise_denominator[1], noise_denominator[2] = -phi - slow, phi * slow
     if kind == SUM:
-        Q[0, 0], r = r, READ_AS_IS * r
+        Q[0, 0], r = r, READING_NOISE_SHARE * r
     P = solve_riccati(F, C, Q, r)
     gain, variance = np.zeros(n), r
     for i in range(n):
@@ -161,7 +161,7 @@ def solve_riccati(F, C, Q, r):
     for i in range(n):
         for j in range(n):
             G[i, j] = C[i] * C[j] / r
-    for _ in range(MOST_DOUBLINGS):
+    for _ in range(MAX_DOUBLINGS):
         W = multiply(G, H)
         add_to_diagonal(W, 1.0)
         W = invert(W)
@@ -169,7 +169,7 @@ def solve_riccati(F, C, Q, r):
         increment, size = increase(H, multiply(multiply(across, H), multiply(W, A)))
         increase(G, multiply(AW, multiply(G, across)))
         A = multiply(AW, A)
-        if increment <= CONVERGED * size:
+        if increment <= DOUBLING_TOLERANCE * size:
             break
     return H
 

@@ -15,7 +15,12 @@ from scipy.optimize import minimize_scalar
 
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.model import Model
-from rovsim.estimation.observer.camera_noise import KINDS, NoiseKind, NoiseSpectrum, measure_spectra
+from rovsim.estimation.observer.camera_noise import (
+    NOISE_KINDS,
+    NoiseKind,
+    NoiseSpectrum,
+    measure_spectra,
+)
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 MIN_LR_OF_FILTER = 30.0  # odds of a million to one, for no effect depends on it
@@ -78,13 +83,13 @@ def fit_smoothing(spectra: Sequence[NoiseSpectrum]) -> Smoothing | None:
     """The filter that the noise in these spectra went through; None where they show none."""
     highest = MAX_CUTOFF_SHARE * min(float(s.frequency[-1]) for s in spectra)
     cutoffs = np.geomspace(MIN_CUTOFF_HZ, highest, CUTOFFS_TRIED)
-    costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in cutoffs] for kind in KINDS])
+    costs = np.array([[_cost(spectra, kind, cutoff) for cutoff in cutoffs] for kind in NOISE_KINDS])
     minima = [
         _refine(spectra, kind, cutoffs, kind_costs)
-        for kind, kind_costs in zip(KINDS, costs, strict=True)
+        for kind, kind_costs in zip(NOISE_KINDS, costs, strict=True)
     ]
     least_cost, cutoff, std = min(minima)
-    unfiltered = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in KINDS)
+    unfiltered = min(_cost(spectra, kind, None) + _penalty(spectra, kind) for kind in NOISE_KINDS)
     lr_statistic = unfiltered - least_cost
     # A cutoff far below the band that is examined would only make the motion itself fall off more
     # steeply, as it also does where a vehicle tumbles. The cutoff is then hardly determined.

@@ -19,18 +19,20 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.whittle import least_misfit
 
-LOWEST = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
-SEGMENT = 2.56  # s of each periodogram
+MIN_FREQUENCY_HZ = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
+SEGMENT_SECONDS = 2.56  # s of each periodogram
 TOP_SHARE = 0.96  # of the highest frequency: Welch's estimate has half the freedom there
-FEWEST = 8  # frequencies, to tell a shape
+MIN_FREQUENCIES = 8  # frequencies, to tell a shape
 # What is left of the motion falls off at least as fast as a force without memory moves a mass, or
 # as one that thrusters lag.
-STEEP = (4.0, 6.0)
+MOTION_EXPONENTS = (4.0, 6.0)
 # s, of errors that last: markers that merge, another choice of cameras. The longest of them fall
-# off like a random walk above `LOWEST`; the shortest are over within two frames of 100 Hz.
-MEMORIES = (3600.0, 0.2, 0.06, 0.02)
-NOTHING, MUCH = 1e-8, 1e8  # power of a part beside the white noise
-ROUNDED = 0.03  # the same at most, of poses written in units of up to 0.6 of the noise: 0.6^2 / 12
+# off like a random walk above `MIN_FREQUENCY_HZ`; the shortest are over within two frames of
+# 100 Hz.
+ERROR_MEMORY_SECONDS = (3600.0, 0.2, 0.06, 0.02)
+MIN_POWER_RATIO, MAX_POWER_RATIO = 1e-8, 1e8  # power of a part beside the white noise
+# The same at most, of poses written in units of up to 0.6 of the noise: 0.6^2 / 12.
+MAX_ROUNDING_RATIO = 0.03
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,9 @@ class NoiseKind:
     bridged: bool = False
 
 
-KINDS = [
-    NoiseKind(memory, bridged) for memory, bridged in product((None, *MEMORIES), (False, True))
+NOISE_KINDS = [
+    NoiseKind(memory, bridged)
+    for memory, bridged in product((None, *ERROR_MEMORY_SECONDS), (False, True))
 ]
 
 
@@ -77,17 +80,19 @@ class NoiseSpectrum:
 
     def cost(self, kind: NoiseKind, cutoff: float | None) -> float:
         """Minus twice the log likelihood; `cutoff` Hz of the software's filter, None: none."""
-        shapes = [(self.frequency / self.frequency[0]) ** -exponent for exponent in STEEP]
+        shapes = [
+            (self.frequency / self.frequency[0]) ** -exponent for exponent in MOTION_EXPONENTS
+        ]
         if kind.memory is not None:
             shapes.append(self._lasting(kind.memory))
         if kind.bridged:  # x in 0 .. 1 of the way: 1 - x (1 - x) (2 - 2 cos), a share of this
             shapes.append(0.5 * (1.0 + np.cos(2.0 * np.pi * self.frequency * self.period)))
-        white, largest = np.ones_like(self.frequency), [MUCH] * len(shapes)
+        white, largest = np.ones_like(self.frequency), [MAX_POWER_RATIO] * len(shapes)
         if cutoff is not None:
             smoothed = self._response(cutoff)
             shapes = [*(smoothed * shape for shape in shapes), white]
-            white, largest = smoothed, [*largest, ROUNDED]
-        low, high = np.full(len(shapes), np.log(NOTHING)), np.log(largest)
+            white, largest = smoothed, [*largest, MAX_ROUNDING_RATIO]
+        low, high = np.full(len(shapes), np.log(MIN_POWER_RATIO)), np.log(largest)
         return 2.0 * self.count * least_misfit(self.power, white, np.array(shapes), low, high)
 
     def penalty(self, kind: NoiseKind) -> float:
@@ -117,7 +122,7 @@ def _measure(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
     """Of a run's frames, from its longest stretch; None where that is too short."""
     motion, period = run.motion, run.frame_period
     a, b = max(motion.segments(), key=lambda one: one[1] - one[0], default=(0, 0))
-    if (b - a) * period < 2.0 * SEGMENT or 0.5 / period < 2.0 * LOWEST:
+    if (b - a) * period < 2.0 * SEGMENT_SECONDS or 0.5 / period < 2.0 * MIN_FREQUENCY_HZ:
         return None
     eta = base.mocap_view.sharpen(run.frames[a:b, :7], period)
     differences = np.diff(eta, 2, axis=0)  # what the vehicle does is slow, so little of it stays
@@ -127,11 +132,11 @@ def _measure(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
 
 def describe_noise(channels: Array, period: float) -> NoiseSpectrum | None:
     """Of the second differences (6, n) of a pose; None where frequencies are too few."""
-    frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT / period))
+    frequency, power = welch(channels, 1.0 / period, nperseg=round(SEGMENT_SECONDS / period))
     differenced = np.abs(1.0 - np.exp(-2j * np.pi * frequency * period)) ** 4
-    band = (frequency >= LOWEST) & (frequency < TOP_SHARE * frequency[-1])
-    if band.sum() < FEWEST:
+    band = (frequency >= MIN_FREQUENCY_HZ) & (frequency < TOP_SHARE * frequency[-1])
+    if band.sum() < MIN_FREQUENCIES:
         return None
     # half overlapping Hann windows: 0.95 of an independent one each (Welch 1967, eq. 12 f.)
-    count = 0.95 * (2.0 * channels.shape[1] * period / SEGMENT - 1.0)
+    count = 0.95 * (2.0 * channels.shape[1] * period / SEGMENT_SECONDS - 1.0)
     return NoiseSpectrum(power[:, band] / differenced[band], frequency[band], count, period)

@@ -18,13 +18,13 @@ from rovsim.estimation.observer.random_walk import RandomWalk, WalkRate, fit_com
 from rovsim.simulation.measured_states import undo_mocap_view
 
 CURRENT_STEP = 0.05  # m/s, a usual current
-USUAL_RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
+TYPICAL_RATE = 0.005  # m/s per sqrt(s), a usual drift, or N per sqrt(s)
 # Likelihood-ratio statistic. Where no current wandered, physics outside of the catalogue reached 4
 # in eight of nine development cases, and a jet in one corner 11 (a force along the tank 330);
 # where one did, it was thousands.
 MIN_LR_OF_DRIFT = 25.0
 # Along the way of a vehicle: an eddy a sixth as wide as the tank is seen.
-HALF_WAVES = 6
+MAX_HALF_WAVES = 6
 MIN_EXTENT = 1e-9  # m
 # Against a force that wanders, along the tank or along the body.
 MIN_LR_MARGIN = lr_statistic_of(odds=1000.0)
@@ -168,9 +168,9 @@ class MovingWater:
     ) -> Array:
         """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
         unit_pushes = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
-        accelerations = np.concatenate([bend[None], bend + USUAL_RATE * unit_pushes])
+        accelerations = np.concatenate([bend[None], bend + TYPICAL_RATE * unit_pushes])
         e = observe([self.model] * len(accelerations), run, filters, accelerations)
-        return np.asarray((e[0] - e[1:]) / USUAL_RATE)  # what a model does not foresee
+        return np.asarray((e[0] - e[1:]) / TYPICAL_RATE)  # what a model does not foresee
 
 
 def _places(runs: Sequence[ObservedRun]) -> list[Array]:
@@ -189,7 +189,7 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
     """Half waves (k, n) along both sides of where the vehicles were, and the depth."""
     places = _places(runs)
     low, high = (f(np.hstack(places), axis=1)[:, None] for f in (np.min, np.max))
-    waves = [(k, j) for k in range(HALF_WAVES + 1) for j in range(HALF_WAVES + 1 - k)]
+    waves = [(k, j) for k in range(MAX_HALF_WAVES + 1) for j in range(MAX_HALF_WAVES + 1 - k)]
 
     def vary(place: Array) -> Array:
         x, y, z = (place - low) / np.maximum(high - low, MIN_EXTENT)

@@ -13,7 +13,7 @@ from numpy import ndarray as Array
 from rovsim.core.progress import step
 from rovsim.core.threads import map_on_cores
 from rovsim.dynamics.model import Model
-from rovsim.estimation.observer.autoregression import COUPLED, Stretches, fit_autoregression
+from rovsim.estimation.observer.autoregression import MIN_COUPLING, Stretches, fit_autoregression
 from rovsim.estimation.observer.drifting_current import DriftFit, MovingWater
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.innovations import estimate_errors, observe
@@ -32,7 +32,7 @@ from rovsim.estimation.observer.noise_fit import NoiseFit, fit_noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised, evaluate_possible, linearise
 
-ROUNDS = 3  # at most: by then a wandering current and the disturbance are told apart
+MAX_NOISE_ROUNDS = 3  # at most: by then a wandering current and the disturbance are told apart
 RATE_TOLERANCE = 0.05  # of a drift, which its standard deviation exceeds
 
 
@@ -62,7 +62,7 @@ class FilterBank:
         """Design the filters of these runs for one model and one noise."""
         errors = estimate_errors(base, runs)
         run_filters = tuple(design_filters(noise.white, errors.by_axis, w) for w in runs)
-        coupled, paths = errors.coupling > COUPLED, noise.drift.paths if noise.drift else ()
+        coupled, paths = errors.coupling > MIN_COUPLING, noise.drift.paths if noise.drift else ()
         return FilterBank(tuple(runs), errors.by_axis, run_filters, base, coupled, paths)
 
     def redesign(self, model: Model, noise: Noise) -> "FilterBank":
@@ -184,7 +184,7 @@ class FilterBank:
 
     def _fit_drift(self, e: Sequence[Array], fit: NoiseFit) -> NoiseFit:
         """Add a wandering current to the noise, if the innovations show one for sure."""
-        for _ in range(ROUNDS):
+        for _ in range(MAX_NOISE_ROUNDS):
             drift, previous = self.measure_drift(self._draws(e)[0], fit.noise), fit.noise.drift
             current = DriftingCurrent(drift.rate.value) if drift.sure else None
             if current is None and previous is None:

@@ -17,8 +17,8 @@ from rovsim.simulation.measured_states import true_states, undo_mocap_view
 
 # Of the root mean square: a torpedo's sway drives its yaw at 0.98 of it, axes of vehicles that go
 # to and fro drive each other at 0.6 of it at most.
-LASTING = 0.9
-NUDGE = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
+MIN_COUPLING_SHARE = 0.9
+PERTURBATION = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 
 
 def observe(
@@ -92,7 +92,9 @@ class ErrorDynamics(NamedTuple):
     @property
     def coupling(self) -> float:
         """The fastest rate at which two axes constantly drive each other, 1/s."""
-        significant = np.where(np.abs(self.damping) > LASTING * self.largest, self.damping, 0.0)
+        significant = np.where(
+            np.abs(self.damping) > MIN_COUPLING_SHARE * self.largest, self.damping, 0.0
+        )
         products = significant * significant.T
         return float(np.sqrt(np.max(np.abs(products - np.diag(np.diag(products))))))
 
@@ -105,7 +107,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
         states = _nudge(states[index], level=bool(run.pose_measured[4]))
         accelerations = accelerate(model, run, index, states)
-        slopes.append((accelerations[0] - accelerations[1:]) / NUDGE)
+        slopes.append((accelerations[0] - accelerations[1:]) / PERTURBATION)
     slope = np.concatenate(slopes, axis=1)
     mean, largest = np.mean(slope, axis=1), np.sqrt(np.mean(slope[:6] ** 2, axis=1))
     return ErrorDynamics(mean[:6].T, largest.T, mean[6:].T)
@@ -122,10 +124,10 @@ def _nudge(states: Array, level: bool) -> Array:
     zero = np.zeros(len(q))
     axes = rotations.from_euler(zero, zero, rotations.to_euler(q)[:, 2]) if level else q
     for i, unit in enumerate(np.eye(3)):
-        perturbed[1 + i, :, 7 + i] += NUDGE
-        perturbed[4 + i, :, 10 + i] += NUDGE
-        perturbed[7 + i, :, :3] += rotations.rotate(axes, NUDGE * np.tile(unit, (len(q), 1)))
-        perturbed[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(NUDGE * unit))
+        perturbed[1 + i, :, 7 + i] += PERTURBATION
+        perturbed[4 + i, :, 10 + i] += PERTURBATION
+        perturbed[7 + i, :, :3] += rotations.rotate(axes, PERTURBATION * np.tile(unit, (len(q), 1)))
+        perturbed[10 + i, :, 3:7] = rotations.multiply(q, rotations.exp(PERTURBATION * unit))
     return perturbed
 
 

@@ -27,9 +27,9 @@ CORRELATION_TIME_LOG_STD = 0.7  # of log T: a factor of two either way
 
 # A slow error of calibrated cameras is no larger than their noise from frame to frame.
 BIAS_TIME_LOG_STD = 0.7  # of its correlation time: a factor of two either way
-FAINTEST = 1e-12  # of the variance at first: an axis on which nothing at all happens
+MIN_VARIANCE = 1e-12  # of the variance at first: an axis on which nothing at all happens
 # Of the descent, in the logarithms of a noise and in its log likelihood: no choice hangs on less.
-FIRST_STEP, CLOSE, FLAT, MOST_STEPS = 0.3, 0.01, 0.02, 300
+INITIAL_STEP, LOG_NOISE_TOLERANCE, LOG_LIKELIHOOD_TOLERANCE, MAX_STEPS = 0.3, 0.01, 0.02, 300
 MIN_LR_OF_BIAS = 12.0  # two more numbers, and sure of it on six axes
 
 
@@ -137,7 +137,7 @@ class _AxisInnovations:
         that of the noise.
         """
         squares, logs, count = self._misfit(noise)
-        size = max(squares / count, FAINTEST)
+        size = max(squares / count, MIN_VARIANCE)
         cost = _finite(0.5 * (squares / size + count * np.log(size) + logs) / self.draws)
         by = float(np.sqrt(size))
         disturbance_std, measurement_std = by * noise.disturbance_std, by * noise.measurement_std
@@ -242,12 +242,17 @@ def _finite(cost: float) -> float:
 
 def _descend(cost: Callable[[Array], float], first: Array) -> tuple[Array, float]:
     """Minimise a cost from a first point (k,): the best point, and its cost."""
-    simplex = first + np.vstack([np.zeros(len(first)), FIRST_STEP * np.eye(len(first))])
+    simplex = first + np.vstack([np.zeros(len(first)), INITIAL_STEP * np.eye(len(first))])
     minimum = minimize(
         cost,
         first,
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": CLOSE, "fatol": FLAT, "maxiter": MOST_STEPS},
+        options={
+            "initial_simplex": simplex,
+            "xatol": LOG_NOISE_TOLERANCE,
+            "fatol": LOG_LIKELIHOOD_TOLERANCE,
+            "maxiter": MAX_STEPS,
+        },
     )
     return minimum.x, float(minimum.fun)
 

@@ -23,12 +23,12 @@ from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.step_grid import StepGrid
 
 # The observer forgets where it started within a second: its bandwidth is about 1 Hz (noise.py).
-SETTLING = 1.0  # s
+SETTLING_SECONDS = 1.0  # s
 # A velocity that nobody reads forgets its start by drag alone: within three times mass / drag, some
 # 3 s for a small vehicle at usual speeds.
-SETTLING_UNREAD = 9.0  # s
+UNREAD_SETTLING_SECONDS = 9.0  # s
 MIN_STRETCH_SECONDS = 2.0  # s; a shorter stretch would be mostly settling
-BLOCK = 10.0  # s, many times the memory of turbulence, so that blocks are independent
+BLOCK_SECONDS = 10.0  # s, many times the memory of turbulence, so that blocks are independent
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +207,7 @@ class ObservedRun(Steps):
     def settled(self) -> Array:
         """Mask (n,) of the innovations that count: from when the filters have settled."""
         mask = np.zeros(len(self.time), bool)
-        settling = SETTLING if self.axes[self.free_axes].all() else SETTLING_UNREAD
+        settling = SETTLING_SECONDS if self.axes[self.free_axes].all() else UNREAD_SETTLING_SECONDS
         for (begin, end), (a, _) in zip(self.innovation_segments, self.segments, strict=True):
             mask[begin:end] = self.time[begin:end] > self.reading_times[a] + settling
         return mask
@@ -255,7 +255,7 @@ def _lasts(motion: Motion, a: int, b: int) -> bool:
     return bool((b - a) * time_step(motion.time) > MIN_STRETCH_SECONDS)
 
 
-def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK) -> Array:
+def number_blocks(runs: Sequence[ObservedRun], seconds: float = BLOCK_SECONDS) -> Array:
     """Number (n,) of the block of time of each settled innovation, counted over all runs.
 
     A block lasts `seconds`, and belongs to one run.

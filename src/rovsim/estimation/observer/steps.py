@@ -12,7 +12,7 @@ from rovsim.simulation.step_grid import StepGrid
 
 # Frames are read in groups of about this length: what a vehicle of this size does is slower than
 # 5 Hz, and so are its propellers (5 / s, docs/simulator.md).
-GROUP = 0.05  # s
+GROUP_SECONDS = 0.05  # s
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ def _step_bins(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
     """Every bin is a reading: the pose where it ends, and the mean velocity over it."""
     begins = np.round((motion.time - motion.time[0]) / grid.h).astype(int)
     frames = np.hstack([motion.eta, np.vstack([np.zeros(6), motion.nu[:-1]])])
-    steps, ends = _divide(begins, GROUP / grid.h)
+    steps, ends = _divide(begins, GROUP_SECONDS / grid.h)
     edges = motion.time[0] + grid.h * steps
     return Steps(edges, ends, frames, 1, ends, edges, np.diff(steps))
 
@@ -65,9 +65,9 @@ def _step_samples(stage: Stage, motion: Motion, grid: StepGrid) -> Steps:
     """A group of frames is a reading, and one step leads from it to the next."""
     assert isinstance(stage, Poses)
     count, period = len(motion.time), time_step(motion.time)
-    group = 2 * round(0.5 * (GROUP / period - 1.0)) + 1 if period < GROUP else 1
+    group = 2 * round(0.5 * (GROUP_SECONDS / period - 1.0)) + 1 if period < GROUP_SECONDS else 1
     readings = count // group
-    steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP / grid.h)
+    steps, ends = _divide(np.arange(readings) * group * grid.stride, GROUP_SECONDS / grid.h)
     edges = motion.time[0] + group // 2 * period + grid.h * steps
     frames = np.hstack([stage.eta, np.zeros((count, 6))])
     at = np.arange(count) * grid.stride

@@ -24,10 +24,10 @@ from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.results.diagnosis import LookedAt
 from rovsim.simulation.settings import ReplaySettings
 
-DRIVES = 1 << 29  # bytes of drives of all runs together: fifty of each in four minutes of runs
+DRIVE_CACHE_BYTES = 1 << 29  # of all runs together: fifty of each in four minutes of runs
 PART_SECONDS = 60.0  # a fifth of it is kept apart for validation, which takes windows of 2 s
 LEAD_SECONDS = 5.0  # of commands before a part: propellers remember half a second
-SAMPLED = 0.2  # s between the samples that parts are compared by: half a period of 2.5 Hz
+SAMPLE_STEP_SECONDS = 0.2  # of the samples that parts are compared by: half a period of 2.5 Hz
 MIN_INFORMATION_SHARE = 1e-6  # of what all parts tell: a direction that hardly any of them shows
 
 
@@ -71,7 +71,7 @@ def prepare_train(
     if total > most:
         parts = _choose(parts, most)
         places = [(part.run, part.at) for part in parts]
-    drives: Recent = Recent(DRIVES)
+    drives: Recent = Recent(DRIVE_CACHE_BYTES)
     observed = [_prepare(runs, *place, settings, catalogue, free, drives) for place in places]
     return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total)
 
@@ -123,7 +123,7 @@ def _divide(motion: Motion) -> Iterator[_Part]:
     ends = np.linspace(motion.time[0], motion.end, max(1, round(duration / PART_SECONDS)) + 1)
     places = np.searchsorted(motion.time, ends)
     places[-1] = len(motion.time)
-    step = max(1, round(SAMPLED / float(np.median(np.diff(motion.time)))))
+    step = max(1, round(SAMPLE_STEP_SECONDS / float(np.median(np.diff(motion.time)))))
     for a, b in pairwise(places.tolist()):
         at = slice(a, b, step)
         columns = _list_acting(motion, at)[motion.usable[at]]

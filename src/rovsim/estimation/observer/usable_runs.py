@@ -11,7 +11,7 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.measurement.quality.excitation import EXCITED
 from rovsim.measurement.signals.measured import find_measured
 
-SHORTEST = 10.0  # s of settled readings; less does not tell noise from physics
+MIN_SETTLED_SECONDS = 10.0  # s of settled readings; less does not tell noise from physics
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class UsableRuns:
     @property
     def enough(self) -> bool:
         """Whether anything can be judged."""
-        return self.seconds >= SHORTEST and len(self.moved) > 0
+        return self.seconds >= MIN_SETTLED_SECONDS and len(self.moved) > 0
 
     @property
     def moved(self) -> tuple[str, ...]:

@@ -12,10 +12,10 @@ from numba import njit
 
 from rovsim.estimation.observer.axis_kernels import FROM_PYTHON, INTERNAL
 
-MOST_STEPS = 200  # bounds what does not converge
+MAX_STEPS = 200  # bounds what does not converge
 COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still gains
 # Much at first: from all parts alike, a whole step puts some at their ends, and few come back.
-FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 100.0, 0.2, 5.0, 1e12
+INITIAL_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE, MAX_DAMPING = 100.0, 0.2, 5.0, 1e12
 
 
 @njit(**INTERNAL)
@@ -81,9 +81,9 @@ def evaluate(x, power, white, others):
 @njit(**INTERNAL)
 def least_cost(power, white, others, low, high):
     """The least cost over log sizes between low and high (k,), of one periodogram (f,)."""
-    x, damping = 0.5 * (low + high), FIRST_DAMPING
+    x, damping = 0.5 * (low + high), INITIAL_DAMPING
     cost, slope, curvature = evaluate(x, power, white, others)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         free = ((slope < 0.0) & (x < high)) | ((slope > 0.0) & (x > low))
         step = take_step(slope, curvature, damping, free)
         new = np.minimum(np.maximum(x + step, low), high)
@@ -91,13 +91,13 @@ def least_cost(power, white, others, low, high):
         if new_cost <= cost:
             gained = cost - new_cost
             x, cost, slope, curvature = new, new_cost, new_slope, new_curvature
-            damping *= LESS
+            damping *= DAMPING_DECREASE
             if gained < COST_TOLERANCE * len(power):
                 break
-        elif damping > MOST_DAMPING:
+        elif damping > MAX_DAMPING:
             break
         else:
-            damping *= MORE
+            damping *= DAMPING_INCREASE
     return cost
 
 

@@ -9,10 +9,10 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
 from rovsim.estimation.file_effects import (
     FILE_EFFECTS,
-    GAIN,
+    GAIN_RELATIVE_STD,
     GAIN_SCALE,
+    MIN_LOOSE_EFFECTS,
     ONE_GAIN,
-    SEVERAL,
     has_loose_file,
     mark_gain,
     spread_of_file,
@@ -50,7 +50,7 @@ def know_file(selected: Hypothesis, freed: Hypothesis) -> Prior:
     """Of numbers that were not selected, what such files are off by; of a selected gain as well."""
     new, gain = mark_new(selected, freed), mark_gain(freed)
     std = np.full(len(new), np.inf)
-    std[gain] = GAIN / GAIN_SCALE
+    std[gain] = GAIN_RELATIVE_STD / GAIN_SCALE
     std[new] = list_spreads(selected, freed)
     return Prior(np.where(gain, freed.absence, freed.x), std, gain & ~new)
 
@@ -76,7 +76,7 @@ def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
         return [p.name for p in effect.parameters if p.fitted]
     gains = name_gains(h.base.vehicle.thruster_count)
     selected = sum(f"{ThrusterGain.id}.{name}" in h.parameter_names for name in gains)
-    return (*ONE_GAIN, *gains) if selected >= SEVERAL else ONE_GAIN
+    return (*ONE_GAIN, *gains) if selected >= MIN_LOOSE_EFFECTS else ONE_GAIN
 
 
 def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
