@@ -11,7 +11,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.design.adequacy import require_information
 from rovsim.design.expected_information import (
-    NEGLIGIBLE,
+    MIN_INFORMATION_GAIN,
     ExpectedInformation,
     measure_information,
     surprise,
@@ -102,7 +102,7 @@ def test_a_flight_that_tells_nothing_is_refused():
     drag = Hypothesis(None, (Term(LinearDamping(sway=1.0), ("sway",)),))
     rival = FittedHypothesis(drag, np.eye(1), np.array([0]), 0.0, None, np.eye(1))
     known = PriorInformation((), (), (rival,), None, ())
-    for ratio in (1.0, np.sqrt(1.0 + NEGLIGIBLE)):
+    for ratio in (1.0, np.sqrt(1.0 + MIN_INFORMATION_GAIN)):
         expected = of_ratio(ratio)
         with pytest.raises(BadInput, match=r"tells anything about linear_damping\.sway"):
             require_information(expected, known)

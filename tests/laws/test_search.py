@@ -9,8 +9,8 @@ from threadpoolctl import threadpool_info
 from rovsim.core.errors import BadInput
 from rovsim.core.schema import checked
 from rovsim.design.plan import plan
-from rovsim.design.search import AT_ONCE, CandidateFlight, DesignProblem, search
-from rovsim.design.settings import LONGEST, SHORTEST, DesignSettings, Question
+from rovsim.design.search import FLIGHTS_PER_BATCH, CandidateFlight, DesignProblem, search
+from rovsim.design.settings import MAX_FLIGHT_SECONDS, MIN_FLIGHT_SECONDS, DesignSettings, Question
 
 
 class Flights:
@@ -32,8 +32,8 @@ class Flights:
 
 def test_a_search_flies_in_parts_and_keeps_numbers_alone():
     flights = Flights()
-    found = search(flights, DesignSettings(population=3 * AT_ONCE, rounds=2), seed=0)
-    assert max(flights.counts) == AT_ONCE
+    found = search(flights, DesignSettings(population=3 * FLIGHTS_PER_BATCH, rounds=2), seed=0)
+    assert max(flights.counts) == FLIGHTS_PER_BATCH
     surge = np.array([numbers[1] for numbers in found])
     assert 0.7 < surge[0] <= 0.8
     assert (np.diff(surge) <= 0.0).all()
@@ -90,8 +90,8 @@ def test_a_plan_has_no_threads_for_small_matrices(monkeypatch):
 @pytest.mark.parametrize(
     "asked",
     [
-        {"seconds": LONGEST + 1},
-        {"seconds": SHORTEST - 1},
+        {"seconds": MAX_FLIGHT_SECONDS + 1},
+        {"seconds": MIN_FLIGHT_SECONDS - 1},
         {"seconds": float("inf")},
         {"design": {"population": 10**9}},
         {"design": {"rounds": 10**9}},

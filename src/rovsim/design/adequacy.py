@@ -20,14 +20,14 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.replay import predict as replay
 from rovsim.simulation.windows import find_windows, last_predicted
 
-WIDER = 1.5  # times: beyond what two fits of the same runs differ by
-AFTER = 5.0  # s, the longest window of a comparison
-NARROW = "one told to stay where it is does, none that moves enough to show anything"
-REMEDY = (
+MIN_STD_RATIO = 1.5  # times: beyond what two fits of the same runs differ by
+WINDOW_SECONDS = 5.0  # s, the longest window of a comparison
+NARROW_LIMITS_REASON = "one told to stay where it is does, none that moves enough to show anything"
+MODEL_REMEDY = (
     "Give the model that a diagnosis found: what a model lacks is a disturbance. Or give fewer "
     "seconds, or wider design.limits."
 )
-DIAGNOSE = (
+DIAGNOSE_FIRST = (
     "Diagnose first (`rovsim diagnose`, `rovsim add`) and design with the model that this gives"
 )
 
@@ -42,10 +42,12 @@ def warn_of_misfit(prior: PriorInformation, question: Question) -> tuple[str, ..
     if not disturbance.large.any():
         return ()
     error = measure_replay_error(model, prior.runs, question)
-    error_text = "" if error is None else f", and after {AFTER:g} s it is {error:.2g} m off"
+    error_text = (
+        "" if error is None else f", and after {WINDOW_SECONDS:g} s it is {error:.2g} m off"
+    )
     return (
         f"The model errs on the train runs: {_name(disturbance)} push the vehicle all the time, of "
-        f"which it does not know{error_text}. {DIAGNOSE}.",
+        f"which it does not know{error_text}. {DIAGNOSE_FIRST}.",
     )
 
 
@@ -65,7 +67,9 @@ def warn_of_walls(paths: Array, start: Array, envelope: Envelope) -> tuple[str, 
 def warn_of_wider(model: Model, now: Mapping[str, float | None]) -> tuple[str, ...]:
     """What a model file knows less well than the train runs alone say, by `effect.parameter`."""
     file_std = {f"{e.id}.{name}": std for e in model.added for name, std in e.std.items()}
-    wider = [name for name, std in now.items() if std and file_std.get(name, 0.0) > WIDER * std]
+    wider = [
+        name for name, std in now.items() if std and file_std.get(name, 0.0) > MIN_STD_RATIO * std
+    ]
     if not wider:
         return ()
     return (
@@ -84,14 +88,14 @@ def _name(lasting: LowFrequencyDisturbance) -> str:
 def measure_replay_error(
     model: Model, runs: Sequence[ObservedRun], question: Question
 ) -> float | None:
-    """How far (m, root mean square) replays of the runs are off after `AFTER` seconds.
+    """How far (m, root mean square) replays of the runs are off after `WINDOW_SECONDS`.
 
     None where no window is that long, or no place was measured.
     """
     squares = []
     for run in runs:
         motion = run.motion
-        spans = list(find_windows(motion, AFTER))
+        spans = list(find_windows(motion, WINDOW_SECONDS))
         if not spans:
             continue
         prediction = replay(model, motion, spans, question)
@@ -110,14 +114,16 @@ def explain_infeasible(problem: DesignProblem, question: Question) -> BadInput:
     start = problem.pilot.starts(np.array([heading]))[0]
     paths = problem.scenarios.predict(problem.setup.drives(flight.commands), start)
     excess = problem.envelope.describe_excess(paths)
-    reason = f"a vehicle told to stay where it is already {excess}" if excess else NARROW
+    reason = (
+        f"a vehicle told to stay where it is already {excess}" if excess else NARROW_LIMITS_REASON
+    )
     misfit = warn_of_misfit(problem.prior, question)
     fault = f"no flight of {question.seconds:g} s stays within the limits: {reason}"
     return BadInput(
         f"{fault}. {misfit[0].removesuffix('.')}" if misfit else fault,
         where="rovsim design",
         expected="room for a flight that nobody steers",
-        remedy="Or give fewer seconds, or wider design.limits." if misfit else REMEDY,
+        remedy="Or give fewer seconds, or wider design.limits." if misfit else MODEL_REMEDY,
     )
 
 

@@ -12,11 +12,12 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.command_columns import round_as_logged
 from rovsim.simulation.drive import Drive
 
-LEVELS = np.linspace(-1.0, 1.0, 81)  # of a thruster's command
-ALONE = 0.3  # an axis is commanded if no more than this share of a push along it goes elsewhere
-STEP = 0.5  # of a demand, to see what a loop on board makes of it
+COMMAND_LEVELS = np.linspace(-1.0, 1.0, 81)  # of a thruster's command
+# An axis is commanded if no more than this share of a push along it goes elsewhere.
+MAX_CROSS_SHARE = 0.3
+DEMAND_STEP = 0.5  # of a demand, to see what a loop on board makes of it
 
-State = list  # of the thrusters
+ThrusterState = list  # of the thrusters
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +41,7 @@ class Authority:
             return np.flatnonzero(self.logged & free & (self.largest > 0.0))
         B = np.where(free[:, None], self.model.body.B, 0.0)
         coupling = np.linalg.norm(B @ np.linalg.pinv(B) - np.eye(len(AXES)), axis=0)
-        reachable = (coupling < ALONE) | self._looped
+        reachable = (coupling < MAX_CROSS_SHARE) | self._looped
         return np.flatnonzero(reachable & free & (self.logged | (self.kind == "thruster")))
 
     @cached_property
@@ -97,7 +98,9 @@ class Authority:
         """What values (m, c) of a log do to the model in the long run, each for itself."""
         return self.respond(value, 1.0, None)[0]
 
-    def respond(self, value: Array, h: float, state: State | None) -> tuple[Drive, State]:
+    def respond(
+        self, value: Array, h: float, state: ThrusterState | None
+    ) -> tuple[Drive, ThrusterState]:
         """What values (m, c) do over h s, each for itself, without delay.
 
         `state` of the thrusters is what the call before returned; None: they have settled.
@@ -148,7 +151,7 @@ class Authority:
         """Commands (l, n) within the limit, and their static forces (l, n), rising."""
         path = self.model.thrust_path
         limit = self.model.vehicle.thrusters.command_limit if self.kind == "thruster" else 1.0
-        command = np.tile(limit * LEVELS[:, None], path.thrusters.count)
+        command = np.tile(limit * COMMAND_LEVELS[:, None], path.thrusters.count)
         force = path.static(command, np.zeros(len(command)), 1.0)
         order = np.argsort(force, axis=0, kind="stable")
         return np.take_along_axis(command, order, 0), np.take_along_axis(force, order, 0)
@@ -165,4 +168,4 @@ class Authority:
     @cached_property
     def _slopes(self) -> Array:
         """Wrench (6,) per unit of demand of each axis."""
-        return np.diag(self.drive(STEP * np.eye(len(AXES))).wrench) / STEP
+        return np.diag(self.drive(DEMAND_STEP * np.eye(len(AXES))).wrench) / DEMAND_STEP

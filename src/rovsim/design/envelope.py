@@ -12,8 +12,8 @@ from rovsim.core.signs import minus
 from rovsim.design.recording_setup import RecordingSetup
 from rovsim.design.settings import FlightLimits
 
-MOVES = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are limits
-SURE = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
+LIMITED_MOTIONS = ("moves", "turns", "tilts")  # of which speed, turn rate and tilt are limits
+PLACE_STDS = 3.0  # standard deviations of the place that must lie inside: 1 in 1000 beyond one wall
 
 
 class Extremes(NamedTuple):
@@ -80,7 +80,7 @@ class Envelope:
     def excess(self, paths: Array, each_alone: bool = False) -> float:
         """By how much paths leave the limits; 0 if none does.
 
-        The sum of two things: how far the place leaves the box, in m, where `SURE` standard
+        The sum of two things: how far the place leaves the box, in m, where `PLACE_STDS` standard
         deviations about the mean of the paths have to stay inside; and by which share the largest
         speed, turn rate and tilt exceed their limits.
 
@@ -98,7 +98,8 @@ class Envelope:
             return "moves beyond all numbers"
         phrases = [f"comes {distance:.2g} m too near to a wall, the floor or the surface"]
         phrases += [
-            f"{v} {100.0 * s:.0f} % more than it may" for v, s in zip(MOVES, ratios, strict=True)
+            f"{v} {100.0 * s:.0f} % more than it may"
+            for v, s in zip(LIMITED_MOTIONS, ratios, strict=True)
         ]
         return " and ".join(
             phrase
@@ -116,7 +117,7 @@ class Envelope:
         position = paths[:, :, :3]
         low, high = position.min(axis=(0, 1)), position.max(axis=(0, 1))
         if not each_alone:
-            mean, spread = position.mean(axis=0), SURE * position.std(axis=0, ddof=1)
+            mean, spread = position.mean(axis=0), PLACE_STDS * position.std(axis=0, ddof=1)
             low, high = (mean - spread).min(axis=0), (mean + spread).max(axis=0)
         overshoot = np.maximum(self.box[:, 0] - low, 0.0) + np.maximum(high - self.box[:, 1], 0.0)
         ratios = [v / w - 1.0 for v, w in zip(find_extremes(paths), self._most, strict=True)]

@@ -32,8 +32,8 @@ from rovsim.estimation.observer.noise import design_filters
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised
 
-NEGLIGIBLE = 1e-3  # of what the train runs hold: less is not worth a comparison
-THINNED = 4  # the error dynamics are averaged over every fourth reading: 0.2 s apart
+MIN_INFORMATION_GAIN = 1e-3  # of what the train runs hold: less is not worth a comparison
+THINNING = 4  # the error dynamics are averaged over every fourth reading: 0.2 s apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,15 +63,15 @@ class ExpectedInformation:
         """
         if len(self.log_odds_gain):
             return float(np.min(self.log_odds_gain[self.likely]))
-        gain = np.maximum(self.std_ratio[0] ** 2 - 1.0, NEGLIGIBLE)
+        gain = np.maximum(self.std_ratio[0] ** 2 - 1.0, MIN_INFORMATION_GAIN)
         return float(np.exp(np.mean(np.log(gain))))
 
     @property
     def informative(self) -> bool:
         """Whether the flight tells more than a negligible amount about what is asked."""
         if len(self.log_odds_gain):
-            return self.utility > NEGLIGIBLE
-        return bool((self.std_ratio[0] ** 2 - 1.0 > NEGLIGIBLE).any())
+            return self.utility > MIN_INFORMATION_GAIN
+        return bool((self.std_ratio[0] ** 2 - 1.0 > MIN_INFORMATION_GAIN).any())
 
 
 def expect_information(
@@ -120,7 +120,7 @@ def _mix_error_dynamics(
     run: ObservedRun, rival: FittedHypothesis, prior: PriorInformation
 ) -> tuple[AxisErrorDynamics, ...]:
     """The error dynamics of the train runs and the flight, averaged over the time of both."""
-    thinned = run.limited(np.arange(len(run.motion.time)) % THINNED == 0)
+    thinned = run.limited(np.arange(len(run.motion.time)) % THINNING == 0)
     of_flight = np.array(estimate_errors(rival.hypothesis.model, [thinned]).by_axis)
     t_train, t_flight = prior.seconds, float(run.reading_times[-1])
     mixed = (t_train * np.array(prior.error_dynamics) + t_flight * of_flight) / (t_train + t_flight)

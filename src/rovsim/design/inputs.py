@@ -11,11 +11,11 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 
-TICK = 0.1  # s between two positions of a stick: a hand does not move it faster than 5 Hz
-SLOWEST, FASTEST = 0.02, 1.0  # Hz: once in most of a minute; half of what a hand can do
-SQUARE = 6.0  # a sine sharpened so far stands at its ends for two thirds of the time
-SWELL = 30.0  # s from strong to weak and back
-IDLE = 0.08  # of a stick: moved less, it rests
+TICK_SECONDS = 0.1  # s between two positions of a stick: a hand does not move it faster than 5 Hz
+MIN_HZ, MAX_HZ = 0.02, 1.0  # once in most of a minute; half of what a hand can do
+MAX_STEEPNESS = 6.0  # a sine sharpened so far stands at its ends for two thirds of the time
+SWELL_SECONDS = 30.0  # s from strong to weak and back
+MIN_AMPLITUDE = 0.08  # of a stick: moved less, it rests
 
 
 class Oscillation(NamedTuple):
@@ -33,33 +33,33 @@ class Oscillation(NamedTuple):
     @staticmethod
     def of(x: Array) -> "Oscillation":
         """Of five numbers in [0, 1]."""
-        amplitude = 0.0 if x[0] < IDLE else float(x[0])
-        frequency = SLOWEST * (FASTEST / SLOWEST) ** float(x[1])
+        amplitude = 0.0 if x[0] < MIN_AMPLITUDE else float(x[0])
+        frequency = MIN_HZ * (MAX_HZ / MIN_HZ) ** float(x[1])
         return Oscillation(amplitude, frequency, float(x[2]), float(x[3]), float(x[4]))
 
     def move(self, t: Array) -> Array:
         """The input (n,) at times (n,) s."""
         wave = np.sin(2.0 * np.pi * (self.frequency * t + self.phase))
-        steepness = SQUARE * self.square
+        steepness = MAX_STEEPNESS * self.square
         if steepness > 0.0:
             wave = np.tanh(steepness * wave) / np.tanh(steepness)
-        decrease = 0.5 * self.swell * (1.0 - np.cos(2.0 * np.pi * t / SWELL))
+        decrease = 0.5 * self.swell * (1.0 - np.cos(2.0 * np.pi * t / SWELL_SECONDS))
         return self.amplitude * (1.0 - decrease) * wave
 
 
-NUMBERS = len(Oscillation._fields)  # an axis
+NUMBERS_PER_AXIS = len(Oscillation._fields)
 
 
 def ticks(seconds: float) -> Array:
     """Times (n,) s at which inputs are set."""
-    return TICK * np.arange(round(seconds / TICK) + 1)
+    return TICK_SECONDS * np.arange(round(seconds / TICK_SECONDS) + 1)
 
 
 def make_inputs(x: Array, axes: Array, seconds: float) -> Array:
     """Inputs (n, 6) of five numbers (5 j,) in [0, 1] for each of the axes (j,)."""
     t = ticks(seconds)
     inputs = np.zeros((len(t), len(AXES)))
-    for axis, numbers in zip(axes, x.reshape(len(axes), NUMBERS), strict=True):
+    for axis, numbers in zip(axes, x.reshape(len(axes), NUMBERS_PER_AXIS), strict=True):
         inputs[:, axis] = Oscillation.of(numbers).move(t)
     return inputs
 
@@ -82,13 +82,13 @@ def _zigzag(t: Array, axes: Array, random: np.random.Generator) -> Array:
 def _steps(t: Array, axes: Array, random: np.random.Generator) -> Array:
     """One axis after the other: ahead, rest, back, rest."""
     inputs = np.zeros((len(t), len(AXES)))
-    share = len(axes) * t / (t[-1] + TICK)
+    share = len(axes) * t / (t[-1] + TICK_SECONDS)
     k, quarter = share.astype(int), (4.0 * (share % 1.0)).astype(int)
     inputs[np.arange(len(t)), axes[k]] = np.array([1.0, 0.0, -1.0, 0.0])[quarter]
     return inputs
 
 
-TONES = 5  # of each axis
+TONES_PER_AXIS = 5
 
 
 def _multisine(t: Array, axes: Array, random: np.random.Generator) -> Array:
@@ -97,10 +97,12 @@ def _multisine(t: Array, axes: Array, random: np.random.Generator) -> Array:
     From one swing in 20 s up to one in 2 s, which is where vehicles of this size answer.
     """
     inputs = np.zeros((len(t), len(AXES)))
-    tones = np.geomspace(0.05, 0.5, TONES * len(axes))
+    tones = np.geomspace(0.05, 0.5, TONES_PER_AXIS * len(axes))
     for j, axis in enumerate(axes):
         frequencies = tones[j :: len(axes)]
-        phase = -np.pi * np.arange(TONES) * (np.arange(TONES) + 1) / TONES
+        phase = (
+            -np.pi * np.arange(TONES_PER_AXIS) * (np.arange(TONES_PER_AXIS) + 1) / TONES_PER_AXIS
+        )
         wave = np.sin(2.0 * np.pi * frequencies * t[:, None] + phase).sum(axis=1)
         inputs[:, axis] = wave / np.max(np.abs(wave))
     return inputs

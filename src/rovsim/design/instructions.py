@@ -7,13 +7,19 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.core.signs import minus
-from rovsim.design.inputs import BASELINES, IDLE, NUMBERS, SWELL, Oscillation
+from rovsim.design.inputs import (
+    BASELINES,
+    MIN_AMPLITUDE,
+    NUMBERS_PER_AXIS,
+    SWELL_SECONDS,
+    Oscillation,
+)
 from rovsim.design.search import CandidateFlight
 from rovsim.design.settings import FlightLimits
 from rovsim.results.experiment import Start
 
-SWELLING = 0.25  # of `Oscillation.swell`: less is not worth saying
-SHARP = 0.5  # of `Oscillation.square`: beyond, the stick is rather held at its ends
+MIN_SWELL = 0.25  # of `Oscillation.swell`: less is not worth saying
+MIN_SQUARENESS = 0.5  # of `Oscillation.square`: beyond, the stick is rather held at its ends
 
 
 def instruct(flight: CandidateFlight, axes: Array, start: Start, limits: FlightLimits) -> list[str]:
@@ -46,19 +52,23 @@ def _place(start: Start) -> str:
 
 
 def _numbers(flight: CandidateFlight, axes: Array) -> list[str]:
-    rows = flight.numbers[1:].reshape(len(axes), NUMBERS)
+    rows = flight.numbers[1:].reshape(len(axes), NUMBERS_PER_AXIS)
     swings = [(AXES[axis], Oscillation.of(row)) for axis, row in zip(axes, rows, strict=True)]
-    sentences = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > IDLE]
-    unused = [axis for axis, swing in swings if swing.amplitude <= IDLE]
+    sentences = [_swing(axis, swing) for axis, swing in swings if swing.amplitude > MIN_AMPLITUDE]
+    unused = [axis for axis, swing in swings if swing.amplitude <= MIN_AMPLITUDE]
     return [*sentences, f"Leave alone: {', '.join(unused)}."] if unused else sentences
 
 
 def _swing(axis: str, swing: Oscillation) -> str:
-    motion = "hold it over to one side, then to the other" if swing.square > SHARP else "swing it"
+    motion = (
+        "hold it over to one side, then to the other"
+        if swing.square > MIN_SQUARENESS
+        else "swing it"
+    )
     weaker = (
         f", growing weaker down to {100 * swing.amplitude * (1.0 - swing.swell):.0f} % and strong "
-        f"again every {SWELL:g} s"
-        if swing.swell > SWELLING
+        f"again every {SWELL_SECONDS:g} s"
+        if swing.swell > MIN_SWELL
         else ""
     )
     return (

@@ -21,9 +21,10 @@ from rovsim.estimation.observer.kalman import AxisErrorDynamics
 from rovsim.estimation.observer.noise import Noise, RunFilters, design_filters
 from rovsim.estimation.observer.observed_run import BLOCK_SECONDS, ObservedRun, number_blocks
 
-LASTING = 100.0  # s, memory of the observer's disturbance: longer than any block
-CHANCE = 2.0  # standard errors: less may be the short disturbance
-LARGE, SURE = 2.0, 3.0  # of what passes by in a block, and standard errors: the model errs
+OBSERVER_MEMORY_SECONDS = 100.0  # of its disturbance: longer than any block
+MIN_STANDARD_ERRORS = 2.0  # less may be the short disturbance
+# Times what passes by in a block, and standard errors: beyond both the model errs.
+MIN_NOISE_RATIO, CERTAIN_STANDARD_ERRORS = 2.0, 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +62,11 @@ class LowFrequencyDisturbance:
         error = noise_std / np.sqrt(count)
         variance = blocks.var(axis=0, ddof=1) if count > 1 else np.zeros(6)
         # a variance of n + 1 normal numbers has a standard error of sqrt(2 / n) times itself
-        limit = noise_std**2 * (1.0 + CHANCE * np.sqrt(2.0 / max(count - 1, 1)))
+        limit = noise_std**2 * (1.0 + MIN_STANDARD_ERRORS * np.sqrt(2.0 / max(count - 1, 1)))
         return LowFrequencyDisturbance(
-            np.where(np.abs(mean) > CHANCE * error, mean, 0.0),
+            np.where(np.abs(mean) > MIN_STANDARD_ERRORS * error, mean, 0.0),
             np.sqrt(np.where(variance > limit, variance - noise_std**2, 0.0)),
-            np.abs(mean) > np.maximum(LARGE * noise_std, SURE * error),
+            np.abs(mean) > np.maximum(MIN_NOISE_RATIO * noise_std, CERTAIN_STANDARD_ERRORS * error),
         )
 
     def draw(self, steps: int, h: float, random: np.random.Generator) -> Array:
@@ -87,7 +88,7 @@ def estimate_disturbance(
         noise: of the readings, and the short disturbance.
         error_dynamics: how an error of the model grows or decays on each of the six axes.
     """
-    slow = Noise(noise.disturbance_std, np.full(6, LASTING), noise.measurement_std)
+    slow = Noise(noise.disturbance_std, np.full(6, OBSERVER_MEMORY_SECONDS), noise.measurement_std)
     blocks: list[Array] = []
     for run in runs:
         blocks += _average(run, _follow(model, run, design_filters(slow, error_dynamics, run)))

@@ -14,7 +14,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.rotations import multiply, normalized, rotate, to_euler, unrotate
 from rovsim.core.run import Site
 from rovsim.design.authority import Authority
-from rovsim.design.inputs import TICK
+from rovsim.design.inputs import TICK_SECONDS
 from rovsim.design.settings import FlightLimits
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
@@ -22,9 +22,9 @@ from rovsim.simulation.rest import rest_state
 
 # rad/s, as of a spring and a damper: a place is held so softly that swings of half a minute still
 # get through, an angle within a second, as an autopilot does
-HOLD_PLACE, HOLD_ANGLE, DAMPED = 0.3, 2.0, 0.7
-STEPS = 2  # a tick, of Heun's method
-SMALL = 0.05  # rad
+PLACE_BANDWIDTH, ANGLE_BANDWIDTH, DAMPING_RATIO = 0.3, 2.0, 0.7
+STEPS_PER_TICK = 2  # of Heun's method
+TILT_DIFFERENCE_RAD = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +44,11 @@ class ModelPilot:
         """What a log holds (m, n, c) of inputs (m, n, 6) from headings (m,) rad NED."""
         state, thrust, values = self.starts(heading), None, []
         wrench = np.tile(self.rest, (len(state), 1))
-        step = self.limits.slew * TICK * np.maximum(self.full, 1e-9)
+        step = self.limits.slew * TICK_SECONDS * np.maximum(self.full, 1e-9)
         for k in range(inputs.shape[1]):
             wrench = np.clip(self._wish(inputs[:, k], state), wrench - step, wrench + step)
             values.append(self.authority.values(wrench))
-            drive, thrust = self.authority.respond(values[-1], TICK, thrust)
+            drive, thrust = self.authority.respond(values[-1], TICK_SECONDS, thrust)
             state = self._advance(drive, state)
         return np.stack(values, axis=1)
 
@@ -79,12 +79,12 @@ class ModelPilot:
     def _stiffness(self) -> Array:
         """Moment (2,) per rad of roll and pitch, held and righted."""
         tilted = self.starts(np.zeros(2))
-        tilted[0, 4], tilted[1, 5] = 0.5 * SMALL, 0.5 * SMALL
+        tilted[0, 4], tilted[1, 5] = 0.5 * TILT_DIFFERENCE_RAD, 0.5 * TILT_DIFFERENCE_RAD
         rest = self._drive_at_rest(2)
         push = self._accelerate(rest, tilted)
         inertia = self._inertia[3:5]
-        righting = -inertia * np.array([push[0, 3], push[1, 4]]) / SMALL
-        return inertia * HOLD_ANGLE**2 + np.maximum(righting, 0.0)
+        righting = -inertia * np.array([push[0, 3], push[1, 4]]) / TILT_DIFFERENCE_RAD
+        return inertia * ANGLE_BANDWIDTH**2 + np.maximum(righting, 0.0)
 
     @cached_property
     def rest(self) -> Array:
@@ -101,8 +101,12 @@ class ModelPilot:
         offset = unrotate(state[:, 3:7], state[:, :3] - self.start)
         tilt = to_euler(state[:, 3:7])
         tilt[:, 2] = 0.0
-        place_term = HOLD_PLACE**2 * offset + 2.0 * DAMPED * HOLD_PLACE * state[:, 7:10]
-        attitude_term = HOLD_ANGLE**2 * tilt + 2.0 * DAMPED * HOLD_ANGLE * state[:, 10:13]
+        place_term = (
+            PLACE_BANDWIDTH**2 * offset + 2.0 * DAMPING_RATIO * PLACE_BANDWIDTH * state[:, 7:10]
+        )
+        attitude_term = (
+            ANGLE_BANDWIDTH**2 * tilt + 2.0 * DAMPING_RATIO * ANGLE_BANDWIDTH * state[:, 10:13]
+        )
         attitude_term[:, 2] = 0.0  # any heading will do
         restoring = np.concatenate([place_term, attitude_term], axis=1) * self._held
         return self.rest + self.full * inputs - self._inertia * restoring
@@ -119,8 +123,8 @@ class ModelPilot:
         A `Batch` integrates one drive a model, or one state by Heun's method: flights that go on
         side by side would be taken apart and put together again at every tick.
         """
-        h = TICK / STEPS
-        for _ in range(STEPS):
+        h = TICK_SECONDS / STEPS_PER_TICK
+        for _ in range(STEPS_PER_TICK):
             first = self._rates(drive, state)
             second = self._rates(drive, _moved(state, first, h))
             state = _moved(state, 0.5 * (first + second), h)

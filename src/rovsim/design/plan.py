@@ -40,7 +40,7 @@ from rovsim.measurement.runs import Runs
 from rovsim.simulation.batch import Batch
 
 # Scenarios while searching and in the end, and models that information is averaged over.
-SEARCHED, CHECKED, AVERAGED = 8, 40, 4
+SEARCH_SCENARIOS, CHECK_SCENARIOS, DRAWS_PER_RIVAL = 8, 40, 4
 FINALISTS = 4  # safe flights, the best first, whose information is averaged over models
 # Share of the time that is over when a stage begins: means over the development seeds.
 STAGES = {"learning": 0.0, "usual manoeuvres": 0.03, "searching": 0.12, "checking": 0.93}
@@ -134,7 +134,9 @@ def _pose_problem(
             expected="commands that push the vehicle",
             remedy="Check thrusters and mixer of the vehicle file.",
         )
-    return DesignProblem(pilot, envelope, _draw(prior, SEARCHED, setup, random), prior, setup)
+    return DesignProblem(
+        pilot, envelope, _draw(prior, SEARCH_SCENARIOS, setup, random), prior, setup
+    )
 
 
 def _draw(
@@ -167,8 +169,8 @@ def _choose(
         BadInput: no flight stays within the limits, or the best one tells nothing.
     """
     prior = problem.prior
-    scenarios = _draw(prior, CHECKED, problem.setup, random)
-    some = [rival.draw(AVERAGED, random) for rival in prior.rivals]
+    scenarios = _draw(prior, CHECK_SCENARIOS, problem.setup, random)
+    some = [rival.draw(DRAWS_PER_RIVAL, random) for rival in prior.rivals]
     check = FinalCheck(problem, scenarios, some)
     usual = {name: next(check.find_safe(flights), None) for name, flights in baselines.items()}
     designed = (flight for part in in_parts(found) for flight in problem.evaluate_numbers(part))

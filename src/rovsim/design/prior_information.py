@@ -15,7 +15,7 @@ from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 
-RULED_OUT = 1000.0  # odds against a rival to one: beyond, no flight is needed to reject it
+MAX_ODDS = 1000.0  # odds against a rival to one: beyond, no flight is needed to reject it
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,4 +129,4 @@ class PriorInformation:
     def likely(self) -> Array:
         """Which rivals (r,) the train runs have not ruled out; always true for one hypothesis."""
         scores = np.array([rival.two_log_likelihood for rival in self.rivals])
-        return scores > np.max(scores) - 2.0 * np.log(RULED_OUT)
+        return scores > np.max(scores) - 2.0 * np.log(MAX_ODDS)

@@ -14,7 +14,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
 from rovsim.measurement.signals.motion import Motion, Poses
 
-INFO = RunInfo("designed", "6dof", "train")
+RUN_INFO = RunInfo("designed", "6dof", "train")
 
 
 def record(path: Array, commands: Commands, model: Model, setup: RecordingSetup) -> ObservedRun:
@@ -26,7 +26,7 @@ def record(path: Array, commands: Commands, model: Model, setup: RecordingSetup)
     make = _bins if setup.like.motion.binned else _samples
     motion = make(time, eta, nu, states[:, 7:], commands, setup)
     stage = Poses(
-        INFO, setup.site, motion.time, motion.eta, motion.usable, commands, motion.measured
+        RUN_INFO, setup.site, motion.time, motion.eta, motion.usable, commands, motion.measured
     )
     free = model.body.free
     return prepare_run(stage, motion, setup.replay, setup.catalogue, free)
@@ -36,7 +36,7 @@ def _samples(
     time: Array, eta: Array, nu: Array, fine: Array, commands: Commands, setup: RecordingSetup
 ) -> Motion:
     return Motion(
-        INFO,
+        RUN_INFO,
         setup.site,
         time,
         eta,
@@ -59,7 +59,7 @@ def _bins(
     mean = np.diff(integral[:: setup.parts], axis=0) / np.diff(time)[:, None]
     change = np.vstack([np.full(6, np.nan), np.diff(mean, axis=0) / np.diff(time)[1:, None]])
     return Motion(
-        INFO,
+        RUN_INFO,
         setup.site,
         time[:-1],
         eta[:-1],

@@ -16,7 +16,7 @@ from rovsim.measurement.signals.measured import Measured
 from rovsim.simulation.drive import Drives
 from rovsim.simulation.settings import ReplaySettings
 
-FINE = 0.05  # s, the longest step of a predicted path: one step of the observer (observed_run.py)
+MAX_STEP_SECONDS = 0.05  # of a predicted path: one step of the observer (observed_run.py)
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class RecordingSetup:
     @cached_property
     def coarser(self) -> "RecordingSetup":
         """The same, thrust steady over each step of the observer: half the work."""
-        return replace(self, replay=self.replay.model_copy(update={"step": FINE}))
+        return replace(self, replay=self.replay.model_copy(update={"step": MAX_STEP_SECONDS}))
 
     @property
     def site(self) -> Site:
@@ -65,7 +65,7 @@ class RecordingSetup:
     @cached_property
     def parts(self) -> int:
         """Steps of a predicted path from one reading to the next."""
-        return max(1, int(np.ceil(self.like.period / FINE - 1e-9)))
+        return max(1, int(np.ceil(self.like.period / MAX_STEP_SECONDS - 1e-9)))
 
     @cached_property
     def edges(self) -> Array:

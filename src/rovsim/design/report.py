@@ -10,7 +10,7 @@ from rovsim.core.rotations import short_way
 from rovsim.core.run import Site
 from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.envelope import find_extremes
-from rovsim.design.expected_information import NEGLIGIBLE, ExpectedInformation
+from rovsim.design.expected_information import MIN_INFORMATION_GAIN, ExpectedInformation
 from rovsim.design.instructions import instruct
 from rovsim.design.plan import Plan
 from rovsim.design.prior_information import FittedHypothesis, PriorInformation
@@ -124,7 +124,7 @@ def _compare(
         std=expectation.std,
         amplitude=usual.flight.amplitude,
         designed_is_better=or_none(
-            _round(designed.utility / max(usual.expected.utility, NEGLIGIBLE))
+            _round(designed.utility / max(usual.expected.utility, MIN_INFORMATION_GAIN))
         ),
     )
 

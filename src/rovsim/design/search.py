@@ -17,7 +17,7 @@ from numpy import ndarray as Array
 from rovsim.core.run import Commands
 from rovsim.design.envelope import Envelope
 from rovsim.design.expected_information import ExpectedInformation, expect_information
-from rovsim.design.inputs import BASELINES, FASTEST, NUMBERS, SLOWEST, make_inputs, ticks
+from rovsim.design.inputs import BASELINES, MAX_HZ, MIN_HZ, NUMBERS_PER_AXIS, make_inputs, ticks
 from rovsim.design.pilot import ModelPilot
 from rovsim.design.prior_information import PriorInformation
 from rovsim.design.recording_setup import RecordingSetup
@@ -25,13 +25,16 @@ from rovsim.design.scenarios import Scenarios
 from rovsim.design.settings import DesignSettings
 
 # Where one axis at a time is tried: swings of 20 s to 2 s, soft and sharp.
-FREQUENCIES, SQUARES, AMPLITUDES = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
+FREQUENCY_GRID, SQUARE_GRID, AMPLITUDE_GRID = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
 # Of the usual manoeuvres: sticks in the plane, and out of it.
-IN_PLANE, OUT_OF_PLANE = (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (0.05, 0.1, 0.2, 0.4, 0.8)
-MUTATION = 0.05  # of the range of each number, by which mixtures of two flights are varied
-BEYOND = -100.0  # the rank from which on flights leave the limits
-AT_ONCE = 96  # flights side by side: ten minutes of each take some megabytes
-VERTICAL = np.array([2, 3, 4])  # heave, roll, pitch
+IN_PLANE_SCALES, OUT_OF_PLANE_SCALES = (
+    (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0),
+    (0.05, 0.1, 0.2, 0.4, 0.8),
+)
+MUTATION_STD = 0.05  # of the range of each number, by which mixtures of two flights are varied
+MAX_INFEASIBLE_RANK = -100.0  # the rank from which on flights leave the limits
+FLIGHTS_PER_BATCH = 96  # side by side: ten minutes of each take some megabytes
+VERTICAL_AXES = np.array([2, 3, 4])  # heave, roll, pitch
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +137,10 @@ class DesignProblem:
 def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
     """Evaluate each usual manoeuvre at all amplitudes: by name, the largest utility first."""
     by_name, t = {}, ticks(problem.setup.seconds)
-    levels = list(product(IN_PLANE, OUT_OF_PLANE))
+    levels = list(product(IN_PLANE_SCALES, OUT_OF_PLANE_SCALES))
     for name, baseline in BASELINES.items():
         full = baseline.move(t, problem.axes, np.random.default_rng(seed))
-        scales = [np.where(np.isin(np.arange(6), VERTICAL), b, a) for a, b in levels]
+        scales = [np.where(np.isin(np.arange(6), VERTICAL_AXES), b, a) for a, b in levels]
         headings = [problem.envelope.longest] * len(levels)
         flights = problem.evaluate_all([full * s for s in scales], headings)
         candidates = [
@@ -193,31 +196,31 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
         vectorized=True,
         rng=np.random.default_rng(seed),
     )
-    feasible = [r for r in archive if r.rank > BEYOND]
+    feasible = [r for r in archive if r.rank > MAX_INFEASIBLE_RANK]
     return [r.numbers for r in sorted(feasible, key=lambda r: -r.rank)]
 
 
 def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
     """Divide flights, as numbers (k,) each, into parts small enough for memory to hold."""
-    return [x[first : first + AT_ONCE] for first in range(0, len(x), AT_ONCE)]
+    return [x[first : first + FLIGHTS_PER_BATCH] for first in range(0, len(x), FLIGHTS_PER_BATCH)]
 
 
 def _ranked(one: CandidateFlight) -> float:
     """The rank of a flight: any flight within the limits is above all flights beyond them."""
     if one.expected:
         return float(np.log(max(one.utility, 1e-12)))
-    return BEYOND - min(one.excess, 1e6)
+    return MAX_INFEASIBLE_RANK - min(one.excess, 1e6)
 
 
 def _one_axis_each(problem: DesignProblem) -> Array:
     """Numbers (m, 1 + 5 j) of m oscillations, each of one axis alone."""
     rows = []
     for k, (f, square, a) in product(
-        range(len(problem.axes)), product(FREQUENCIES, SQUARES, AMPLITUDES)
+        range(len(problem.axes)), product(FREQUENCY_GRID, SQUARE_GRID, AMPLITUDE_GRID)
     ):
-        numbers = np.zeros((len(problem.axes), NUMBERS))
+        numbers = np.zeros((len(problem.axes), NUMBERS_PER_AXIS))
         numbers[:, 1] = 0.5
-        numbers[k] = [a, np.log(f / SLOWEST) / np.log(FASTEST / SLOWEST), square, 0.0, 0.0]
+        numbers[k] = [a, np.log(f / MIN_HZ) / np.log(MAX_HZ / MIN_HZ), square, 0.0, 0.0]
         # sway: the vehicle is turned so that it moves along the longer side of the tank
         heading = 0.5 if problem.axes[k] == 1 else 0.0
         rows.append(np.concatenate([[heading], numbers.ravel()]))
@@ -235,7 +238,7 @@ def _begin(
     rows = np.array([r.numbers for r in archive])
     ranks = np.array([r.rank for r in archive])
     for k in range(len(problem.axes)):
-        active = np.flatnonzero(rows[:, 1 + NUMBERS * k] > 0.0)
+        active = np.flatnonzero(rows[:, 1 + NUMBERS_PER_AXIS * k] > 0.0)
         best += [rows[i] for i in active[np.argsort(-ranks[active])][:2]]
     generation = list(best)
     while len(generation) < population:
@@ -243,10 +246,10 @@ def _begin(
         mixed = np.maximum(best[pair[0]], 0.0).copy()
         axes, partner = problem.axes, best[pair[1]]
         for k in range(len(axes)):
-            block = slice(1 + NUMBERS * k, 1 + NUMBERS * (k + 1))
+            block = slice(1 + NUMBERS_PER_AXIS * k, 1 + NUMBERS_PER_AXIS * (k + 1))
             if partner[block][0] > mixed[block][0]:
                 mixed[block] = partner[block]
-        mixed[1:] += MUTATION * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
-        mixed[1 + NUMBERS - 2 :: NUMBERS] = random.random(len(axes))  # phases
+        mixed[1:] += MUTATION_STD * random.normal(size=len(mixed) - 1) * (mixed[1:] > 0.0)
+        mixed[1 + NUMBERS_PER_AXIS - 2 :: NUMBERS_PER_AXIS] = random.random(len(axes))  # phases
         generation.append(np.clip(mixed, 0.0, 1.0))
     return np.array(generation[:population])

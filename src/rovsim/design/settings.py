@@ -10,7 +10,7 @@ from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.simulation.settings import SimulationSettings
 
 # s: shorter shows little; longer nobody foresees, and a search over it would fill the memory
-SHORTEST, LONGEST = 10, 600
+MIN_FLIGHT_SECONDS, MAX_FLIGHT_SECONDS = 10, 600
 
 
 class FlightLimits(Section):
@@ -55,7 +55,7 @@ class Question(SimulationSettings):
 
     between: tuple[str, ...] = ()
     know: tuple[str, ...] = ()
-    seconds: Annotated[float, Field(ge=SHORTEST, le=LONGEST)] = 60.0
+    seconds: Annotated[float, Field(ge=MIN_FLIGHT_SECONDS, le=MAX_FLIGHT_SECONDS)] = 60.0
     design: DesignSettings = DesignSettings()
     most_seconds: MostSeconds = MAX_TRAIN_SECONDS
     seed: int = Field(0, ge=0)

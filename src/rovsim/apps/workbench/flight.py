@@ -25,7 +25,7 @@ from rovsim.apps.workbench.parts import (
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
-from rovsim.design.settings import LONGEST, SHORTEST, Question
+from rovsim.design.settings import MAX_FLIGHT_SECONDS, MIN_FLIGHT_SECONDS, Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.effect_entry import describe_effect
 from rovsim.dynamics.effects.thrusters import with_thruster_names
@@ -61,7 +61,7 @@ class Flight:
             "asked": list(ASKED),
             "one": effects,
             "other": effects,
-            "seconds": range(SHORTEST, LONGEST + 1),
+            "seconds": range(MIN_FLIGHT_SECONDS, MAX_FLIGHT_SECONDS + 1),
         }
         self.chosen = Choices(place, first, possible, self._draw)
 
@@ -96,7 +96,9 @@ class Flight:
                 select = ui.select(names, label="Values (none: all)", multiple=True)
                 bind("know", select, optional=True)
             bind("model", ui.select(titled(self.known), label="Model"), redraw=redraw)
-            seconds = ui.number("Length (s)", min=SHORTEST, max=LONGEST, precision=0)
+            seconds = ui.number(
+                "Length (s)", min=MIN_FLIGHT_SECONDS, max=MAX_FLIGHT_SECONDS, precision=0
+            )
             seconds.props("debounce=500")  # ms, for two more digits
             bind("seconds", seconds, convert=int)
 

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.design.expected_information import NEGLIGIBLE
+from rovsim.design.expected_information import MIN_INFORMATION_GAIN
 from rovsim.results.design_benchmark import FlownCase, ReachedStd, ThroughWall
 
 
@@ -70,5 +70,5 @@ def _ratios(results: Sequence[FlownCase]) -> Array:
         elif case.usual is None or isinstance(case.usual, ThroughWall):
             ratios.append(np.inf)
         else:
-            ratios.append(case.designed.told / max(case.usual.told, NEGLIGIBLE))
+            ratios.append(case.designed.told / max(case.usual.told, MIN_INFORMATION_GAIN))
     return np.array(ratios)
