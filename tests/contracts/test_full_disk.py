@@ -17,7 +17,7 @@ from rovsim.apps.cli.main import main
 from rovsim.core.array_files import write_arrays
 from rovsim.core.errors import BadInput
 from rovsim.core.files import copy_file, folder_beside, write_bytes, write_json, write_text
-from rovsim.dynamics.learned.residual import ARRAYS
+from rovsim.dynamics.learned.residual import ARRAYS_FILE
 from rovsim.reporting.figures import signature, style
 
 
@@ -107,7 +107,9 @@ def test_a_model_is_never_beside_the_arrays_of_another_training(tmp_path, monkey
     main(["tank", "tank=tiny", "tank.duration=8", "out=tank"])
     words = ["train", "campaign=tank", "residual=knn", "out=trained"]
     main(words)
-    kept = {name: (tmp_path / "trained" / name).read_bytes() for name in ("model.yaml", ARRAYS)}
+    kept = {
+        name: (tmp_path / "trained" / name).read_bytes() for name in ("model.yaml", ARRAYS_FILE)
+    }
     monkeypatch.setattr(training, "write_model", full)
     with pytest.raises(SystemExit):
         main([*words, "residual.k=9", "residual.weights=uniform", "seed=3"])

@@ -19,7 +19,7 @@ from rovsim.dynamics.learned.checks import check_exported, posterior
 from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.residual import read_residual, write_residual
-from rovsim.dynamics.learned.settings import FEATURES, FeatureSettings, feature_names
+from rovsim.dynamics.learned.settings import MAX_FEATURES, FeatureSettings, feature_names
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.gaussian import GaussianSettings
 from rovsim.learning.learner import (
@@ -145,7 +145,7 @@ def test_a_process_fades_where_it_has_seen_nothing(trained):
 
 def test_one_sample_and_many_give_the_same_bits(trained, queries):
     many = evaluate_many(trained.data, queries)
-    x, one = np.full(FEATURES, np.nan), np.empty((len(queries), 6))
+    x, one = np.full(MAX_FEATURES, np.nan), np.empty((len(queries), 6))
     for i, query in enumerate(queries):
         x[: len(query)] = query  # a longer vector: the rest is not read
         evaluate(trained.data, x, one[i])

@@ -9,7 +9,7 @@ import time
 import pytest
 from filelock import FileLock
 
-from rovsim.dynamics.compilation.cache import UNUSED, cache_folder, prune
+from rovsim.dynamics.compilation.cache import MAX_UNUSED_SECONDS, cache_folder, prune
 from rovsim.dynamics.compilation.compiled import lock_file
 from rovsim.dynamics.engine.vectors import dot3
 
@@ -56,7 +56,7 @@ def test_a_process_marks_its_folder_as_used(folders, monkeypatch):
         os.utime(folder, (0.0, 0.0))
         cache_folder.cache_clear()
         assert cache_folder() == folder
-        assert time.time() - folder.stat().st_mtime < UNUSED / 30
+        assert time.time() - folder.stat().st_mtime < MAX_UNUSED_SECONDS / 30
     finally:
         cache_folder.cache_clear()
 

@@ -16,7 +16,7 @@ from rovsim.diagnosis.equations.with_thrust import (
     push_at,
 )
 from rovsim.dynamics.engine.kernel_inputs import Actuators, example_reading
-from rovsim.dynamics.laws.thrust_law import OTHER, THRUSTERS
+from rovsim.dynamics.laws.thrust_law import MAX_THRUSTERS, SECOND_THRUST
 from rovsim.simulation.batch import Batch
 from rovsim.simulation.drive import Drive
 from worlds import model, tank, write_and_read
@@ -27,9 +27,9 @@ TERMS = [
     ThrustTerm(0, 2, True, 0),
     ThrustTerm(5, 0, True, 1),
     ThrustTerm(1, 1, False, 9),
-    ThrustTerm(4, 0, False, OTHER, 2),
-    ThrustTerm(1, 5, True, OTHER, 1),
-    ThrustTerm(2, 2, False, OTHER, 2),
+    ThrustTerm(4, 0, False, SECOND_THRUST, 2),
+    ThrustTerm(1, 5, True, SECOND_THRUST, 1),
+    ThrustTerm(2, 2, False, SECOND_THRUST, 2),
 ]
 EVERY = pytest.mark.parametrize("term", TERMS, ids=lambda term: WithThrust(term).equation)
 RNG = np.random.default_rng(3)
@@ -96,7 +96,7 @@ def test_what_does_not_move_has_no_terms_and_other_thrusters_neither():
     fewer = list_thrust_terms(runs(3, 4), model())
     assert not any(t.on in (3, 4) or t.factor in (3, 4, 9, 10) for t in fewer)
     own = model()
-    body = replace(own.body, B=np.zeros((6, THRUSTERS + 1)))
+    body = replace(own.body, B=np.zeros((6, MAX_THRUSTERS + 1)))
     assert list_thrust_terms(runs(), SimpleNamespace(body=body, vehicle=own.vehicle)) == []
 
 
@@ -108,7 +108,7 @@ def test_what_does_not_move_has_no_terms_and_other_thrusters_neither():
         (ThrustTerm(0, 2, True, 0), "s/m"),
         (ThrustTerm(5, 0, True, 1), "s"),
         (ThrustTerm(1, 1, False, 9), "s/rad"),
-        (ThrustTerm(4, 0, False, OTHER, 2), "m/N"),
+        (ThrustTerm(4, 0, False, SECOND_THRUST, 2), "m/N"),
         (ThrustTerm(1, 5, False, 5), "s/(m rad)"),
     ],
 )

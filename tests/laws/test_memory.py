@@ -8,7 +8,7 @@ import pytest
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.current import Current
 from rovsim.dynamics.effects.damping import LinearDamping
-from rovsim.dynamics.effects.fluid_memory import ARM, FluidMemory
+from rovsim.dynamics.effects.fluid_memory import SQUARED_ARM, FluidMemory
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.measurement.signals.filter import Butterworth
@@ -52,7 +52,7 @@ def test_a_step_is_of_second_order():
 def test_long_forgotten_water_is_drag_and_long_remembered_water_none():
     """T to infinity: linear damping by c. T to 0: m follows at once, and no force is left."""
     drag = {axis: 20.0 for axis in ("surge", "sway", "heave")}
-    drag |= {axis: 20.0 * ARM for axis in ("roll", "pitch", "yaw")}
+    drag |= {axis: 20.0 * SQUARED_ARM for axis in ("roll", "pitch", "yaw")}
     slow, fast = (moved(model(FluidMemory(coefficient=20.0, time_constant=T))) for T in (1e6, 0.01))
     np.testing.assert_allclose(slow.nu, moved(model(LinearDamping(**drag))).nu, atol=1e-4)
     plain = moved(model()).nu

@@ -16,7 +16,7 @@ from rovsim.dynamics.learned.layout import BLOCKS, HEADER
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
 from rovsim.dynamics.learned.settings import (
     COLUMNS,
-    FEATURES,
+    MAX_FEATURES,
     FeatureSettings,
     blocks_code,
     feature_names,
@@ -38,12 +38,12 @@ def test_a_tree_of_any_size_finds_the_same_as_looking_at_every_point(seed, n, d,
     rng = np.random.default_rng(seed)
     points = rng.normal(size=(n, d)) + spread * rng.integers(-2, 3, (n, 1))
     chosen = FeatureSettings(blocks=tuple(COLUMNS), scaling="none")
-    wide = np.zeros((n, FEATURES))
+    wide = np.zeros((n, MAX_FEATURES))
     wide[:, :d] = points
     Y, k = rng.normal(size=(n, 6)), min(5, n)
     data = export_neighbours(chosen, fit_scaling("none", wide), wide, Y, k, "uniform")
     queries = np.concatenate(
-        [wide[:3], rng.normal(size=(5, FEATURES)) * [[1], [1], [3], [9], [99]]]
+        [wide[:3], rng.normal(size=(5, MAX_FEATURES)) * [[1], [1], [3], [9], [99]]]
     )
     expected = [Y[nearest_rows(wide, query, k)].mean(0) for query in queries]
     assert evaluate_many(data, queries) == pytest.approx(np.array(expected), abs=1e-12)
@@ -154,7 +154,7 @@ def test_one_sample_is_assembled_as_many(seed, blocks):
     data, d = np.zeros(HEADER), len(feature_names(chosen))
     data[BLOCKS] = blocks_code(chosen)
     for i in range(5):
-        x = np.full(FEATURES, np.nan)
+        x = np.full(MAX_FEATURES, np.nan)
         assemble_one(data, nu[i], nu_dot[i], wrench[i], rotations.matrix(q[i]), x)
         assert x[:d] == pytest.approx(X[i], abs=1e-14)
         assert np.isnan(x[d:]).all()

@@ -253,7 +253,7 @@ def test_many_steps_are_taken_in_parts_and_say_the_same(monkeypatch, kind, betwe
     commands = Commands(np.linspace(0.1, 1.7, len(value)), value, kind)
     path = model(InputDelay(delay=0.05), VoltageSag(fraction=0.2)).thrust_path
     whole = path.over_steps(commands, EDGES, between)
-    monkeypatch.setattr("rovsim.dynamics.actuation.AT_ONCE", 17)
+    monkeypatch.setattr("rovsim.dynamics.actuation.STEPS_PER_BATCH", 17)
     parts = path.over_steps(commands, EDGES, between)
     for name in ("force", "wrench", "demand"):
         np.testing.assert_array_equal(getattr(parts, name), getattr(whole, name))

@@ -27,7 +27,7 @@ from rovsim.dynamics.effects.base import (
 from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.dynamics.vehicle import Surfaces, Thrusters
 
-AT_ONCE = 1 << 16  # steps evaluated at once: this takes twenty times the memory of the result
+STEPS_PER_BATCH = 1 << 16  # this takes twenty times the memory of the result
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +197,9 @@ class ThrustPath:
         start, duration = commands.recording(edges)
         arrival = start + self.effective_time(commands.time - start)  # clocks agree at the start
         lines = replace(commands, time=arrival)
-        chunks = [edges[k : k + AT_ONCE + 1] for k in range(0, len(edges) - 1, AT_ONCE)]
+        chunks = [
+            edges[k : k + STEPS_PER_BATCH + 1] for k in range(0, len(edges) - 1, STEPS_PER_BATCH)
+        ]
         static = Thrust.joined(
             [
                 self.arrived(lines.within(e[0], e[-1]), e, start, duration, between, cuts)

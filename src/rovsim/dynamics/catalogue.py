@@ -16,7 +16,7 @@ from rovsim.dynamics.user_effects.trials import try_on
 from rovsim.dynamics.vehicle import Vehicle
 
 # What a vehicle may lack, in words; its vehicle file has a section of that name.
-PARTS: Mapping[Requirement, str] = {
+PART_NAMES: Mapping[Requirement, str] = {
     "thrusters": "thrusters",
     "surfaces": "control surfaces",
     "waterplane": "a waterplane",
@@ -80,7 +80,7 @@ class Catalogue(Mapping[str, type[Effect]]):
         if name in self.impossible:
             need = self.impossible[name]
             raise BadInput(
-                f"'{name}' cannot act on a vehicle without {PARTS[need]}",
+                f"'{name}' cannot act on a vehicle without {PART_NAMES[need]}",
                 where="effects",
                 expected="effects of what the vehicle has",
                 remedy=f"Leave it out, or describe what is there in the vehicle file, in '{need}'.",

@@ -13,14 +13,14 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.results.fitted import FittedEffect
 
 # Larger than anything that was ever fitted: a replay with values drawn from it would diverge.
-VAGUEST = 1e12  # a standard deviation
+MAX_STD = 1e12
 
 
 class Value(Section):
     """A parameter's value, its standard deviation and its unit; None: not known."""
 
     value: Number
-    std: Annotated[Number, Field(ge=0.0, le=VAGUEST)] | None = None
+    std: Annotated[Number, Field(ge=0.0, le=MAX_STD)] | None = None
     unit: str | None = None
 
 

@@ -25,7 +25,7 @@ from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.dynamics.uncertainty import Uncertainty
 from rovsim.dynamics.vehicle import Thrusters, Vehicle
 
-TRIES = 20  # draws of a model, at most, until one has a possible body
+MAX_DRAWS = 20  # draws of a model, at most, until one has a possible body
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class Model:
         """
         if self.uncertainty is None:
             return self
-        for _ in range(TRIES):
+        for _ in range(MAX_DRAWS):
             model = self.with_added(self.uncertainty.draw(random))
             if model.possible:
                 return model

@@ -22,7 +22,7 @@ from rovsim.results.fitted import Correlation, FittedNoise, Possibility, Posteri
 
 SCHEMA = "rovsim.model/1"
 # m/s2, rad/s2, m, rad: noise larger than was ever fitted; a replay with draws of it would diverge.
-WILDEST = 1e3
+MAX_NOISE = 1e3
 
 
 class PossibilityEntry(Section):
@@ -81,8 +81,8 @@ class UncertaintyEntry(Section):
     @model_validator(mode="after")
     def _is_survived(self) -> Self:
         sizes = (*self.noise.disturbance, *self.noise.reading, *self.noise.colour)
-        if max((size for size in sizes if size is not None), default=0.0) > WILDEST:
-            raise ValueError(f"noise of at most {WILDEST:.0f} m/s2, rad/s2, m or rad")
+        if max((size for size in sizes if size is not None), default=0.0) > MAX_NOISE:
+            raise ValueError(f"noise of at most {MAX_NOISE:.0f} m/s2, rad/s2, m or rad")
         return self
 
 

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.run import latest
 
-KEPT = 4  # cuts of a run: for commands as logged, a little later, and on another clock
+MAX_KEPT_CUTS = 4  # cuts of a run: for commands as logged, a little later, and on another clock
 
 
 class StepCut(NamedTuple):
@@ -61,7 +61,7 @@ class StepCuts:
             if entry[2] is by_line and _alike(entry[0], arrival) and _alike(entry[1], edges):
                 return entry[3]
         cut = StepCut.at(arrival, edges, by_line)
-        self._kept = ((arrival, edges, by_line, cut), *self._kept[: KEPT - 1])
+        self._kept = ((arrival, edges, by_line, cut), *self._kept[: MAX_KEPT_CUTS - 1])
         return cut
 
 

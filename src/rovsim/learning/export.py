@@ -18,13 +18,13 @@ from rovsim.dynamics.learned.layout import (
     HEADER,
     KIND,
     LANES,
-    MOST_POINTS,
+    MAX_POINTS,
     NEIGHBOURS,
     OUTPUTS,
-    PASS,
     POINTS,
     RANK,
     UNIFORM,
+    UNROLL,
     VERSION,
     WEIGHTING,
     WIDTH,
@@ -81,7 +81,7 @@ def export_neighbours(
         header,
         scaling.shift,
         scaling.scale,
-        _sheet(axes, filled(len(axes), PASS), len(axes)),
+        _sheet(axes, filled(len(axes), UNROLL), len(axes)),
         tree.boxes,
         side_by_side(rotated[tree.order]),
         _row(tree.order, filled(len(Z), LANES)),
@@ -119,11 +119,11 @@ def export_expansion(
         BadInput: more points than the scratch of the compiled code has room for.
     """
     points = len(kernels[0].points)
-    if points > MOST_POINTS:
+    if points > MAX_POINTS:
         raise BadInput(
             f"{points} points",
             where="kernel expansion of a residual",
-            expected=f"at most {MOST_POINTS}",
+            expected=f"at most {MAX_POINTS}",
             remedy="Set residual.max_points, or use svgp.",
         )
     variances = [kernel.variance for kernel in kernels if kernel.variance]
@@ -147,9 +147,9 @@ def _part(kernel: Kernel, scaling: Scaling, rank: int) -> Array:
         scaling.shift,
         scaling.scale * length,
         side_by_side(kernel.points / length),
-        _row(variance.spectrum, filled(rank, PASS)),
-        _sheet(kernel.weights.T, filled(share, PASS), wide),
-        _sheet(variance.vectors, filled(rank, PASS), wide),
+        _row(variance.spectrum, filled(rank, UNROLL)),
+        _sheet(kernel.weights.T, filled(share, UNROLL), wide),
+        _sheet(variance.vectors, filled(rank, UNROLL), wide),
     ]
     return np.concatenate([piece.ravel() for piece in pieces])
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.learned.layout import LANES, PASS, filled, tree_levels
+from rovsim.dynamics.learned.layout import LANES, UNROLL, filled, tree_levels
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +59,6 @@ def _ordered(points: Array, rows: Array) -> Array:
 def side_by_side(points: Array) -> Array:
     """Arrange points (n, d) as (blocks, d', LANES), filled up with zeros; see `layout`."""
     n, d = points.shape
-    full = np.zeros((filled(n, LANES), filled(d, PASS)))
+    full = np.zeros((filled(n, LANES), filled(d, UNROLL)))
     full[:n, :d] = points
     return full.reshape(-1, LANES, full.shape[1]).transpose(0, 2, 1)

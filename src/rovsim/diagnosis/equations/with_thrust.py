@@ -25,8 +25,8 @@ from rovsim.diagnosis.equations.products.variables import (
 )
 from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.laws.codes import NONE, SIZE
-from rovsim.dynamics.laws.thrust_law import OTHER, THRUSTERS, ThrustLaw
+from rovsim.dynamics.laws.codes import NO_FACTOR, SIZE
+from rovsim.dynamics.laws.thrust_law import MAX_THRUSTERS, SECOND_THRUST, ThrustLaw
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -56,20 +56,20 @@ class ThrustTerm:
         thrust: axis (0 to 5) of the thrust.
         unsigned: whether the absolute value of that thrust is taken.
         factor: code of a further factor: a velocity or its absolute value (`laws.codes`), or
-            `OTHER` for a second thrust; `NONE` where there is no further factor.
-        other: axis (0 to 5) of the second thrust; `NONE` where there is none.
+            `SECOND_THRUST` for a second thrust; `NO_FACTOR` where there is no further factor.
+        other: axis (0 to 5) of the second thrust; `NO_FACTOR` where there is none.
     """
 
     on: int
     thrust: int
     unsigned: bool = False
-    factor: int = NONE
-    other: int = NONE
+    factor: int = NO_FACTOR
+    other: int = NO_FACTOR
 
     @property
     def thrusts(self) -> tuple[int, ...]:
         """Axes of the thrusts in the term; the square of a thrust has its axis twice."""
-        return (self.thrust, self.other) if self.factor == OTHER else (self.thrust,)
+        return (self.thrust, self.other) if self.factor == SECOND_THRUST else (self.thrust,)
 
     @property
     def factors(self) -> tuple[Variable, ...]:
@@ -78,7 +78,7 @@ class ThrustTerm:
         if self.unsigned:
             code, latex = f"abs({primary.code})", f"|{primary.latex}|"
             primary = replace(primary, code=code, latex=latex, odd=False)
-        moving = [VARIABLES[self.factor]] if NONE < self.factor < OTHER else []
+        moving = [VARIABLES[self.factor]] if NO_FACTOR < self.factor < SECOND_THRUST else []
         return (primary, *secondary, *moving)
 
     @property
@@ -102,7 +102,7 @@ def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustT
             of columns.
     """
     B = model.body.B
-    if not 0 < B.shape[1] <= THRUSTERS or len(model.vehicle.thrusters.units) != B.shape[1]:
+    if not 0 < B.shape[1] <= MAX_THRUSTERS or len(model.vehicle.thrusters.units) != B.shape[1]:
         return []
     moving = [int(i) for i in np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))]
     driven = [j for j in range(6) if np.abs(B[j]).max() > 1e-3]
@@ -127,9 +127,9 @@ def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterato
         yield ThrustTerm(i, j, False, SIZE + k)
     for k in driven:
         if k >= j:
-            yield ThrustTerm(i, j, False, OTHER, k)
+            yield ThrustTerm(i, j, False, SECOND_THRUST, k)
         if k != j:
-            yield ThrustTerm(i, j, True, OTHER, k)
+            yield ThrustTerm(i, j, True, SECOND_THRUST, k)
 
 
 def push_thrust(
@@ -167,9 +167,9 @@ def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
     for out, term in zip(wrenches, terms, strict=True):
         value = thrust[:, term.thrust]
         value = np.abs(value) if term.unsigned else value
-        if term.factor == OTHER:
+        if term.factor == SECOND_THRUST:
             value = value * thrust[:, term.other]
-        elif term.factor != NONE:
+        elif term.factor != NO_FACTOR:
             value = value * table[:, term.factor]
         out[:, term.on] = value
     return wrenches
@@ -196,7 +196,7 @@ def build_law(term: ThrustTerm, model: Model, size: float, coefficient: float) -
     values = {"c": float(coefficient), "size": 1.0 / size, "on": float(term.on)}
     values |= {"unsigned": float(term.unsigned), "factor": float(term.factor)}
     values |= {f"b{i}": float(b) for i, b in enumerate(B[term.thrust])}
-    if term.factor == OTHER:
+    if term.factor == SECOND_THRUST:
         values |= {f"d{i}": float(b) for i, b in enumerate(B[term.other])}
     return Term(ThrustLaw(**values), ("c",))
 
@@ -210,7 +210,11 @@ class WithThrust(Form):
     @property
     def parts(self) -> tuple[Part, ...]:
         """A single term."""
-        velocity = (VELOCITY[self.term.factor % SIZE],) if NONE < self.term.factor < OTHER else ()
+        velocity = (
+            (VELOCITY[self.term.factor % SIZE],)
+            if NO_FACTOR < self.term.factor < SECOND_THRUST
+            else ()
+        )
         return (Part(AXES[self.term.on], ("thrust", *velocity)),)
 
     @property
@@ -266,7 +270,7 @@ class WithThrust(Form):
         yield "F = at.actuators.force"
         for j, row in dict(zip(t.thrusts, "bd", strict=False)).items():
             yield f"{THRUST_VARIABLES[j].code} = {_sum(law, row)}  # thrust {DIRECTION_NAMES[j]}"
-        if NONE < t.factor < OTHER:
+        if NO_FACTOR < t.factor < SECOND_THRUST:
             yield f"{VARIABLES[t.factor % SIZE].code} = at.nu_r[{t.factor % SIZE}]"
         yield f"push = {' * '.join((f'p.{AXES[t.on]}', *(f.code for f in t.factors)))}"
         yield "return " + ", ".join("push" if i == t.on else "0.0" for i in range(6))
@@ -283,5 +287,5 @@ def _sum(law: Term, row: str) -> str:
         law: whose parameters hold rows of the allocation matrix.
         row: letter of the row: `b` for the first thrust, `d` for a second one.
     """
-    shares = [(i, float(f"{law.effect[f'{row}{i}']:.6g}")) for i in range(THRUSTERS)]
+    shares = [(i, float(f"{law.effect[f'{row}{i}']:.6g}")) for i in range(MAX_THRUSTERS)]
     return " + ".join(f"{b:g} * F[{i}]" for i, b in shares if b)

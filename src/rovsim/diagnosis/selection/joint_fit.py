@@ -18,7 +18,7 @@ from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.buoyancy import BuoyancyCenter, NetBuoyancy
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
-from rovsim.dynamics.effects.onboard_control import EVERY_AXIS, OnboardControl
+from rovsim.dynamics.effects.onboard_control import ALL_LOOPS_START, OnboardControl
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.model import Model
 from rovsim.estimation.file_effects import DRAG, free_terms, mark_gain
@@ -61,7 +61,7 @@ def _list_starts(base: Model, moved: Sequence[str], kind: str) -> list[Hypothesi
     common_terms = free_terms(base, moved, COMMON_EFFECTS)
     starts = [(*common_terms, *free_terms(base, moved, [ThrusterGain]))]
     if kind == "demand":
-        loops = Term(OnboardControl(**EVERY_AXIS), OnboardControl.free_at(EVERY_AXIS))
+        loops = Term(OnboardControl(**ALL_LOOPS_START), OnboardControl.free_at(ALL_LOOPS_START))
         starts.append((*common_terms, loops))
     return [Hypothesis(base, terms) for terms in starts]
 

@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from rovsim.core.axes import AXES
 from rovsim.core.rotations import matrix
 from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE, AxisResidual, Structure
-from rovsim.dynamics.laws.law import SMOOTH
+from rovsim.dynamics.laws.law import SIGN_WIDTH
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 from rovsim.estimation.observer.sandwich import find_inflation
@@ -71,7 +71,7 @@ def _of_velocities(nu: Array, run: ObservedRun) -> dict[str, Array]:
         table[f"{axis} speed"] = np.abs(v)
         table[f"{axis} velocity, squared"] = np.abs(v) * v
         table[f"{axis} velocity, cubed"] = v**3
-        table[f"the direction of {axis} motion"] = np.tanh(v / SMOOTH)
+        table[f"the direction of {axis} motion"] = np.tanh(v / SIGN_WIDTH)
         for memory in MEMORY_SECONDS:
             table[f"{axis} velocity some {memory:g} s ago"] = _lag(v, run, memory)
     for i, j in combinations(range(6), 2):

@@ -18,11 +18,11 @@ from pathlib import Path
 import numba
 from platformdirs import user_cache_path
 
-DYNAMICS = Path(__file__).parents[1]
+DYNAMICS_FOLDER = Path(__file__).parents[1]
 # Packages of `dynamics` whose functions are compiled.
-ROOMS = ("compilation", "engine", "effects", "laws", "learned")
+COMPILED_PACKAGES = ("compilation", "engine", "effects", "laws", "learned")
 # s, 30 days; our choice. A longer process loses nothing: Numba compiles again what is missing.
-UNUSED = 30 * 86400.0
+MAX_UNUSED_SECONDS = 30 * 86400.0
 
 
 @cache
@@ -38,8 +38,8 @@ def cache_folder() -> Path:
 
 
 def prune(folders: Path) -> None:
-    """Remove the folders in `folders` that no process marked as used for `UNUSED` seconds."""
-    oldest = time.time() - UNUSED
+    """Remove the folders in `folders` that no process marked as used for `MAX_UNUSED_SECONDS`."""
+    oldest = time.time() - MAX_UNUSED_SECONDS
     for folder in folders.iterdir():
         with suppress(OSError):  # another process may have removed it
             if folder.stat().st_mtime < oldest:
@@ -47,7 +47,9 @@ def prune(folders: Path) -> None:
 
 
 def _digest_sources() -> str:
-    files = sorted(file for room in ROOMS for file in DYNAMICS.joinpath(room).rglob("*.py"))
+    files = sorted(
+        file for room in COMPILED_PACKAGES for file in DYNAMICS_FOLDER.joinpath(room).rglob("*.py")
+    )
     return digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
 
 

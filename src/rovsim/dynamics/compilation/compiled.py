@@ -13,7 +13,7 @@ from rovsim.dynamics.compilation.cache import cache_folder
 MATHS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
 # Wrappers that make a function callable from outside take half of the time of its compilation.
 FROM_PYTHON: dict[str, Any] = {"no_cfunc_wrapper": True}  # callable from Python, but not from C
-UNSEEN: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INTERNAL: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def keep(**options: Any) -> Callable[[Callable], Any]:
@@ -89,11 +89,11 @@ def _lock_file(function: Any) -> Path:
 kept = keep(nogil=True, **MATHS, **FROM_PYTHON)  # callable from Python, in any thread
 # Functions that are the same in every engine, inlined where they are called.
 inline_shared = keep(forceinline=True, **MATHS, **FROM_PYTHON)
-inline_internal = keep(forceinline=True, **MATHS, **UNSEEN)  # not called from Python
-internal = keep(**MATHS, **UNSEEN)  # too large or too rare to be inlined
+inline_internal = keep(forceinline=True, **MATHS, **INTERNAL)  # not called from Python
+internal = keep(**MATHS, **INTERNAL)  # too large or too rare to be inlined
 # Functions that depend on the effects: compiled anew with each engine, and cached as part of it. A
 # function with an argument `extra` must be inlined, because the address of `extra` is different in
 # each process, so that the function could not be cached by itself.
 inlined = numba.njit(forceinline=True, **MATHS)  # helpers of an effect's kernel
-inline_anew = numba.njit(forceinline=True, **MATHS, **UNSEEN)
+inline_anew = numba.njit(forceinline=True, **MATHS, **INTERNAL)
 entry = numba.njit(inline="always", **MATHS)  # the bodies of the functions that an engine caches

@@ -2,7 +2,7 @@
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import STAMP, CommandTiming, Parameter, Signature
+from rovsim.dynamics.effects.base import STAMP_STEP, CommandTiming, Parameter, Signature
 
 
 class InputDelay(CommandTiming):
@@ -22,7 +22,7 @@ class InputDelay(CommandTiming):
         "the response, a lag rounds it, and with a drifting clock the shift grows during the run."
     )
     signature = Signature({"delay": 0.2}, "sway", "change of sway thrust")
-    parameters = (Parameter("delay", "s", r"\delta", scale=0.05, resolution=STAMP),)
+    parameters = (Parameter("delay", "s", r"\delta", scale=0.05, resolution=STAMP_STEP),)
     # several starts: from no delay, derivatives do not lead to a step of a command 0.1 s later
     starts = ({}, {"delay": 0.1}, {"delay": 0.3}, {"delay": -0.1})
 
@@ -46,7 +46,7 @@ class ClockDrift(CommandTiming):
     )
     signature = Signature({"rate": 0.005}, "surge", "time in the run", size=True)
     parameters = (  # one stamp in a minute
-        Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002, resolution=STAMP / 60.0),
+        Parameter("rate", "1", "r", low=-0.5, high=0.5, scale=0.002, resolution=STAMP_STEP / 60.0),
     )
     # 0.2 s and 0.6 s after a minute; see InputDelay
     starts = ({}, {"rate": 0.003}, {"rate": -0.003}, {"rate": 0.01}, {"rate": -0.01})

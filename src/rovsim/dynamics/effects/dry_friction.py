@@ -5,13 +5,13 @@ from math import tanh
 from rovsim.dynamics.compilation.compiled import inlined
 from rovsim.dynamics.effects.base import Signature, Wrench, per_axis
 
-SMOOTH = 0.01  # m/s or rad/s: a convention of model files, as its equation says
+SMOOTHING_SPEED = 0.01  # m/s or rad/s: a convention of model files, as its equation says
 
 
 @inlined
 def rub(c, v):
     """Friction of size c against a velocity v; 0 at once for c = 0, which costs no tanh."""
-    return -c * tanh(v / SMOOTH) if c != 0.0 else 0.0
+    return -c * tanh(v / SMOOTHING_SPEED) if c != 0.0 else 0.0
 
 
 class DryFriction(Wrench):

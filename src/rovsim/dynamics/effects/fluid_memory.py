@@ -5,8 +5,8 @@ import numpy as np
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Parameter, Signature
 
-ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water; a convention
-WEIGHTS = np.array([1.0, 1.0, 1.0, ARM, ARM, ARM])
+SQUARED_ARM = 0.02  # kappa, m2: square of the arm at which rotation meets the water; a convention
+WEIGHTS = np.array([1.0, 1.0, 1.0, SQUARED_ARM, SQUARED_ARM, SQUARED_ARM])
 
 
 class FluidMemory(Coefficients):

@@ -12,15 +12,15 @@ from rovsim.core.run import CommandKind, Site
 from rovsim.dynamics.compilation.compiled import inlined
 from rovsim.dynamics.effects.base import Autopilot, Parameter, Signature, Wrench
 
-SPEEDS = ("m/s", "rad/s")
+SPEED_UNITS = ("m/s", "rad/s")
 # Where a fit of loops on all axes begins: gains, the speed of this vehicle at full stick (Blue
 # Robotics: 1.5 m/s forward), m/s and rad/s; and bandwidths, 1/s.
-FULL_SPEED, FULL_WIDTH = (1.0, 1.0, 1.0, 3.0, 3.0, 3.0), (1.0, 1.0, 1.0, 3.0, 3.0, 3.0)
-EVERY_AXIS = {f"gain_{axis}": g for axis, g in zip(AXES, FULL_SPEED, strict=True)} | {
-    f"bandwidth_{axis}": b for axis, b in zip(AXES, FULL_WIDTH, strict=True)
+FULL_STICK_SPEED, INITIAL_BANDWIDTH = (1.0, 1.0, 1.0, 3.0, 3.0, 3.0), (1.0, 1.0, 1.0, 3.0, 3.0, 3.0)
+ALL_LOOPS_START = {f"gain_{axis}": g for axis, g in zip(AXES, FULL_STICK_SPEED, strict=True)} | {
+    f"bandwidth_{axis}": b for axis, b in zip(AXES, INITIAL_BANDWIDTH, strict=True)
 }
-ROTATION = ("roll", "pitch", "yaw")
-LEANING = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])  # axes whose angle a loop may hold
+ROTATION_AXES = ("roll", "pitch", "yaw")
+TILT_AXES = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])  # axes whose angle a loop may hold
 
 
 @inlined
@@ -57,7 +57,9 @@ class OnboardControl(Wrench, Autopilot):
     signature = Signature({"gain_yaw": 1.0, "bandwidth_yaw": 2.0}, "yaw", "yaw thrust")
     parameters = (
         *(
-            Parameter(f"gain_{axis}", SPEEDS[i // 3], f"g_{{{axis}}}", scale=(0.3, 0.5)[i // 3])
+            Parameter(
+                f"gain_{axis}", SPEED_UNITS[i // 3], f"g_{{{axis}}}", scale=(0.3, 0.5)[i // 3]
+            )
             for i, axis in enumerate(AXES)
         ),
         *(
@@ -71,14 +73,14 @@ class OnboardControl(Wrench, Autopilot):
         *(
             {
                 f"{name}_{axis}": x
-                for axis in ROTATION
+                for axis in ROTATION_AXES
                 for name, x in (("gain", g), ("bandwidth", b))
             }
             | extra
             for g, b, extra in ((1.0, 2.0, {}), (0.5, 3.0, {"attitude": 1.0}))
         ),
         {"gain_heave": 0.5, "bandwidth_heave": 1.0},
-        EVERY_AXIS,
+        ALL_LOOPS_START,
     )
 
     @classmethod
@@ -110,7 +112,7 @@ class OnboardControl(Wrench, Autopilot):
         For roll and pitch in attitude mode, the demanded angle g_i demand_i times b_i is a rate.
         """
         gain, bandwidth = self.values[:6], self.values[6:12]
-        by_angle = 1.0 + self["attitude"] * LEANING * (bandwidth - 1.0)
+        by_angle = 1.0 + self["attitude"] * TILT_AXES * (bandwidth - 1.0)
         return np.where(self._closed, inertia * bandwidth * by_angle * gain * demand, 0.0)
 
     @staticmethod

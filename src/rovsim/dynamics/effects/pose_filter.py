@@ -6,8 +6,8 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.effects.base import CommandTiming, MeasurementFilter, Parameter, Signature
 
-NONE = 1e3  # Hz, ten times what cameras see: no filter at all
-LATEST = 0.2  # s, two frames of the slowest cameras
+MAX_HZ = 1e3  # Hz, ten times what cameras see: no filter at all
+MAX_LATENCY = 0.2  # s, two frames of the slowest cameras
 
 
 class PoseFilter(MeasurementFilter, CommandTiming):
@@ -44,15 +44,15 @@ class PoseFilter(MeasurementFilter, CommandTiming):
     )
     signature = Signature({"cutoff": 2.0}, "surge", "change of surge thrust")
     parameters = (
-        Parameter("cutoff", "Hz", "f_c", 0.1, NONE, default=NONE, scale=1.0, reciprocal=True),
-        Parameter("latency", "s", r"\delta_y", -LATEST, LATEST, scale=0.01, fitted=False),
+        Parameter("cutoff", "Hz", "f_c", 0.1, MAX_HZ, default=MAX_HZ, scale=1.0, reciprocal=True),
+        Parameter("latency", "s", r"\delta_y", -MAX_LATENCY, MAX_LATENCY, scale=0.01, fitted=False),
     )
     starts = ({"cutoff": 10.0}, {"cutoff": 4.0})
 
     def time_constants(self) -> tuple[float, ...]:
         """Time constants of the two low-passes, s; empty where there is no filter."""
         cutoff = self["cutoff"]
-        return () if cutoff >= NONE else 2 * (1.0 / (2.0 * pi * cutoff),)
+        return () if cutoff >= MAX_HZ else 2 * (1.0 / (2.0 * pi * cutoff),)
 
     def effective_time(self, time: Array) -> Array:
         """Delay by the latency: the poses' clock is late by it, so commands seem to act later."""

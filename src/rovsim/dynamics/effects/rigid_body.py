@@ -15,8 +15,8 @@ from rovsim.dynamics.effects.base import (
 )
 
 # Where the fit of a payload begins on a BlueROV2 Heavy: kg, m from its middle.
-START, REACH = 0.3, 0.15
-PLACE = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
+START_MASS, START_OFFSET = 0.3, 0.15
+POSITION_PARAMETERS = tuple(Parameter(axis, "m", axis, scale=0.1) for axis in "xyz")
 
 
 class RigidBody(Coefficients):
@@ -33,7 +33,7 @@ class RigidBody(Coefficients):
             Parameter(name, "kg m2", f"I_{name[1:]}", low=0.0, scale=0.05)
             for name in ("Ixx", "Iyy", "Izz")
         ),
-        *PLACE,
+        *POSITION_PARAMETERS,
         *(
             Parameter(name, "kg m2", f"I_{{{name[1:]}}}", scale=0.05)
             for name in ("Ixy", "Ixz", "Iyz")
@@ -79,8 +79,8 @@ class Payload(Coefficients):
         "down and also slows every start, lost buoyancy only weighs it down."
     )
     signature = Signature({"mass": 1.0, "x": 0.1, "z": 0.15}, "pitch", "pitch angle")
-    parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *PLACE)
-    starts = _places(START, REACH)
+    parameters = (Parameter("mass", "kg", "m", low=0.0, scale=0.5), *POSITION_PARAMETERS)
+    starts = _places(START_MASS, START_OFFSET)
 
     @classmethod
     def on(cls, vehicle: Actuated) -> type[Effect]:
@@ -96,4 +96,4 @@ class Payload(Coefficients):
 def _on_a_vehicle_of(mass: float) -> type[Payload]:
     """With the starts of a BlueROV2 Heavy scaled to a vehicle of this mass, kg."""
     size = mass / REFERENCE_MASS
-    return Payload.adapted(starts=_places(START * size, REACH * size ** (1.0 / 3.0)))
+    return Payload.adapted(starts=_places(START_MASS * size, START_OFFSET * size ** (1.0 / 3.0)))

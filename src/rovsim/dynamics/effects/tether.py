@@ -8,7 +8,7 @@ from rovsim.dynamics.compilation.compiled import inlined
 from rovsim.dynamics.effects.base import Parameter, Signature, Wrench
 from rovsim.dynamics.engine.vectors import cross, dot3, into_body
 
-ATTACHMENT = tuple(
+ATTACHMENT_PARAMETERS = tuple(
     Parameter(f"attachment_{axis}", "m", f"{axis}_t", default=x, scale=0.1, fitted=False)
     for axis, x in zip("xyz", (-0.2, 0.0, 0.0), strict=True)  # aft, as a convention
 )
@@ -54,7 +54,7 @@ class TetherTension(Wrench):
         Parameter("stiffness", "N/m", "k", low=0.0, scale=2.0),
         Parameter("slack_length", "m", "L_0", low=0.0, scale=0.5),
         *_anchor(0.0, fitted=True),
-        *ATTACHMENT,
+        *ATTACHMENT_PARAMETERS,
     )
     starts = tuple({"stiffness": 1.0, "slack_length": slack} for slack in (0.2, 1.0))
 
@@ -111,7 +111,7 @@ class TetherDrag(Wrench):
         # 1.2 (cylinder) * 1000 kg/m3 / 2 * 7.5 mm = 4.5 N s2/m3 if all of it moved at full speed
         Parameter("coefficient", "N s2/m3", "c", low=0.0, scale=2.0),
         *_anchor(float("nan"), fitted=False),
-        *ATTACHMENT,
+        *ATTACHMENT_PARAMETERS,
     )
     starts = ({"coefficient": 0.5}, {"coefficient": 2.0})
 

@@ -11,7 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.pwm import SPAN
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import (
-    STAMP,
+    STAMP_STEP,
     Actuated,
     Coefficients,
     CommandTransform,
@@ -37,7 +37,7 @@ def _gains(count: int) -> tuple[Parameter, ...]:
 
 
 # ESCs stop at 0.06 (25 us); five times that is more than anybody would fly with.
-WIDTHS = tuple(round(0.01 * k, 2) for k in range(1, 31))
+DEADBANDS = tuple(round(0.01 * k, 2) for k in range(1, 31))
 
 
 class ThrusterDeadband(CommandTransform):
@@ -57,7 +57,7 @@ class ThrusterDeadband(CommandTransform):
     # two steps of a log in whole microseconds: between them no command changes sides
     parameters = (
         Parameter(
-            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, tried=WIDTHS
+            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, tried=DEADBANDS
         ),
     )
     starts = ({"width": 0.03}, {"width": 0.07})
@@ -200,7 +200,7 @@ class ThrusterLag(ThrusterDynamics):
         "response by its time constant at any step size, added mass only slows the rise."
     )
     signature = Signature({"time_constant": 0.2}, "surge", "change of surge thrust")
-    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, resolution=STAMP),)
+    parameters = (Parameter("time_constant", "s", "T", low=0.0, scale=0.1, resolution=STAMP_STEP),)
     starts = ({"time_constant": 0.05}, {"time_constant": 0.2})
 
     def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:

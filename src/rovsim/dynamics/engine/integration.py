@@ -25,7 +25,7 @@ from rovsim.dynamics.engine.types import Scratch, State
 from rovsim.dynamics.engine.vectors import ZERO6, add3, add4, add6, each6, times6, vector6
 from rovsim.dynamics.learned.features import assemble_one
 from rovsim.dynamics.learned.predictor import evaluate
-from rovsim.dynamics.learned.settings import FEATURES
+from rovsim.dynamics.learned.settings import MAX_FEATURES
 
 
 @inline_internal
@@ -79,16 +79,16 @@ def lagged(memory, nu_r, time):
 
 
 @inline_internal
-def memory_push(body, memory):
+def memory_acceleration(body, memory):
     """Acceleration (6) by the fluid memory: by water that still moves as the vehicle did."""
     return times6(body.M_inv, each6(body.memory, memory))
 
 
 @internal
-def push_over_step(x, memory, h, body):
+def midstep_memory_acceleration(x, memory, h, body):
     """The same at the middle of a step from x: held over the step, it is of second order."""
     ahead = lagged(memory, through_water(x, body), 0.5 * h * body.memory_decay)
-    return memory_push(body, ahead)
+    return memory_acceleration(body, ahead)
 
 
 @internal
@@ -99,14 +99,14 @@ def memory_after(memory, x, after, h, body):
 
 
 @inline_anew
-def learned(extra, x, body, parameters, step, push, surroundings, residual, scratch):
+def learned(extra, x, body, parameters, step, disturbance, surroundings, residual, scratch):
     """Learned acceleration (6) at x: tau_res = M a_res, so it adds to nu_dot; zero without one.
 
-    `push` (6) is an additional acceleration, under which the residual sees the model.
+    `disturbance` (6) is an additional acceleration, under which the residual sees the model.
     """
     if residual is None:
         return ZERO6
-    base = slope(extra, step.t, x, body, parameters, step, push, surroundings)
+    base = slope(extra, step.t, x, body, parameters, step, disturbance, surroundings)
     R = rotation(x.attitude)
     assemble_one(residual, x.nu, base.nu, step.thrust, R, scratch.features)
     evaluate(residual, scratch.features, scratch.a_res)
@@ -116,17 +116,19 @@ def learned(extra, x, body, parameters, step, push, surroundings, residual, scra
 @inline_internal
 def empty_scratch():
     """What a residual may write to."""
-    return Scratch(np.empty(FEATURES), np.empty(6))
+    return Scratch(np.empty(MAX_FEATURES), np.empty(6))
 
 
 @inline_anew
 def stepped(extra, x, memory, body, parameters, step, surroundings, residual, scratch):
     """State and fluid memory after one step; the learned residual is constant over the step."""
-    push = ZERO6
+    disturbance = ZERO6
     if body.memory_decay != 0.0:
-        push = push_over_step(x, memory, step.h, body)
-    a_res = learned(extra, x, body, parameters, step, push, surroundings, residual, scratch)
-    after, _ = runge_kutta(extra, x, body, parameters, step, add6(push, 1.0, a_res), surroundings)
+        disturbance = midstep_memory_acceleration(x, memory, step.h, body)
+    a_res = learned(extra, x, body, parameters, step, disturbance, surroundings, residual, scratch)
+    after, _ = runge_kutta(
+        extra, x, body, parameters, step, add6(disturbance, 1.0, a_res), surroundings
+    )
     if body.memory_decay != 0.0:
         memory = memory_after(memory, x, after, step.h, body)
     return after, memory
@@ -176,8 +178,8 @@ def advance(extra, state, memory, t, h, world):
 
 
 @entry
-def heun(extra, state, memory, t, h, pushes, world, out):
-    """Integrate with Heun's method, with an additional acceleration in each step: pushes (k, 6).
+def heun(extra, state, memory, t, h, disturbances, world, out):
+    """Integrate with Heun's method, adding an acceleration in each step: disturbances (k, 6).
 
     For the synthetic tank, whose truth must not share the integrator of a replay. The fluid memory
     (6,) is integrated with the state and updated in place; states go to `out` (k, 13).
@@ -189,16 +191,22 @@ def heun(extra, state, memory, t, h, pushes, world, out):
     )
     m, scratch, parameters = vector6(memory), empty_scratch(), parameters_of(world.parameters, 0)
     inputs, residual = world.inputs, world.residual
-    for n in range(pushes.shape[0]):
-        now, push, recalled = t + n * h, vector6(pushes[n]), memory_push(body, m)
+    for n in range(disturbances.shape[0]):
+        now, disturbance, recalled = (
+            t + n * h,
+            vector6(disturbances[n]),
+            memory_acceleration(body, m),
+        )
         step = even_step_of(inputs, 0, n, now, h)
         a_res = learned(extra, x, body, parameters, step, recalled, surroundings, residual, scratch)
-        push = add6(push, 1.0, a_res)
-        k1 = slope(extra, now, x, body, parameters, step, add6(push, 1.0, recalled), surroundings)
+        disturbance = add6(disturbance, 1.0, a_res)
+        k1 = slope(
+            extra, now, x, body, parameters, step, add6(disturbance, 1.0, recalled), surroundings
+        )
         m1 = add6(through_water(x, body), -1.0, m)
         x1, ahead = moved(x, h, k1), add6(m, h * body.memory_decay, m1)
-        push = add6(push, 1.0, memory_push(body, ahead))
-        k2 = slope(extra, now + h, x1, body, parameters, step, push, surroundings)
+        disturbance = add6(disturbance, 1.0, memory_acceleration(body, ahead))
+        k2 = slope(extra, now + h, x1, body, parameters, step, disturbance, surroundings)
         m2 = add6(through_water(x1, body), -1.0, ahead)
         x = renormalised(moved(moved(x, 0.5 * h, k1), 0.5 * h, k2))
         m = add6(m, 0.5 * h * body.memory_decay, add6(m1, 1.0, m2))
@@ -217,12 +225,14 @@ def accelerations(extra, times, states, memory, world, out):
     body, parameters = constants_of(world.constants, 0), parameters_of(world.parameters, 0)
     surroundings = surroundings_of(world.site)
     for n in range(times.size):
-        x, push = state_of(states[n]), ZERO6
+        x, disturbance = state_of(states[n]), ZERO6
         step = even_step_of(inputs, inputs.row[0], n, times[n], 0.0)
         if memory.size:
-            push = memory_push(body, vector6(memory[n]))
-        a_res = learned(extra, x, body, parameters, step, push, surroundings, residual, scratch)
-        push = add6(push, 1.0, a_res)
-        nu_dot = slope(extra, times[n], x, body, parameters, step, push, surroundings).nu
+            disturbance = memory_acceleration(body, vector6(memory[n]))
+        a_res = learned(
+            extra, x, body, parameters, step, disturbance, surroundings, residual, scratch
+        )
+        disturbance = add6(disturbance, 1.0, a_res)
+        nu_dot = slope(extra, times[n], x, body, parameters, step, disturbance, surroundings).nu
         for i in range(6):
             out[n, i] = nu_dot[i]

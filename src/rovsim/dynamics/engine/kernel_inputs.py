@@ -115,6 +115,6 @@ def reading_at(at, actuators, channels):
 
 
 # Signature of attached effects, which are called by address: (at, p, layout, acting) -> wrench.
-BY_ADDRESS = types.UniTuple(types.float64, 6)(
+ATTACHED_SIGNATURE = types.UniTuple(types.float64, 6)(
     typeof(EXAMPLE), types.float64[::1], typeof(Layout(0, 0, np.zeros((0, 3)))), types.float64[::1]
 )

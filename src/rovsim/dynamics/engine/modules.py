@@ -19,9 +19,9 @@ from typing import Any, Sequence
 from filelock import FileLock
 
 from rovsim.core.files import write_text
-from rovsim.dynamics.compilation.cache import DYNAMICS, cache_folder, digest
+from rovsim.dynamics.compilation.cache import DYNAMICS_FOLDER, cache_folder, digest
 
-ENGINE = '''\
+ENGINE_TEMPLATE = '''\
 """The equation of motion with {names}.
 
 Written by rovsim.dynamics.engine.modules, so that Numba can keep what it compiles.
@@ -36,7 +36,7 @@ def extra(at, parameters, body, acting):
     """Wrench of these effects; each has in p (k,) whether it acts, then its parameters."""
     p, layout = parameters.values, layout_of(body)
     tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-{pushes}{attached}    return tau
+{wrench_calls}{attached}    return tau
 
 
 @kept
@@ -50,8 +50,8 @@ def advance(state, memory, t, h, world):
 
 
 @kept
-def heun(state, memory, t, h, pushes, world, out):
-    integration.heun(extra, state, memory, t, h, pushes, world, out)
+def heun(state, memory, t, h, disturbances, world, out):
+    integration.heun(extra, state, memory, t, h, disturbances, world, out)
 
 
 @kept
@@ -63,42 +63,42 @@ def accelerations(times, states, memory, world, out):
 def observe(jobs, world, correction, out):
     observer.observe(extra, jobs, world, correction, out)
 '''
-ATTACHED_PUSH = """\
+ATTACHED_CALL = """\
     tau = add6(tau, 1.0, parameters.attached(at, p[{count}:], layout, acting))
 """
-ATTACHED = '''\
+ATTACHED_TEMPLATE = '''\
 """The wrench of {names}, for engines that lack it.
 
 Written by rovsim.dynamics.engine.modules, so that Numba can keep what it compiles.
 """
 
 from rovsim.dynamics.compilation.compiled import MATHS, inline_anew, keep_address
-from rovsim.dynamics.engine.kernel_inputs import BY_ADDRESS
+from rovsim.dynamics.engine.kernel_inputs import ATTACHED_SIGNATURE
 {imports}{kernels}
 
-@keep_address(BY_ADDRESS, **MATHS)
+@keep_address(ATTACHED_SIGNATURE, **MATHS)
 def attached(at, p, layout, acting):
     tau = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-{pushes}    return tau
+{wrench_calls}    return tau
 '''
-IMPORTS = """\
+KERNEL_IMPORTS = """\
 from rovsim.dynamics.engine.kernel_inputs import actuators_at, first_channel, layout_of, reading_at
 from rovsim.dynamics.engine.vectors import add6
 """
-KERNEL = """
+KERNEL_TEMPLATE = """
 {id}_wrench = inline_anew({name}.wrench)
 {id}_parameters = {name}.named_parameters()
 """
-CHANNELS = "{id}_channels = {name}.named_channels()\n"
-READING = "        reading = reading_at(at, actuators_at(at, layout, acting), {channels})\n"
-PUSH = """\
+CHANNELS_TEMPLATE = "{id}_channels = {name}.named_channels()\n"
+READING_CALL = "        reading = reading_at(at, actuators_at(at, layout, acting), {channels})\n"
+WRENCH_TEMPLATE = """\
     if p[{acts}] != 0.0:
         effect_parameters = {id}_parameters(
 {values}
         )
 {reading}        tau = add6(tau, 1.0, {id}_wrench({at}, effect_parameters))
 """
-COLUMNS, MARGIN = 88, " " * 12  # columns and indentation of the parameters in `PUSH`
+MAX_COLUMNS, INDENT = 88, " " * 12  # of the parameters in `WRENCH_TEMPLATE`
 
 
 def engine(wrenches: Sequence[Any], attachable: bool = False) -> ModuleType:
@@ -126,13 +126,15 @@ def attached(wrenches: Sequence[Any], channel: int) -> Any:
 def _engine(wrenches: tuple[Any, ...], attachable: bool) -> ModuleType:
     parts = _parts(wrenches, 0)
     count = sum(1 + len(wrench.parameters) for wrench in wrenches)
-    push = ATTACHED_PUSH.format(count=count) if attachable else ""
-    return _module("engine", ENGINE.format(**parts, attached=push), wrenches)
+    attached_call = ATTACHED_CALL.format(count=count) if attachable else ""
+    return _module("engine", ENGINE_TEMPLATE.format(**parts, attached=attached_call), wrenches)
 
 
 @cache
 def _attached(wrenches: tuple[Any, ...], channel: int) -> Any:
-    return _module("attached", ATTACHED.format(**_parts(wrenches, channel)), wrenches).attached
+    return _module(
+        "attached", ATTACHED_TEMPLATE.format(**_parts(wrenches, channel)), wrenches
+    ).attached
 
 
 def _module(kind: str, text: str, wrenches: tuple[Any, ...]) -> ModuleType:
@@ -142,7 +144,7 @@ def _module(kind: str, text: str, wrenches: tuple[Any, ...]) -> ModuleType:
     another version of them makes another module.
     """
     files = {str(inspect.getsourcefile(wrench)) for wrench in wrenches}
-    foreign = sorted(f for f in files if not Path(f).is_relative_to(DYNAMICS))
+    foreign = sorted(f for f in files if not Path(f).is_relative_to(DYNAMICS_FOLDER))
     name = f"rovsim_{kind}_{digest(text.encode(), *(Path(f).read_bytes() for f in foreign))}"
     path = cache_folder() / f"{name}.py"
     with FileLock(path.with_suffix(".lock")):
@@ -165,14 +167,14 @@ def _imported(name: str, path: Path) -> ModuleType:
 def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
     """Values for the fields of the templates; an effect may be in the list more than once."""
     distinct = list(dict.fromkeys(wrenches))
-    pushes, acts = "", 0
+    wrench_calls, acts = "", 0
     for wrench in wrenches:
         end = acts + 1 + len(wrench.parameters)
-        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, end)), COLUMNS)
-        pushes += PUSH.format(
+        values = textwrap.fill(", ".join(f"p[{k}]" for k in range(acts + 1, end)), MAX_COLUMNS)
+        wrench_calls += WRENCH_TEMPLATE.format(
             id=wrench.id,
             acts=acts,
-            values=textwrap.indent(values, MARGIN),
+            values=textwrap.indent(values, INDENT),
             at="reading" if wrench.reads() else "at",
             reading=_reading(wrench, channel) if wrench.reads() else "",
         )
@@ -180,23 +182,23 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
     imports = {f"from {w.__module__} import {w.__name__}{_alias(w, distinct)}\n" for w in distinct}
     return {
         "names": ", ".join(wrench.id for wrench in distinct) or "no further effects",
-        "imports": "".join(sorted(imports | set(IMPORTS.splitlines(keepends=True)))),
+        "imports": "".join(sorted(imports | set(KERNEL_IMPORTS.splitlines(keepends=True)))),
         "kernels": "".join(_kernel(w, distinct) for w in distinct),
-        "pushes": pushes,
+        "wrench_calls": wrench_calls,
     }
 
 
 def _kernel(wrench: Any, known: Sequence[Any]) -> str:
     """Source lines that name the kernel of an effect and the types of its arguments."""
     name = _name(wrench, known)
-    types = CHANNELS.format(id=wrench.id, name=name) if wrench.channels else ""
-    return KERNEL.format(id=wrench.id, name=name) + types
+    types = CHANNELS_TEMPLATE.format(id=wrench.id, name=name) if wrench.channels else ""
+    return KERNEL_TEMPLATE.format(id=wrench.id, name=name) + types
 
 
 def _reading(wrench: Any, first: int) -> str:
     """Source lines that read actuators and channels; `first` is the index of its first channel."""
     values = [f"acting[first_channel(layout) + {first + k}]" for k in range(len(wrench.channels))]
-    return READING.format(
+    return READING_CALL.format(
         channels=f"{wrench.id}_channels({', '.join(values)})" if values else "0.0"
     )
 

@@ -19,7 +19,7 @@ from rovsim.dynamics.engine.as_tuples import (
 from rovsim.dynamics.engine.equation import rotation
 from rovsim.dynamics.engine.integration import (
     memory_after,
-    push_over_step,
+    midstep_memory_acceleration,
     renormalised,
     runge_kutta,
 )
@@ -159,11 +159,13 @@ def observe(extra, jobs, world, correction, out):
         for k in range(first + 1, first + 1 + jobs.steps[job]):
             mean, duration = ZERO6, time[ends[k]] - time[n]
             while n < ends[k]:
-                t, h, previous, push = time[n], time[n + 1] - time[n], x, a
+                t, h, previous, disturbance = time[n], time[n + 1] - time[n], x, a
                 if body.memory_decay != 0.0:
-                    push = add6(a, 1.0, push_over_step(x, memory, h, body))
+                    disturbance = add6(a, 1.0, midstep_memory_acceleration(x, memory, h, body))
                 step = step_of(inputs, inputs.row[m], n, t, h, body)
-                x, average = runge_kutta(extra, x, body, parameters, step, push, surroundings)
+                x, average = runge_kutta(
+                    extra, x, body, parameters, step, disturbance, surroundings
+                )
                 if body.memory_decay != 0.0:
                     memory = memory_after(memory, previous, x, h, body)
                 mean = add6(mean, h / duration, average)

@@ -52,19 +52,19 @@ class At(NamedTuple):
     axes: Vector3
 
 
-_NONE: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_UNMEASURED: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 # An arbitrary instant, at rest: to compile and try kernels on.
 EXAMPLE = At(
     0.0,
     1.0,
     (0.0, 0.0, 0.0),
     ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
-    _NONE,
+    _UNMEASURED,
+    _UNMEASURED,
+    _UNMEASURED,
+    _UNMEASURED,
+    _UNMEASURED,
+    _UNMEASURED,
     ((-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0)),
     (1.0, -1.0, -1.0),
 )
@@ -136,14 +136,14 @@ class Constants(NamedTuple):
 
     @staticmethod
     def stacked(sets: "Sequence[Constants]") -> "Constants":
-        """Stack parameter sets of a vehicle along m; fields `OF_VEHICLE` are those of the first."""
-        first, names = sets[0], [name for name in Constants._fields if name not in OF_VEHICLE]
+        """Stack parameter sets of a vehicle along m; `VEHICLE_FIELDS` are those of the first."""
+        first, names = sets[0], [name for name in Constants._fields if name not in VEHICLE_FIELDS]
         return first._replace(
             **{name: np.concatenate([getattr(c, name) for c in sets]) for name in names}
         )
 
 
-OF_VEHICLE = ("directions", "factors", "surfaces", "places")  # the same in all sets
+VEHICLE_FIELDS = ("directions", "factors", "surfaces", "places")  # the same in all sets
 
 
 class WrenchParameters(NamedTuple):

@@ -13,11 +13,11 @@ from rovsim.dynamics.compilation.compiled import inlined, internal
 from rovsim.dynamics.effects.base import Parameter, Wrench
 from rovsim.dynamics.engine.vectors import into_body
 from rovsim.dynamics.laws.codes import (
-    DEEP,
+    DEPTH,
     DIRECTION,
     DOWN,
     EAST,
-    NONE,
+    NO_FACTOR,
     NORTH,
     SIGN,
     SIGN_OF_DOWN,
@@ -29,12 +29,12 @@ from rovsim.dynamics.laws.codes import (
     WORLD,
 )
 
-TERMS, FACTORS = 3, 3
-STRIDE = 3 + FACTORS  # parameters of a term
-COEFFICIENTS = tuple(f"c{k}" for k in range(1, TERMS + 1))  # parameters that are fitted, by term
-SMOOTH = 0.02  # m/s, rad/s: width of the sign of a velocity, within its noise
-TILT = 0.05  # 3 degrees: width of the sign of the NED z axis in body axes
-STILL = 0.02  # m/s: below, a direction of motion fades
+MAX_TERMS, MAX_FACTORS = 3, 3
+TERM_LENGTH = 3 + MAX_FACTORS  # parameters of a term
+COEFFICIENTS = tuple(f"c{k}" for k in range(1, MAX_TERMS + 1))  # parameters fitted, by term
+SIGN_WIDTH = 0.02  # m/s, rad/s: width of the sign of a velocity, within its noise
+TILT_SIGN_WIDTH = 0.05  # 3 degrees: width of the sign of the NED z axis in body axes
+MIN_SPEED = 0.02  # m/s: below, a direction of motion fades
 
 
 @inlined
@@ -57,9 +57,9 @@ def of_velocity(k, v):
     if k < SIGN:
         return abs(v[k - SIZE])
     if k < DOWN:
-        return tanh(v[k - SIGN] / SMOOTH)
+        return tanh(v[k - SIGN] / SIGN_WIDTH)
     U = speed(v)
-    return U if k == SPEED else 1.0 / sqrt(U * U + STILL * STILL)
+    return U if k == SPEED else 1.0 / sqrt(U * U + MIN_SPEED * MIN_SPEED)
 
 
 @inlined
@@ -70,7 +70,7 @@ def of_place(k, at, x, y, z, s):
         return north
     if k == EAST:
         return east
-    if k == DEEP:
+    if k == DEPTH:
         return at.position[2] - z * at.axes[2]
     return exp(-(north * north + east * east) / (2.0 * s * s))
 
@@ -79,24 +79,24 @@ def of_place(k, at, x, y, z, s):
 def factor(code, at, p):
     """Value of a factor by its code; 1 for no factor."""
     k = int(code)
-    if k == NONE:
+    if k == NO_FACTOR:
         return 1.0
     if k < DOWN or k in (SPEED, DIRECTION):
         return of_velocity(k, at.nu_r)
     if k < SIGN_OF_DOWN:
         return at.R[2][k - DOWN]
     if k < SPEED:
-        return tanh(at.R[2][k - SIGN_OF_DOWN] / TILT)
+        return tanh(at.R[2][k - SIGN_OF_DOWN] / TILT_SIGN_WIDTH)
     return of_place(k, at, p.x, p.y, p.z, p.width)
 
 
 @internal
 def term(at, p, k):
     """Term k: coefficient, size and factors. Inlined, it would double an engine's compile time."""
-    value = p[STRIDE * k] * p[STRIDE * k + 1]
+    value = p[TERM_LENGTH * k] * p[TERM_LENGTH * k + 1]
     if value != 0.0:
-        for j in range(FACTORS):
-            value *= factor(p[STRIDE * k + 3 + j], at, p)
+        for j in range(MAX_FACTORS):
+            value *= factor(p[TERM_LENGTH * k + 3 + j], at, p)
     return value
 
 
@@ -104,8 +104,8 @@ def term(at, p, k):
 def total(p, on, values):
     """Sum of the terms that act on `on`."""
     subtotal = 0.0
-    for k in range(TERMS):
-        if int(p[STRIDE * k + 2]) == on:
+    for k in range(MAX_TERMS):
+        if int(p[TERM_LENGTH * k + 2]) == on:
             subtotal += values[k]
     return subtotal
 
@@ -136,7 +136,7 @@ class Product:
 
 def _name(k: int) -> tuple[str, ...]:
     """Names of the parameters of term k, in their order; the fitted coefficient is the first."""
-    factors = (f"factor{k}{j}" for j in range(1, FACTORS + 1))
+    factors = (f"factor{k}{j}" for j in range(1, MAX_FACTORS + 1))
     return COEFFICIENTS[k - 1], f"size{k}", f"on{k}", *factors
 
 
@@ -146,7 +146,7 @@ def _term(k: int) -> tuple[Parameter, ...]:
     return (
         Parameter(coefficient, "1", f"c_{k}", scale=1.0),
         *(
-            Parameter(name, "1", name, default=float(NONE), scale=1.0, fitted=False)
+            Parameter(name, "1", name, default=float(NO_FACTOR), scale=1.0, fitted=False)
             for name in fixed
         ),
     )
@@ -189,17 +189,19 @@ class Law(Wrench):
     @property
     def terms(self) -> tuple[Product, ...]:
         """The terms, in the order of their parameters."""
-        rows = self.values[: TERMS * STRIDE].reshape(TERMS, STRIDE)
+        rows = self.values[: MAX_TERMS * TERM_LENGTH].reshape(MAX_TERMS, TERM_LENGTH)
         return tuple(
-            Product(float(c), float(size), int(on), tuple(int(f) for f in factors if f != NONE))
+            Product(
+                float(c), float(size), int(on), tuple(int(f) for f in factors if f != NO_FACTOR)
+            )
             for c, size, on, *factors in rows
-            if on != NONE
+            if on != NO_FACTOR
         )
 
     @property
     def others(self) -> dict[str, float]:
         """Values of the other parameters that differ from their default, by name."""
-        names = [p.name for p in self.parameters[TERMS * STRIDE :]]
+        names = [p.name for p in self.parameters[MAX_TERMS * TERM_LENGTH :]]
         return {name: value for name, value in self.given().items() if name in names}
 
     @staticmethod

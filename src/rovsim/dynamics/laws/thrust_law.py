@@ -7,18 +7,20 @@ velocity, its absolute value, or the thrust along another axis.
 
 from rovsim.dynamics.compilation.compiled import inlined
 from rovsim.dynamics.effects.base import Parameter, Wrench
-from rovsim.dynamics.laws.codes import NONE, SIZE
+from rovsim.dynamics.laws.codes import NO_FACTOR, SIZE
 
-THRUSTERS = 12  # a vehicle with more has no such law
-FIRST, SECOND = 5, 5 + THRUSTERS  # where a row of the allocation begins among the parameters
-OTHER = 12  # code of a second thrust as the further factor; below, velocities and their sizes
+MAX_THRUSTERS = 12  # a vehicle with more has no such law
+# Where a row of the allocation begins among the parameters.
+FIRST_ROW, SECOND_ROW = 5, 5 + MAX_THRUSTERS
+# Code of a second thrust as the further factor; below, velocities and their sizes.
+SECOND_THRUST = 12
 
 
 @inlined
 def along(force, p, first):
     """Thrust along an axis, N or N m: p[first:], a row of the allocation, times the forces."""
     thrust = 0.0
-    for i in range(min(force.size, THRUSTERS)):
+    for i in range(min(force.size, MAX_THRUSTERS)):
         thrust += p[first + i] * force[i]
     return thrust
 
@@ -35,25 +37,25 @@ class ThrustLaw(Wrench):
     parameters = (
         Parameter("c", "1", "c", scale=1.0),
         *(
-            Parameter(name, "1", name, default=float(NONE), scale=1.0, fitted=False)
+            Parameter(name, "1", name, default=float(NO_FACTOR), scale=1.0, fitted=False)
             for name in ("size", "on", "unsigned", "factor")
         ),
-        *(Parameter(f"b{i}", "1", "b", scale=1.0, fitted=False) for i in range(THRUSTERS)),
-        *(Parameter(f"d{i}", "1", "d", scale=1.0, fitted=False) for i in range(THRUSTERS)),
+        *(Parameter(f"b{i}", "1", "b", scale=1.0, fitted=False) for i in range(MAX_THRUSTERS)),
+        *(Parameter(f"d{i}", "1", "d", scale=1.0, fitted=False) for i in range(MAX_THRUSTERS)),
     )
 
     @staticmethod
     def wrench(at, p):
         """The term, along its axis."""
         force = at.actuators.force
-        value, k = along(force, p, FIRST), int(p.factor)
+        value, k = along(force, p, FIRST_ROW), int(p.factor)
         if p.unsigned > 0.0:
             value = abs(value)
-        if k == OTHER:
-            value *= along(force, p, SECOND)
+        if k == SECOND_THRUST:
+            value *= along(force, p, SECOND_ROW)
         elif k >= SIZE:
             value *= abs(at.nu_r[k - SIZE])
-        elif k != NONE:
+        elif k != NO_FACTOR:
             value *= at.nu_r[k]
         value *= p.c * p.size
         on = int(p.on)

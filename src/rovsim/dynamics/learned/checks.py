@@ -16,13 +16,13 @@ from rovsim.dynamics.learned.layout import (
     HEADER,
     KIND,
     LANES,
-    MOST_NEIGHBOURS,
-    MOST_POINTS,
+    MAX_NEIGHBOURS,
+    MAX_POINTS,
     NEIGHBOURS,
     OUTPUTS,
-    PASS,
     POINTS,
     RANK,
+    UNROLL,
     VERSION,
     WIDTH,
     filled,
@@ -76,14 +76,18 @@ def _fault(data: Any, features: FeatureSettings) -> str | None:
 def _size(*header: float) -> int:
     """Number of elements of an exported array with this header; 0 for an impossible header."""
     d, n, m, count = (int(header[slot]) for slot in (WIDTH, POINTS, OUTPUTS, COUNT))
-    length, wide, rank = filled(n, LANES), filled(d, PASS), filled(int(header[RANK]), PASS)
-    if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MOST_NEIGHBOURS):
+    length, wide, rank = (
+        filled(n, LANES),
+        filled(d, UNROLL),
+        filled(int(header[RANK]), UNROLL),
+    )
+    if header[KIND] == NEIGHBOURS and 1 <= count <= min(n, MAX_NEIGHBOURS):
         boxes = sum(tree_levels(n)[1:]) * 2 * wide * LANES
         return HEADER + (2 + wide) * d + boxes + length * (wide + 1) + n * (d + m)
-    ranked = header[FADING_RANK] <= header[RANK] <= n <= MOST_POINTS
+    ranked = header[FADING_RANK] <= header[RANK] <= n <= MAX_POINTS
     if header[KIND] == EXPANSION and count in (1, m) and n >= 1 and ranked:
         share = m // count
-        sheet = (filled(share, PASS) + rank + wide) * length
+        sheet = (filled(share, UNROLL) + rank + wide) * length
         return HEADER + m + count * (2 + share + 2 * d + rank + sheet)
     return 0
 

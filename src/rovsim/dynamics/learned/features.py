@@ -5,7 +5,7 @@ from numba import njit
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import unrotate
-from rovsim.dynamics.compilation.compiled import FROM_PYTHON, UNSEEN
+from rovsim.dynamics.compilation.compiled import FROM_PYTHON, INTERNAL
 from rovsim.dynamics.learned.layout import BLOCKS
 from rovsim.dynamics.learned.settings import (
     ACCELERATION,
@@ -33,7 +33,7 @@ def assemble(
     return np.concatenate([blocks[block] for block in settings.blocks], axis=1)
 
 
-@njit(**UNSEEN)
+@njit(**INTERNAL)
 def _append(values, x, at):
     """Write values into x from index `at` on; returns the index after the last one."""
     for i in range(len(values)):

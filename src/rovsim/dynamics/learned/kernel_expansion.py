@@ -14,21 +14,21 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from rovsim.dynamics.compilation.compiled import UNSEEN
+from rovsim.dynamics.compilation.compiled import INTERNAL
 from rovsim.dynamics.learned.layout import (
     COUNT,
     FADING_RANK,
     HEADER,
     LANES,
     OUTPUTS,
-    PASS,
     POINTS,
     RANK,
+    UNROLL,
     WIDTH,
 )
 from rovsim.dynamics.learned.simd import add_squares, exponentials, products, scaled
 
-plain = njit(error_model="numpy", **UNSEEN)
+plain = njit(error_model="numpy", **INTERNAL)
 
 
 class KernelArrays(NamedTuple):
@@ -63,8 +63,8 @@ class KernelArrays(NamedTuple):
 def _part(data, part):
     """Find the arrays of kernel number `part` in an exported residual."""
     d, n, m = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS])
-    share, rank = m // int(data[COUNT]), (int(data[RANK]) + PASS - 1) // PASS * PASS
-    wide, rows = (d + PASS - 1) // PASS * PASS, (share + PASS - 1) // PASS * PASS
+    share, rank = m // int(data[COUNT]), (int(data[RANK]) + UNROLL - 1) // UNROLL * UNROLL
+    wide, rows = (d + UNROLL - 1) // UNROLL * UNROLL, (share + UNROLL - 1) // UNROLL * UNROLL
     blocks = (n + LANES - 1) // LANES
     length = blocks * LANES
     size = 2 + share + 2 * d + length * wide + rank + (rows + rank) * length
@@ -102,7 +102,7 @@ def _kernel(data, part, x, scratch):
     for b in range(blocks):
         s = k[b * LANES : (b + 1) * LANES]
         s[:] = 0.0
-        for j in range(0, wide, PASS):
+        for j in range(0, wide, UNROLL):
             add_squares(part.points, b, j, z, s)
     exponentials(k)
     return k
@@ -111,9 +111,9 @@ def _kernel(data, part, x, scratch):
 @plain
 def _mean(data, part, k, out):
     """Write the mean of the outputs of a part into out (m,), from its kernel values k (n',)."""
-    for row in range(0, part.share, PASS):
+    for row in range(0, part.share, UNROLL):
         sums = products(part.weights, row, k)
-        for o in range(min(PASS, part.share - row)):
+        for o in range(min(UNROLL, part.share - row)):
             out[part.first + row + o] = data[HEADER + part.first + row + o] + sums[o]
 
 
@@ -125,7 +125,7 @@ def _variance_share(part, k, n, rank):
         for i in range(n):
             explained += k[i] * k[i]
     explained *= part.identity
-    for row in range(0, rank, PASS):
+    for row in range(0, rank, UNROLL):
         a, b, c, d = products(part.vectors, row, k)
         s = part.spectrum
         explained += (s[row] * a * a + s[row + 1] * b * b) + (

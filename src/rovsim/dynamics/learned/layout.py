@@ -9,7 +9,7 @@
                vectors (r', n')
 
 scaling = shift (d), scale (d); points = (n' / LANES, d', LANES). n' is n filled up to whole blocks
-of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of PASS; all with zeros.
+of LANES; d', r' (of RANK) and w' (of m / p) are filled up to multiples of UNROLL; all with zeros.
 An expansion of RANK 0 has no variance: it is a sum of kernels, but no Gaussian process.
 """
 
@@ -20,10 +20,10 @@ NEIGHBOURS, EXPANSION = 0.0, 1.0
 UNIFORM, DISTANCE = 0.0, 1.0
 
 LANES = 32  # points side by side: four AVX-512 or eight AVX2 registers of float64
-PASS = 4  # features, or rows of a matrix, a pass: fewer, and loads outweigh arithmetic
-MOST_NEIGHBOURS = 64  # bounds the scratch; more neighbours than this would only be an average
-MOST_POINTS = 8192  # of an expansion, bounds the scratch: 64 KiB on the stack
-MOST_LEVELS = 8  # of a tree: 32^9 points
+UNROLL = 4  # features, or rows of a matrix, a pass: fewer, and loads outweigh arithmetic
+MAX_NEIGHBOURS = 64  # bounds the scratch; more neighbours than this would only be an average
+MAX_POINTS = 8192  # of an expansion, bounds the scratch: 64 KiB on the stack
+MAX_LEVELS = 8  # of a tree: 32^9 points
 
 
 def filled(count: int, unit: int) -> int:

@@ -7,10 +7,10 @@ from rovsim.dynamics.learned.layout import (
     DISTANCE,
     HEADER,
     LANES,
-    MOST_NEIGHBOURS,
+    MAX_NEIGHBOURS,
     OUTPUTS,
-    PASS,
     POINTS,
+    UNROLL,
     WEIGHTING,
     WIDTH,
 )
@@ -68,7 +68,7 @@ def _squared_length(z):
 def neighbours(data, x, scratch, out):
     """Write the mean of the nearest targets at unscaled features x (d,) into out (m,)."""
     d, n, m, k = int(data[WIDTH]), int(data[POINTS]), int(data[OUTPUTS]), int(data[COUNT])
-    wide, leaves = (d + PASS - 1) // PASS * PASS, (n + LANES - 1) // LANES
+    wide, leaves = (d + UNROLL - 1) // UNROLL * UNROLL, (n + LANES - 1) // LANES
     nodes, below = 0, leaves
     while nodes == 0 or below > 1:
         below = (below + LANES - 1) // LANES
@@ -82,10 +82,10 @@ def neighbours(data, x, scratch, out):
     points = data[first:last].reshape((leaves, wide, LANES))
     rows, last = data[last : last + leaves * LANES], last + leaves * LANES
     unrotated, targets = data[last : last + n * d].reshape((n, d)), data[last + n * d :]
-    turned, near, row = scratch[:wide], scratch[LANES:], scratch[LANES + MOST_NEIGHBOURS :]
-    place = scratch[LANES + 2 * MOST_NEIGHBOURS :]
-    z = scratch[LANES + 3 * MOST_NEIGHBOURS :][:wide]
-    rest = scratch[2 * LANES + 3 * MOST_NEIGHBOURS :]
+    turned, near, row = scratch[:wide], scratch[LANES:], scratch[LANES + MAX_NEIGHBOURS :]
+    place = scratch[LANES + 2 * MAX_NEIGHBOURS :]
+    z = scratch[LANES + 3 * MAX_NEIGHBOURS :][:wide]
+    rest = scratch[2 * LANES + 3 * MAX_NEIGHBOURS :]
     scaled(data, HEADER, d, x, z)
     _turn(axes, z, turned)
     query = Query(turned, z, _squared_length(z[:d]))

@@ -11,7 +11,7 @@ from rovsim.dynamics.compilation.compiled import FROM_PYTHON, keep
 from rovsim.dynamics.learned.kernel_expansion import faded, posterior
 from rovsim.dynamics.learned.layout import KIND, NEIGHBOURS, OUTPUTS
 from rovsim.dynamics.learned.neighbours import neighbours
-from rovsim.dynamics.learned.simd import SCRATCH, stack
+from rovsim.dynamics.learned.simd import SCRATCH_SIZE, stack
 
 kept = keep(error_model="numpy", **FROM_PYTHON)
 
@@ -25,7 +25,7 @@ def evaluate(data, x, out):
         x: unscaled features; elements after the residual's own features are not read.
         out: is written to: body acceleration (6,), m/s2 and rad/s2. NaN where x is not finite.
     """
-    scratch = carray(stack(), (SCRATCH,))  # type: ignore[call-arg]
+    scratch = carray(stack(), (SCRATCH_SIZE,))  # type: ignore[call-arg]
     if data[KIND] == NEIGHBOURS:
         neighbours(data, x, scratch, out)
     else:
@@ -44,7 +44,7 @@ def evaluate_many(data, X):
 @kept
 def posterior_many(data, X):
     """Evaluate mean and variance (n, 6) of an expansion at features X (n, d), without fading."""
-    scratch = carray(stack(), (SCRATCH,))  # type: ignore[call-arg]
+    scratch = carray(stack(), (SCRATCH_SIZE,))  # type: ignore[call-arg]
     mean = np.empty((X.shape[0], int(data[OUTPUTS])))
     variance = np.empty_like(mean)
     for row in range(X.shape[0]):

@@ -19,8 +19,8 @@ from rovsim.dynamics.learned.layout import POINTS
 from rovsim.dynamics.learned.predictor import evaluate_many
 from rovsim.dynamics.learned.settings import Block, Control, FeatureSettings
 
-LIBRARY = "library."  # prefix of the arrays from which the library's own model is rebuilt
-ARRAYS = "residual.npz"  # file of the arrays, beside the model file
+LIBRARY_PREFIX = "library."  # prefix of the arrays from which the library's own model is rebuilt
+ARRAYS_FILE = "residual.npz"  # file of the arrays, beside the model file
 
 
 def _beside(name: str) -> str:
@@ -82,13 +82,13 @@ class Residual:
 
 def write_residual(folder: Path, residual: Residual) -> StoredResidual:
     """Write the arrays of a residual into a folder; returns the section for the model file."""
-    library = {LIBRARY + key: array for key, array in residual.arrays.items()}
-    write_arrays(folder / ARRAYS, data=residual.data, **library)
+    library = {LIBRARY_PREFIX + key: array for key, array in residual.arrays.items()}
+    write_arrays(folder / ARRAYS_FILE, data=residual.data, **library)
     return StoredResidual(
         kind=residual.kind,
         control=residual.control,
-        file=ARRAYS,
-        sha256=_digest(folder / ARRAYS),
+        file=ARRAYS_FILE,
+        sha256=_digest(folder / ARRAYS_FILE),
         features=residual.features.blocks,
         scaling=residual.features.scaling,
         settings=plain(residual.settings),
@@ -117,7 +117,7 @@ def read_residual(description: Any, folder: Path, where: object = "residual") ->
     _refuse_altered(path, entry.sha256)
     arrays = read_arrays(path)
     data = check_exported(arrays.pop("data", None), features, path)
-    library = {key.removeprefix(LIBRARY): _finite(a, key, path) for key, a in arrays.items()}
+    library = {key.removeprefix(LIBRARY_PREFIX): _finite(a, key, path) for key, a in arrays.items()}
     return Residual(entry.control, entry.kind, features, entry.settings, data, library, entry.info)
 
 

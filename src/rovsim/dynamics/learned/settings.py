@@ -18,10 +18,10 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "acceleration": tuple(f"{letter}_dot" for letter in VELOCITY_LETTERS),
     "gravity": ("down_x", "down_y", "down_z"),
 }
-FEATURES = sum(len(columns) for columns in COLUMNS.values())  # the longest feature vector
+MAX_FEATURES = sum(len(columns) for columns in COLUMNS.values())  # the longest feature vector
 
 VELOCITY, WRENCH, ACCELERATION, GRAVITY = 1, 2, 4, 8
-CODES = dict(zip(COLUMNS, (VELOCITY, WRENCH, ACCELERATION, GRAVITY), strict=True))
+BLOCK_CODES = dict(zip(COLUMNS, (VELOCITY, WRENCH, ACCELERATION, GRAVITY), strict=True))
 
 
 class FeatureSettings(Section):
@@ -50,4 +50,4 @@ def feature_names(settings: FeatureSettings) -> list[str]:
 
 def blocks_code(settings: FeatureSettings) -> int:
     """The blocks as one number, a bit for each block, for `assemble_one`."""
-    return sum(CODES[block] for block in settings.blocks)
+    return sum(BLOCK_CODES[block] for block in settings.blocks)

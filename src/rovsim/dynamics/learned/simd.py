@@ -12,26 +12,26 @@ from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from rovsim.dynamics.compilation.compiled import FROM_PYTHON, UNSEEN
-from rovsim.dynamics.learned.layout import LANES, MOST_POINTS
+from rovsim.dynamics.compilation.compiled import FROM_PYTHON, INTERNAL
+from rovsim.dynamics.learned.layout import LANES, MAX_POINTS
 
 # 64 KiB for the values of kernels, and a little more for what each kernel keeps beside them
-SCRATCH = MOST_POINTS + 1024
+SCRATCH_SIZE = MAX_POINTS + 1024
 
 # Sums may be reordered: a prediction may differ in its last bits between processors.
-reordered = njit(error_model="numpy", fastmath={"reassoc", "contract", "nsz"}, **UNSEEN)
+reordered = njit(error_model="numpy", fastmath={"reassoc", "contract", "nsz"}, **INTERNAL)
 # Not here: a bound that rounds as the distance it bounds is never too large (`tree_search`).
-exact = njit(error_model="numpy", **UNSEEN)
+exact = njit(error_model="numpy", **INTERNAL)
 # Without a call, no references to arrays of a tuple are counted: a tenth of a search (measured).
-exact_inline = njit(error_model="numpy", forceinline=True, **UNSEEN)
+exact_inline = njit(error_model="numpy", forceinline=True, **INTERNAL)
 
 
 @intrinsic
 def stack(typing):
-    """Pointer to SCRATCH float64 on the stack of the calling function, which no thread shares."""
+    """Pointer to SCRATCH_SIZE float64 on the calling function's stack, which no thread shares."""
 
     def codegen(context, builder, signature, arguments):
-        pointer = cgutils.alloca_once(builder, ir.DoubleType(), size=SCRATCH)
+        pointer = cgutils.alloca_once(builder, ir.DoubleType(), size=SCRATCH_SIZE)
         pointer.align = 64  # a line of the cache
         return pointer
 
@@ -95,9 +95,10 @@ def add_squares(points, b, j, x, s):
 _LOG2E, _ROUND = 1.0 / log(2.0), 1.5 * 2.0**52  # adding _ROUND leaves the integer in the low bits
 _LN2_HIGH = 6.93147180369123816490e-01  # log(2) with its last 33 bits zero: n times it is exact
 _LN2_LOW = 1.90821492927058770002e-10  # the rest (W. J. Cody & W. Waite 1980, ch. 6)
-_LARGEST = 709.1  # exp(-x) is 0 from here on
-_C = [1.0 / float(np.prod(np.arange(1.0, k + 1.0))) for k in range(14)]  # Taylor: 4e-18 at ln(2)/2
-C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, C13 = _C[2:]
+_MAX_EXPONENT = 709.1  # exp(-x) is 0 from here on
+# 4e-18 at ln(2)/2
+_TAYLOR = [1.0 / float(np.prod(np.arange(1.0, k + 1.0))) for k in range(14)]
+C2, C3, C4, C5, C6, C7, C8, C9, C10, C11, C12, C13 = _TAYLOR[2:]
 
 
 @njit(error_model="numpy", fastmath={"contract"}, **FROM_PYTHON)
@@ -107,7 +108,7 @@ def exponentials(s):
     `math.exp` would be a call for every value and keep the loop from becoming vector instructions.
     """
     for i in range(s.size):
-        y = -(_LARGEST if s[i] > _LARGEST else s[i])
+        y = -(_MAX_EXPONENT if s[i] > _MAX_EXPONENT else s[i])
         t = y * _LOG2E + _ROUND
         n = t - _ROUND
         r = (y - n * _LN2_HIGH) - n * _LN2_LOW

@@ -19,11 +19,12 @@ from typing import NamedTuple
 
 from numpy import ndarray as Array
 
-from rovsim.dynamics.learned.layout import LANES, MOST_LEVELS, PASS
+from rovsim.dynamics.learned.layout import LANES, MAX_LEVELS, UNROLL
 from rovsim.dynamics.learned.simd import add_squares, exact, exact_inline
 
-_ROUNDING = 1e-12  # of squared lengths: far above what turning 21 features rounds, far below a gap
-_OPEN = MOST_LEVELS * LANES  # boxes that wait to be opened: at most all of one node a level
+# Of squared lengths: far above what turning 21 features rounds, far below a gap.
+_ROUNDING_SHARE = 1e-12
+_MAX_OPEN_BOXES = MAX_LEVELS * LANES  # that wait to be opened: at most all of one node a level
 
 
 class Tree(NamedTuple):
@@ -83,7 +84,7 @@ def _box_distances(boxes, b, x, s):
     """Write the squared distances of x to the boxes of the children of node b into s."""
     for i in range(LANES):
         s[i] = 0.0
-    for j in range(0, boxes.shape[2], PASS):
+    for j in range(0, boxes.shape[2], UNROLL):
         x0, x1, x2, x3 = x[j], x[j + 1], x[j + 2], x[j + 3]
         for i in range(LANES):
             e0 = _outside(boxes[b, 0, j, i], boxes[b, 1, j, i], x0)
@@ -102,7 +103,7 @@ def _within(points, b, x, limit, s):
     """
     for i in range(LANES):
         s[i] = 0.0
-    for j in range(0, points.shape[1], PASS):
+    for j in range(0, points.shape[1], UNROLL):
         add_squares(points, b, j, x, s)
         closer = False
         for i in range(LANES):
@@ -162,7 +163,7 @@ def _allowed(distance, size):
 
     `size` is the squared length of the query, which bounds the rounding errors.
     """
-    return distance + _ROUNDING * (distance + size)
+    return distance + _ROUNDING_SHARE * (distance + size)
 
 
 @exact
@@ -208,9 +209,9 @@ def _levels(n, counts, offsets):
 def search(tree, query, nearest, scratch):
     """Find the k points nearest to the query; fills the arrays of `nearest`."""
     boxes, x, near, last = tree.boxes, query.x, nearest.near, nearest.k - 1
-    s, waiting, index = scratch[:LANES], scratch[LANES:], scratch[LANES + _OPEN :]
-    level, counts = scratch[LANES + 2 * _OPEN :], scratch[LANES + 3 * _OPEN :]
-    offsets = counts[MOST_LEVELS + 2 :]
+    s, waiting, index = scratch[:LANES], scratch[LANES:], scratch[LANES + _MAX_OPEN_BOXES :]
+    level, counts = scratch[LANES + 2 * _MAX_OPEN_BOXES :], scratch[LANES + 3 * _MAX_OPEN_BOXES :]
+    offsets = counts[MAX_LEVELS + 2 :]
     near[: nearest.k] = inf
     nearest.row[: nearest.k] = inf
     level[0] = _levels(tree.unrotated.shape[0], counts, offsets)

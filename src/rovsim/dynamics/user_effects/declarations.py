@@ -9,9 +9,9 @@ import numpy as np
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.effects.base import Effect, Parameter, Requirement, Wrench
 
-TEXTS = ("equation", "neglects", "source")
-GUIDE = "docs/your_own_effect.md shows a complete one."
-NUMBERS = ("low", "high", "default", "scale", "resolution")
+REQUIRED_TEXTS = ("equation", "neglects", "source")
+SEE_GUIDE = "docs/your_own_effect.md shows a complete one."
+PARAMETER_NUMBERS = ("low", "high", "default", "scale", "resolution")
 
 
 def refused(found: str, where: object, expected: str, meant: str = "") -> BadInput:
@@ -23,7 +23,7 @@ def refused(found: str, where: object, expected: str, meant: str = "") -> BadInp
         expected: what should be there.
         meant: a question after the name that was meant, if one is near.
     """
-    return BadInput(found, where=where, expected=expected, remedy=f"{meant} {GUIDE}".lstrip())
+    return BadInput(found, where=where, expected=expected, remedy=f"{meant} {SEE_GUIDE}".lstrip())
 
 
 def find_faults(cls: type[Effect]) -> Iterator[tuple[str, str]]:
@@ -95,7 +95,7 @@ def _is_name(text: str) -> bool:
 def _find_in_parameter(p: Parameter, names: list[str]) -> Iterator[tuple[str, str]]:
     """Yield faults of one parameter; `names` are those of all parameters."""
     texts = all(isinstance(text, str) and text for text in (p.name, p.unit, p.symbol))
-    values = [getattr(p, name) for name in NUMBERS]
+    values = [getattr(p, name) for name in PARAMETER_NUMBERS]
     if not texts or not all(isinstance(value, Real) for value in values):
         expected = "texts for name, unit ('1' for none) and symbol, and numbers"
         yield f"parameter '{p.name}' is {p}", expected

@@ -15,7 +15,7 @@ from rovsim.core.errors import nearest
 from rovsim.core.files import read_text
 from rovsim.dynamics.effects.base import Effect, Wrench
 from rovsim.dynamics.effects.base.kernels import compiled_alone, line_that_raises, mentions
-from rovsim.dynamics.user_effects.declarations import TEXTS, find_faults, refused
+from rovsim.dynamics.user_effects.declarations import REQUIRED_TEXTS, find_faults, refused
 from rovsim.dynamics.user_effects.trials import TRIALS
 
 
@@ -80,7 +80,9 @@ def _check(cls: type[Effect], where: str, taken: Mapping[str, Any]) -> None:
     """Refuse a class that is incomplete, or has wrong declarations, a taken id or a bad kernel."""
     if not issubclass(cls, tuple(TRIALS)):
         raise refused("acts nowhere", where, "a class on top of Wrench or another kind")
-    missing = [name for name in ("id", *TEXTS) if not isinstance(getattr(cls, name, None), str)]
+    missing = [
+        name for name in ("id", *REQUIRED_TEXTS) if not isinstance(getattr(cls, name, None), str)
+    ]
     missing += [] if cls.__doc__ else ["docstring"]
     missing += [] if getattr(cls, "parameters", ()) else ["parameters"]
     missing += sorted(cls.__abstractmethods__)

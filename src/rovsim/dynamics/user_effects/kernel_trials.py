@@ -16,11 +16,11 @@ from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.effects.base.kernels import compiled_alone
 from rovsim.dynamics.engine.types import EXAMPLE, At
 
-INSTANTS = 100  # number of random instants that kernels are tried at
-FASTEST = 2.0  # m/s and rad/s: largest velocity at these instants
-LONGEST = 60.0  # s of a recording
-STRONGEST = 50.0  # N of a thruster
-BEYOND = 512  # numbers before and after the actuators' arrays, which a kernel must not read
+INSTANTS_TRIED = 100  # number of random instants that kernels are tried at
+MAX_SPEED = 2.0  # m/s and rad/s: largest velocity at these instants
+DURATION_SECONDS = 60.0  # s of a recording
+MAX_THRUST_N = 50.0  # N of a thruster
+GUARD_SIZE = 512  # numbers before and after the actuators' arrays, which a kernel must not read
 
 
 class Actuating(NamedTuple):
@@ -44,7 +44,7 @@ class Actuating(NamedTuple):
         )
 
 
-def largest_push(e: Wrench, there: Actuating) -> float:
+def largest_wrench(e: Wrench, there: Actuating) -> float:
     """Largest absolute value that a kernel returns at any instant, N or N m, but for NaN.
 
     Raises:
@@ -53,11 +53,11 @@ def largest_push(e: Wrench, there: Actuating) -> float:
     """
     cls = type(e)
     kernel, p = compiled_alone(cls), cls.named_parameters()(*map(float, e.values))
-    pushes = [_push(kernel, at, p) for at in _instants(cls, there)]
-    return float(np.max(np.abs(pushes), initial=0.0, where=np.isfinite(pushes)))
+    wrenches = [_evaluate_wrench(kernel, at, p) for at in _instants(cls, there)]
+    return float(np.max(np.abs(wrenches), initial=0.0, where=np.isfinite(wrenches)))
 
 
-def _push(kernel: Any, readings: "Sequence[_Reading]", p: Any) -> tuple[float, ...]:
+def _evaluate_wrench(kernel: Any, readings: "Sequence[_Reading]", p: Any) -> tuple[float, ...]:
     """The wrench at one instant; `readings` differ only in what is beyond the actuators' arrays."""
     wrenches = []
     for reading in readings:
@@ -97,15 +97,15 @@ def _states() -> tuple[At, ...]:
     unknown = (float("nan"),) * 2
     unmeasured = EXAMPLE._replace(tank=(unknown,) * 3, demand=(float("nan"),) * 6)
     random = np.random.default_rng(1)
-    return EXAMPLE, unmeasured, *(_moving(EXAMPLE, random) for _ in range(INSTANTS))
+    return EXAMPLE, unmeasured, *(_moving(EXAMPLE, random) for _ in range(INSTANTS_TRIED))
 
 
 def _moving(rest: At, random: np.random.Generator) -> At:
-    nu, water = random.uniform(-FASTEST, FASTEST, (2, 6))
+    nu, water = random.uniform(-MAX_SPEED, MAX_SPEED, (2, 6))
     R: Any = tuple(map(tuple, matrix(normalized(random.normal(size=4))).tolist()))
     return rest._replace(
-        t=float(random.uniform(0.0, LONGEST)),
-        duration=LONGEST,
+        t=float(random.uniform(0.0, DURATION_SECONDS)),
+        duration=DURATION_SECONDS,
         position=tuple(random.uniform(-1.0, 1.0, 3).tolist()),
         R=R,
         nu=tuple(nu.tolist()),
@@ -118,19 +118,19 @@ def _moving(rest: At, random: np.random.Generator) -> At:
 
 
 def _read(at: At, acting: Array, channels: Any, there: Actuating, beyond: float) -> _Reading:
-    """An instant with actuators of `acting` (5, k): forces / STRONGEST, commands, inflow (3, k)."""
+    """An instant with actuators of `acting` (5, k): forces / MAX_THRUST_N, commands, inflow."""
     from rovsim.dynamics.engine.kernel_inputs import Actuators, ReadingAt
 
-    force = STRONGEST * acting[0, : there.forces]
+    force = MAX_THRUST_N * acting[0, : there.forces]
     inflow = np.ascontiguousarray(acting[2:, : there.places].T)
     arrays = [force, acting[1, : there.commands], inflow]
     memories = [_surrounded(values, beyond) for values in arrays]
-    actuators = Actuators(*[m[BEYOND : len(m) - BEYOND] for m in memories])
+    actuators = Actuators(*[m[GUARD_SIZE : len(m) - GUARD_SIZE] for m in memories])
     return _Reading(ReadingAt(*at, actuators, channels), memories)
 
 
 def _surrounded(values: Array, beyond: float) -> Array:
     """An array with the values in the middle, and `beyond` before and after them."""
-    memory = np.full((BEYOND + len(values) + BEYOND, *values.shape[1:]), beyond)
-    memory[BEYOND : BEYOND + len(values)] = values
+    memory = np.full((GUARD_SIZE + len(values) + GUARD_SIZE, *values.shape[1:]), beyond)
+    memory[GUARD_SIZE : GUARD_SIZE + len(values)] = values
     return memory

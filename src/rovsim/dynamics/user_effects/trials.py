@@ -32,15 +32,16 @@ from rovsim.dynamics.effects.base import (
     Wrench,
 )
 from rovsim.dynamics.user_effects.declarations import refused
-from rovsim.dynamics.user_effects.kernel_trials import Actuating, largest_push
+from rovsim.dynamics.user_effects.kernel_trials import Actuating, largest_wrench
 
-INSTANTS = 5  # number of samples that methods are tried with
-TIME = np.arange(INSTANTS) / 10.0  # s
-DURATION = 60.0  # s of a recording
-NOTHING = 1e-9  # N, N m: rounding of two equal forces of opposite sign
-FULL = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
-BODY = "constants of the body as they are: finite numbers of the same shape"
-GROWING = ("products", "factors")  # constants of a body to which an effect may add rows
+SAMPLES = 5  # number of samples that methods are tried with
+TIME = np.arange(SAMPLES) / 10.0  # s
+DURATION_SECONDS = 60.0  # s of a recording
+WRENCH_TOLERANCE = 1e-9  # N, N m: rounding of two equal forces of opposite sign
+FULL_THRUST = ((-40.0,), (50.0,))  # N of a thruster at full command backwards and forwards
+SAME_BODY_EXPECTED = "constants of the body as they are: finite numbers of the same shape"
+# Constants of a body to which an effect may add rows.
+EXTENDABLE_CONSTANTS = ("products", "factors")
 
 
 class Tried(Actuated, Protocol):
@@ -115,7 +116,7 @@ def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
         wrong = [name for name, shape in _shapes(body).items() if shape != shapes[name]]
         return ", ".join(f"body.{name}" for name in wrong) or "a body as it was"
 
-    yield Trial("enter", enter, BODY, lambda result: result == "a body as it was")
+    yield Trial("enter", enter, SAME_BODY_EXPECTED, lambda result: result == "a body as it was")
     yield Trial(
         "enter",
         lambda: body.least_inertia,
@@ -125,9 +126,9 @@ def _try_coefficients(e: Coefficients, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _shapes(body: Body) -> dict[str, tuple[int, ...] | None]:
-    """Shape of each constant but `GROWING`, by name; None if it is not finite numbers."""
+    """Shape of each constant but `EXTENDABLE_CONSTANTS`, by name; None if not finite."""
     constants = {f.name: getattr(body, f.name) for f in fields(body)}
-    fixed = {name: value for name, value in constants.items() if name not in GROWING}
+    fixed = {name: value for name, value in constants.items() if name not in EXTENDABLE_CONSTANTS}
     return {name: np.shape(v) if _is_finite(v) else None for name, v in fixed.items()}
 
 
@@ -139,26 +140,26 @@ def _is_finite(value: Any) -> bool:
 
 
 def _try_current(e: StochasticCurrent, vehicle: Tried) -> Iterator[Trial]:
-    yield _array("draw", partial(e.draw, INSTANTS, 0.1, np.random.default_rng(0)), (INSTANTS, 3))
+    yield _array("draw", partial(e.draw, SAMPLES, 0.1, np.random.default_rng(0)), (SAMPLES, 3))
 
 
 def _try_timing(e: CommandTiming, vehicle: Tried) -> Iterator[Trial]:
     yield Trial(
         "effective_time",
         partial(e.effective_time, _given(TIME.copy())),
-        f"{INSTANTS} increasing instants for as many",
+        f"{SAMPLES} increasing instants for as many",
         lambda result: _is_array(result, TIME.shape) and bool((np.diff(result) > 0.0).all()),
     )
 
 
 def _try_demands(e: DemandTransform | Autopilot, vehicle: Tried) -> Iterator[Trial]:
-    yield _array("mixer_demand", partial(e.mixer_demand, _moving(6)), (INSTANTS, 6))
+    yield _array("mixer_demand", partial(e.mixer_demand, _moving(6)), (SAMPLES, 6))
 
 
 def _try_autopilot(e: Autopilot, vehicle: Tried) -> Iterator[Trial]:
     yield from _try_demands(e, vehicle)
     yield _array(
-        "demanded_wrench", partial(e.demanded_wrench, _moving(6), np.ones(6)), (INSTANTS, 6)
+        "demanded_wrench", partial(e.demanded_wrench, _moving(6), np.ones(6)), (SAMPLES, 6)
     )
 
 
@@ -168,13 +169,15 @@ def _try_command(e: CommandTransform, vehicle: Tried) -> Iterator[Trial]:
 
 
 def _try_curve(e: ThrustCurveShape, vehicle: Tried) -> Iterator[Trial]:
-    force, full = _forces(vehicle), _given(np.tile(FULL, vehicle.thruster_count))
+    force, full = _forces(vehicle), _given(np.tile(FULL_THRUST, vehicle.thruster_count))
     yield _array("reshaped_force", partial(e.reshaped_force, force, full), force.shape)
 
 
 def _try_scaling(e: ThrustScaling, vehicle: Tried) -> Iterator[Trial]:
     force = _forces(vehicle)
-    yield _array("scaled_force", partial(e.scaled_force, force, TIME, DURATION), force.shape)
+    yield _array(
+        "scaled_force", partial(e.scaled_force, force, TIME, DURATION_SECONDS), force.shape
+    )
 
 
 def _try_dynamics(e: ThrusterDynamics, vehicle: Tried) -> Iterator[Trial]:
@@ -213,15 +216,15 @@ def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
     actuating = Actuating(
         vehicle.thruster_count, len(vehicle.command_columns), len(vehicle.surface_names)
     )
-    call = partial(largest_push, e, actuating)
+    call = partial(largest_wrench, e, actuating)
     yield Trial("wrench", call, actuating.told, lambda _: True)
     if not e.given():
         yield Trial("wrench", call, "0 with its default values: then nothing acts", _is_none)
 
 
-def _is_none(push: float) -> bool:
-    """Whether the largest push is zero or NaN; a simulation reports a wrench that is NaN."""
-    return not push > NOTHING
+def _is_none(wrench: float) -> bool:
+    """Whether the largest wrench is zero or NaN; a simulation reports a wrench that is NaN."""
+    return not wrench > WRENCH_TOLERANCE
 
 
 def _array(
@@ -243,13 +246,13 @@ def _told(made: Any) -> str:
 
 
 def _moving(columns: int) -> Array:
-    """Demands or commands (INSTANTS, columns) from -1 to 1."""
-    return _given(np.tile(np.linspace(-1.0, 1.0, INSTANTS)[:, None], columns))
+    """Demands or commands (SAMPLES, columns) from -1 to 1."""
+    return _given(np.tile(np.linspace(-1.0, 1.0, SAMPLES)[:, None], columns))
 
 
 def _forces(vehicle: Tried) -> Array:
-    """Examples of forces (INSTANTS, n), N, of the vehicle's thrusters."""
-    return _given(FULL[1][0] * _moving(vehicle.thruster_count))
+    """Examples of forces (SAMPLES, n), N, of the vehicle's thrusters."""
+    return _given(FULL_THRUST[1][0] * _moving(vehicle.thruster_count))
 
 
 def _given(values: Array) -> Array:

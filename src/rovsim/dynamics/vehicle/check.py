@@ -10,8 +10,8 @@ from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, nearest
 from rovsim.dynamics.vehicle.file import Vehicle
 
-UNIT = 0.01  # tolerance of the length of a unit vector
-HANGING = ("heave", "roll", "pitch")  # axes on which weight and buoyancy act
+UNIT_LENGTH_TOLERANCE = 0.01  # tolerance of the length of a unit vector
+WEIGHT_AXES = ("heave", "roll", "pitch")  # axes on which weight and buoyancy act
 Finding = tuple[str, str, str]  # found, expected, remedy
 
 
@@ -54,10 +54,10 @@ def _thrusters(vehicle: Vehicle) -> Iterator[Finding]:
     """Yield thrusters with a bad direction or without a force curve."""
     for unit in vehicle.thrusters.units:
         length = float(np.linalg.norm(unit.direction))
-        if abs(length - 1.0) > UNIT:
+        if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE:
             fault = f"thruster {unit.name} has a direction of length {length:.3f}"
             yield fault, "a unit vector", "Divide the direction by its length."
-        if unit.azimuth and abs(unit.direction[2]) > UNIT:
+        if unit.azimuth and abs(unit.direction[2]) > UNIT_LENGTH_TOLERANCE:
             fault = f"thruster {unit.name} turns about the z axis and points along {unit.direction}"
             yield (
                 fault,
@@ -75,7 +75,7 @@ def _surfaces(vehicle: Vehicle) -> Iterator[Finding]:
     for s in vehicle.surfaces:
         normal = np.array(s.normal)
         length = float(np.linalg.norm(normal))
-        if abs(length - 1.0) > UNIT or abs(normal[0]) > 0.9:
+        if abs(length - 1.0) > UNIT_LENGTH_TOLERANCE or abs(normal[0]) > 0.9:
             fault = f"surface {s.name} has the normal {s.normal}"
             yield fault, "a unit vector across the x axis", "Rudder: [0, 1, 0]; fin: [0, 0, -1]."
         if s.in_wake_of is not None and s.in_wake_of not in jets:
@@ -95,7 +95,7 @@ def _inertia(vehicle: Vehicle) -> Iterator[Finding]:
 
 def _buoyancy(vehicle: Vehicle) -> Iterator[Finding]:
     """Yield numbers of the buoyancy that are missing for a submerged vehicle."""
-    if vehicle.floats or not set(HANGING) & set(vehicle.degrees_of_freedom):
+    if vehicle.floats or not set(WEIGHT_AXES) & set(vehicle.degrees_of_freedom):
         return
     for name in ("displaced_volume", "center_of_buoyancy"):
         if getattr(vehicle.rigid_body, name) is None:

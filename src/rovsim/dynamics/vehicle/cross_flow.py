@@ -22,9 +22,9 @@ from rovsim.core.axes import FORCE, VELOCITY
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect
 
-SIZE = 6  # the factor 6 + i is the absolute value of velocity i
+ABSOLUTE_VALUE = 6  # the factor 6 + i is the absolute value of velocity i
 NO_FACTOR = -1
-NAME = re.compile(r"([XYZKMN])((?:[uvwpqr]|\|[uvwpqr]\|){2,3})")
+COEFFICIENT_NAME = re.compile(r"([XYZKMN])((?:[uvwpqr]|\|[uvwpqr]\|){2,3})")
 
 
 def parse_product(name: str) -> tuple[int, int, int, int]:
@@ -33,7 +33,7 @@ def parse_product(name: str) -> tuple[int, int, int, int]:
     Raises:
         ValueError: not a name of a product.
     """
-    match = NAME.fullmatch(name)
+    match = COEFFICIENT_NAME.fullmatch(name)
     if match is None:
         raise ValueError(
             f"names of an axis {' '.join(FORCE)} and two or three velocities "
@@ -42,7 +42,7 @@ def parse_product(name: str) -> tuple[int, int, int, int]:
     parts = re.findall(r"\|[uvwpqr]\||[uvwpqr]", match[2])
     if len(parts) == 2 and parts[0] == parts[1] and "|" not in parts[0]:
         parts[1] = f"|{parts[1]}|"
-    codes = [VELOCITY.index(part.strip("|")) + SIZE * ("|" in part) for part in parts]
+    codes = [VELOCITY.index(part.strip("|")) + ABSOLUTE_VALUE * ("|" in part) for part in parts]
     codes += [NO_FACTOR] * (3 - len(codes))
     return FORCE.index(match[1]), codes[0], codes[1], codes[2]
 

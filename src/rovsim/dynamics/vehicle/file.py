@@ -20,7 +20,7 @@ from rovsim.dynamics.vehicle.hydrodynamics import Hydrodynamics
 from rovsim.dynamics.vehicle.surfaces import Surface, Surfaces
 from rovsim.dynamics.vehicle.thrusters import Thrusters, ThrusterSet, Triple
 
-ALL: tuple[Axis, ...] = get_args(Axis)
+ALL_AXES: tuple[Axis, ...] = get_args(Axis)
 
 
 class Fluid(Section):
@@ -100,7 +100,7 @@ class Vehicle(Section):
     rigid_body: DryVehicle
     hydrodynamics: Hydrodynamics
     thrusters: ThrusterSet = ThrusterSet()
-    degrees_of_freedom: tuple[Axis, ...] = Field(default=ALL, min_length=1)
+    degrees_of_freedom: tuple[Axis, ...] = Field(default=ALL_AXES, min_length=1)
     waterplane: Waterplane | None = None
     cross_flow: Products = Field(default_factory=dict)
     surfaces: tuple[Surface, ...] = ()

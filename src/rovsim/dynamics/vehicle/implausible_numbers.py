@@ -12,11 +12,11 @@ import numpy as np
 
 from rovsim.dynamics.vehicle.file import Vehicle
 
-GRAVITY = (1.0, 30.0)  # m/s2: from the Moon's to Jupiter's
-DENSITY = (500.0, 2000.0)  # kg/m3, of a liquid in which a vehicle swims
-CARRIED = 5.0  # times: mass over that of the displaced water; or less than 1/5
-GYRATION = (0.03, 10.0)  # times the vehicle's length
-FAR = 30.0  # times the vehicle's length
+GRAVITY_RANGE = (1.0, 30.0)  # m/s2: from the Moon's to Jupiter's
+DENSITY_RANGE = (500.0, 2000.0)  # kg/m3, of a liquid in which a vehicle swims
+MAX_DENSITY_RATIO = 5.0  # times: mass over that of the displaced water; or less than 1/5
+GYRATION_RANGE = (0.03, 10.0)  # times the vehicle's length
+MAX_DISTANCE = 30.0  # times the vehicle's length
 
 
 def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
@@ -28,9 +28,9 @@ def doubt_units(vehicle: Vehicle) -> tuple[str, ...]:
 def _water(vehicle: Vehicle) -> Iterator[str]:
     """Yield implausible density and gravity."""
     density, gravity = vehicle.fluid.density, vehicle.fluid.gravity
-    if not DENSITY[0] <= density <= DENSITY[1]:
+    if not DENSITY_RANGE[0] <= density <= DENSITY_RANGE[1]:
         yield f"fluid.density: {density:g} is that of no water. In kg/m3?"
-    if not GRAVITY[0] <= gravity <= GRAVITY[1]:
+    if not GRAVITY_RANGE[0] <= gravity <= GRAVITY_RANGE[1]:
         yield f"fluid.gravity: {gravity:g}, and on Earth it is 9.8. In m/s2?"
 
 
@@ -39,10 +39,10 @@ def _weight(vehicle: Vehicle) -> Iterator[str]:
     dry = vehicle.rigid_body
     if vehicle.floats or dry.displaced_volume is None:
         return
-    if not DENSITY[0] <= vehicle.density <= DENSITY[1]:
+    if not DENSITY_RANGE[0] <= vehicle.density <= DENSITY_RANGE[1]:
         return  # `_water` reports that
     water = vehicle.density * dry.displaced_volume
-    if not 1.0 / CARRIED <= dry.mass / water <= CARRIED:
+    if not 1.0 / MAX_DENSITY_RATIO <= dry.mass / water <= MAX_DENSITY_RATIO:
         yield (
             f"rigid_body: a mass of {dry.mass:g} kg, and its displaced_volume holds {water:g} kg "
             "of water. In kg, and in m3?"
@@ -57,7 +57,7 @@ def _inertia(vehicle: Vehicle) -> Iterator[str]:
         if moment is None or axis not in vehicle.degrees_of_freedom:
             continue
         radius = float(np.sqrt(moment / dry.mass))
-        if not GYRATION[0] * size <= radius <= GYRATION[1] * size:
+        if not GYRATION_RANGE[0] * size <= radius <= GYRATION_RANGE[1] * size:
             yield (
                 f"rigid_body.inertia.{name}: {moment:g} with a mass of {dry.mass:g} is a radius of "
                 f"gyration of {radius:.2g} m. In kg m2, and the mass in kg?"
@@ -73,7 +73,7 @@ def _places(vehicle: Vehicle) -> Iterator[str]:
         **{f"thruster {unit.name}, position": unit.position for unit in vehicle.thrusters.units},
     }
     for name, position in positions.items():
-        if position is not None and np.linalg.norm(position) > FAR * _length(vehicle):
+        if position is not None and np.linalg.norm(position) > MAX_DISTANCE * _length(vehicle):
             yield f"{name}: {', '.join(f'{x:g}' for x in position)}. In m from CO?"
 
 

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.core.axes import AXES
-from rovsim.dynamics.learned.layout import MOST_POINTS
+from rovsim.dynamics.learned.layout import MAX_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.cross_validation import noise_factor
 from rovsim.learning.determinism import seeded_torch
@@ -33,7 +33,7 @@ class GpSettings(gaussian.GaussianSettings):
     # six times cheaper to evaluate
     kernel: Literal["independent", "shared"] = "independent"
     max_points: int | None = Field(
-        default=1500, ge=1, le=MOST_POINTS
+        default=1500, ge=1, le=MAX_POINTS
     )  # cost: n^3 to condition, n to evaluate
     # rows on which hyperparameters are found: a few numbers need fewer rows than the posterior
     tuning_points: int = Field(default=500, ge=1)

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.core.errors import BadInput
-from rovsim.dynamics.learned.layout import MOST_NEIGHBOURS
+from rovsim.dynamics.learned.layout import MAX_NEIGHBOURS
 from rovsim.learning.cross_validation import PARTS, split_rows
 from rovsim.learning.export import export_neighbours
 from rovsim.learning.learner import (
@@ -29,7 +29,7 @@ class KnnSettings(LearnerSettings):
 
     kind: Literal["knn"] = "knn"
     # null: the number that predicts left-out stretches of the training runs best
-    k: int | None = Field(default=None, ge=1, le=MOST_NEIGHBOURS)
+    k: int | None = Field(default=None, ge=1, le=MAX_NEIGHBOURS)
     # with inverse distances the prediction is continuous where the nearest point changes
     weights: Literal["uniform", "distance"] = "distance"
 

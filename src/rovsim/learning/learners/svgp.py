@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 from pydantic import Field
 
 from rovsim.core.axes import AXES
-from rovsim.dynamics.learned.layout import MOST_POINTS
+from rovsim.dynamics.learned.layout import MAX_POINTS
 from rovsim.learning import gaussian
 from rovsim.learning.determinism import seeded_torch
 from rovsim.learning.learner import (
@@ -26,7 +26,7 @@ class SvgpSettings(gaussian.GaussianSettings):
 
     kind: Literal["svgp"] = "svgp"
     inducing: int = Field(
-        default=100, ge=1, le=MOST_POINTS
+        default=100, ge=1, le=MAX_POINTS
     )  # inducing points; the cost grows with the cube of their number
     batch: int = Field(default=512, ge=1)  # rows per step
     iterations: int = Field(default=250, ge=1)  # 12 passes over 11,000 rows

@@ -28,7 +28,7 @@ from rovsim.core.model_names import name_learned
 from rovsim.core.names import as_list
 from rovsim.core.progress import reported
 from rovsim.dynamics.catalogue import Catalogue
-from rovsim.dynamics.learned.residual import ARRAYS
+from rovsim.dynamics.learned.residual import ARRAYS_FILE
 from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts, tell_residual
@@ -68,7 +68,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     pictures = draw(out, _shown(scored, names, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
-        files = (file, out / ARRAYS, out / "comparison.json")
+        files = (file, out / ARRAYS_FILE, out / "comparison.json")
         run = TrackedRun(
             experiment=data.campaign.name,
             name=settings.tracking.name or name,

@@ -15,7 +15,7 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law, split_law
 from rovsim.diagnosis.equations.products.columns import Columns
 from rovsim.diagnosis.equations.products.library import LawTerm, drag_of
-from rovsim.dynamics.laws.codes import DEEP, EAST, NEAR, NORTH, SWIRL
+from rovsim.dynamics.laws.codes import DEPTH, EAST, NEARNESS, NORTH, SWIRL
 from rovsim.dynamics.laws.law import COEFFICIENTS, Law, Product
 from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -149,10 +149,10 @@ def _with_law(
 def list_moved(terms: Sequence[LawTerm]) -> tuple[str, ...]:
     """List the names of the coordinates of a place, and its width, that some term depends on."""
     factors = {f for t in terms for f in t.factors}
-    flat = bool(factors & {NEAR}) or any(t.on == SWIRL for t in terms)
+    flat = bool(factors & {NEARNESS}) or any(t.on == SWIRL for t in terms)
     return (
         *(("x",) if flat or NORTH in factors else ()),
         *(("y",) if flat or EAST in factors else ()),
-        *(("z",) if DEEP in factors else ()),
-        *(("width",) if NEAR in factors else ()),
+        *(("z",) if DEPTH in factors else ()),
+        *(("width",) if NEARNESS in factors else ()),
     )

@@ -7,11 +7,11 @@ from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import FLOWS, TARGETS, WORLD_FORCES
 from rovsim.diagnosis.equations.products.variables import VARIABLES, VELOCITIES_IN_CODE
 from rovsim.dynamics.laws.codes import (
-    DEEP,
+    DEPTH,
     DIRECTION,
     DOWN,
     EAST,
-    NEAR,
+    NEARNESS,
     NORTH,
     SIZE,
     SPEED,
@@ -72,13 +72,13 @@ def _velocities(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
 def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
     """Yield lines that assign the distances from the law's place, and the nearness to it."""
     turning = any(t.on == SWIRL for t in terms)
-    if used & {NORTH, NEAR} or turning:
+    if used & {NORTH, NEARNESS} or turning:
         yield "north = at.position[0] - p.x * at.axes[0]"
-    if used & {EAST, NEAR} or turning:
+    if used & {EAST, NEARNESS} or turning:
         yield "east = at.position[1] - p.y * at.axes[1]"
-    if DEEP in used:
+    if DEPTH in used:
         yield "deep = at.position[2] - p.z * at.axes[2]"
-    if NEAR in used:
+    if NEARNESS in used:
         yield "near = exp(-(north * north + east * east) / (2.0 * p.width * p.width))"
 
 

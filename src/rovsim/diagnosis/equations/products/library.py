@@ -17,11 +17,11 @@ from rovsim.core.rotations import matrix
 from rovsim.diagnosis.equations.products.variables import LATERAL_AXES, VARIABLES, tabulate
 from rovsim.diagnosis.structure.regressors import earlier_states
 from rovsim.dynamics.laws.codes import (
-    DEEP,
+    DEPTH,
     DIRECTION,
     DOWN,
     EAST,
-    NEAR,
+    NEARNESS,
     NORTH,
     SIGN,
     SIGN_OF_DOWN,
@@ -125,19 +125,19 @@ def _along_world() -> Iterator[LawTerm]:
         for factors in ((), (NORTH,), (EAST,), (NORTH, NORTH), (EAST, EAST), (NORTH, EAST)):
             if factors or on in (WORLD, WORLD + 1):
                 yield LawTerm(on, factors)
-    yield LawTerm(WORLD + 2, (DEEP,))
-    yield LawTerm(WORLD + 2, (DEEP, DEEP))
+    yield LawTerm(WORLD + 2, (DEPTH,))
+    yield LawTerm(WORLD + 2, (DEPTH, DEPTH))
     yield LawTerm(SWIRL, ())
     for i in range(3):
-        yield from (LawTerm(i, (i, k)) for k in (NORTH, EAST, DEEP))
+        yield from (LawTerm(i, (i, k)) for k in (NORTH, EAST, DEPTH))
 
 
 def _at(place: tuple[float, float]) -> Iterator[LawTerm]:
     """Yield forces, flows and drags near a place, m north and east."""
     for on in (WORLD, WORLD + 1, WORLD + 2, WATER, WATER + 1, SWIRL):
-        yield LawTerm(on, (NEAR,), place)
+        yield LawTerm(on, (NEARNESS,), place)
     for i in range(3):
-        yield LawTerm(i, (NEAR, i), place)
+        yield LawTerm(i, (NEARNESS, i), place)
 
 
 def list_places(runs: Sequence[ObservedRun]) -> list[tuple[float, float]]:

@@ -22,7 +22,7 @@ from rovsim.diagnosis.equations.products.library import (
 )
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
-from rovsim.dynamics.laws.law import TERMS
+from rovsim.dynamics.laws.law import MAX_TERMS
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
@@ -43,16 +43,16 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
     terms: tuple[LawTerm, ...] = ()
     fit, law = fits.selection.fit(start), None
     score = fits.workspace.score(fit)
-    while len(terms) < TERMS and fit.is_finite:
+    while len(terms) < MAX_TERMS and fit.is_finite:
         fixed_place: KnownPlace = (None, None)
         if law is not None:
             middle, fixed_place = stay(middle, list_moved(terms), place_of(law.law, site))
         used_kinds = [t.kind for t in terms]
         remaining = [t for t in list_terms(fits.runs, fixed_place) if t.kind not in used_kinds]
         columns = fits.project(fit, remaining, middle)
-        if len(columns.terms) < TERMS:
+        if len(columns.terms) < MAX_TERMS:
             break
-        kinds = choose_kinds(propose(columns, TERMS - len(terms)))[:TERMS_TRIED]
+        kinds = choose_kinds(propose(columns, MAX_TERMS - len(terms)))[:TERMS_TRIED]
         laws = fit_products(fits, fit, terms, kinds, columns)
         kind = next(
             (k for k, candidate in laws.items() if fits.is_worth(candidate, fit, score)), None

@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES, VELOCITY
 from rovsim.core.rotations import matrix
-from rovsim.dynamics.laws.law import SMOOTH, STILL, TILT
+from rovsim.dynamics.laws.law import MIN_SPEED, SIGN_WIDTH, TILT_SIGN_WIDTH
 
 # In kernels, where `p` are the parameters.
 VELOCITIES_IN_CODE = ("u", "v", "w", "roll", "pitch", "yaw")
@@ -47,7 +47,7 @@ class Variable:
 
 def _velocities() -> list[Variable]:
     """Velocity, absolute value and smooth sign of each of the six body axes."""
-    signs = (r"\tanh({}/" + f"{SMOOTH:g})", "tanh({} / " + f"{SMOOTH:g})")
+    signs = (r"\tanh({}/" + f"{SIGN_WIDTH:g})", "tanh({} / " + f"{SIGN_WIDTH:g})")
     kinds = (
         ("{}", "{}", "{}", "{} velocity"),
         ("|{}|", "|{}|", "abs({})", "{} speed"),
@@ -76,7 +76,7 @@ def _unit_of_velocity(i: int, kind: str) -> tuple[int, int, int]:
 
 def _attitudes() -> list[Variable]:
     """Components of the NED z axis in body axes, and their smooth signs."""
-    signs = (r"\tanh(d_{}/" + f"{TILT:g})", "tanh(d{} / " + f"{TILT:g})")
+    signs = (r"\tanh(d_{}/" + f"{TILT_SIGN_WIDTH:g})", "tanh(d{} / " + f"{TILT_SIGN_WIDTH:g})")
     kinds = (("d_{}", "d_{}", "d{}"), ("sign(d_{})", *signs))
     return [
         Variable(symbol.format(x), latex.format(x), code.format(x), 0, 0, 0, x == "y", meaning)
@@ -89,7 +89,7 @@ VARIABLES: tuple[Variable, ...] = (
     *_velocities(),
     *_attitudes(),
     Variable("U", "U", "U", 1, -1, 0, False, "speed"),
-    Variable("1/U", r"U^{-1}", f"(1.0 / sqrt(U * U + {STILL**2:g}))", -1, 1, 0, False, "speed"),
+    Variable("1/U", r"U^{-1}", f"(1.0 / sqrt(U * U + {MIN_SPEED**2:g}))", -1, 1, 0, False, "speed"),
     Variable("n", "(n - n_0)", "north", 1, 0, 0, None, "place along north"),
     Variable("e", "(e - e_0)", "east", 1, 0, 0, None, "place along east"),
     Variable("d", "(d - d_0)", "deep", 1, 0, 0, None, "depth"),
@@ -111,8 +111,10 @@ def tabulate(state: Array, place: Array) -> Array:
     down, U = R[:, 2].T, np.sqrt(np.sum(state[:, 7:10] ** 2, axis=1))
     n, e, d = state[:, :3].T - place[:3, None]
     proximity = np.exp(-(n**2 + e**2) / (2.0 * place[3] ** 2))
-    extra = [U, 1.0 / np.sqrt(U**2 + STILL**2), n, e, d, proximity]
-    return np.vstack([nu, np.abs(nu), np.tanh(nu / SMOOTH), down, np.tanh(down / TILT), *extra])
+    extra = [U, 1.0 / np.sqrt(U**2 + MIN_SPEED**2), n, e, d, proximity]
+    return np.vstack(
+        [nu, np.abs(nu), np.tanh(nu / SIGN_WIDTH), down, np.tanh(down / TILT_SIGN_WIDTH), *extra]
+    )
 
 
 def write_unit(powers: Mapping[str, int], head: str = "") -> str:

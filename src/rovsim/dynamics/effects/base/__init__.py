@@ -41,7 +41,7 @@ from rovsim.dynamics.effects.base.kinds import (
 )
 from rovsim.dynamics.effects.base.parameters import (
     REFERENCE_MASS,
-    STAMP,
+    STAMP_STEP,
     Parameter,
     Signature,
     per_axis,
@@ -49,7 +49,7 @@ from rovsim.dynamics.effects.base.parameters import (
 
 __all__ = [
     "REFERENCE_MASS",
-    "STAMP",
+    "STAMP_STEP",
     "Actuated",
     "Autopilot",
     "Coefficients",

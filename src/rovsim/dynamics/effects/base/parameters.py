@@ -9,7 +9,7 @@ from rovsim.core.axes import AXES
 
 # kg, the BlueROV2 Heavy (conf/vehicle): `Parameter.scale` in the catalogue suits its size.
 REFERENCE_MASS = 13.5
-STAMP = 0.001  # s: command logs are stamped in whole milliseconds
+STAMP_STEP = 0.001  # s: command logs are stamped in whole milliseconds
 
 
 @dataclass(frozen=True)
