@@ -9,14 +9,14 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from rovsim.core.rotations import from_matrix
-from rovsim.measurement.recording.formats.rosbag2.definitions import MAVROS
+from rovsim.measurement.recording.formats.rosbag2.definitions import MAVROS_MESSAGES
 
 START = 1_750_000_000.0  # s, arrival of the first message
 POSE, ODOMETRY = "geometry_msgs/msg/PoseStamped", "nav_msgs/msg/Odometry"
 OWN = "tank_msgs/msg/Thrust"
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 for name, text in {
-    **MAVROS,
+    **MAVROS_MESSAGES,
     OWN: "std_msgs/Header header\nfloat64 port\nfloat64[2] pods\n",
 }.items():
     STORE.register(get_types_from_msg(text, name))

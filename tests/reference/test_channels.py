@@ -23,7 +23,7 @@ from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality.assessment import assess, report_quality
 from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording, read_run
-from rovsim.measurement.recording.channels import KINDS, Channel, to_ned
+from rovsim.measurement.recording.channels import CHANNEL_KINDS, Channel, to_ned
 from rovsim.measurement.signals.chain import SignalSettings, clean
 from worlds import model
 
@@ -210,7 +210,7 @@ def test_angles_turn_into_other_axes_as_attitudes_do(angles, world, body):
 @given(st.sampled_from(["z_up", "ned"]), st.sampled_from(["flu", "frd"]))
 def test_every_kind_has_axes_that_are_turned(world, body):
     mocap = Mocap(format="csv", world_axes=world, body_axes=body)
-    for kind, declared in KINDS.items():
+    for kind, declared in CHANNEL_KINDS.items():
         value = np.full((1, len(declared.columns)), 0.5)
         turned = to_ned({kind: Channel(np.zeros(1), value)}, mocap)[kind].value
         assert turned.shape == value.shape

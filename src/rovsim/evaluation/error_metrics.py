@@ -7,7 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, log, multiply
-from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.signals.measured import Measured, blank, find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.base import ByAxis, or_none
@@ -222,5 +222,5 @@ def normalize(spread: Array, velocity_rmse: Array) -> float | None:
     Returns:
         The mean; None where no axis was excited, or the model diverged.
     """
-    excited = spread > EXCITED
+    excited = spread > MIN_SPREAD
     return or_none(np.mean(velocity_rmse[excited] / spread[excited])) if excited.any() else None

@@ -9,7 +9,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.robust import usual_range
 from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
 from rovsim.intake.survey.contents import Contents, Track
-from rovsim.measurement.quality.usability import STILL_POSITION
+from rovsim.measurement.quality.usability import REST_POSITION_SPREAD
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def _moves(contents: Contents, body: str) -> bool:
         return True
     place = track.export.position[track.export.found]
     low, high = usual_range(place)
-    return bool(np.max(high - low) > STILL_POSITION)
+    return bool(np.max(high - low) > REST_POSITION_SPREAD)
 
 
 def _nothing_common(motions: Sequence[Contents]) -> BadInput:

@@ -15,7 +15,7 @@ from rovsim.intake.facts import Facts
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.survey.starts import find_start
 from rovsim.intake.vehicles import VehicleMatch, convert_log
-from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.recording.tidying import measured_rate
@@ -153,7 +153,7 @@ def _score(nu: Array, time: Array, commands: Commands, fit: VehicleMatch) -> flo
     Only axes count that the commands excite; 0 where none of these was measured.
     """
     caused = predict_velocity(fit.vehicle, commands, time)
-    excited = caused.std(axis=0) > EXCITED
+    excited = caused.std(axis=0) > MIN_SPREAD
     correlation = _alike(nu, caused)[excited]
     measured = np.isfinite(correlation)
     return float(correlation[measured].mean()) if measured.any() else 0.0

@@ -8,7 +8,7 @@ from typing import Iterator, Sequence
 from rovsim.core.errors import BadInput
 from rovsim.intake.names import sensor_key, without_sensor
 from rovsim.intake.survey import Contents, Track
-from rovsim.measurement.recording.joined import POSES, TOLD, join, list_held, span_of
+from rovsim.measurement.recording.joined import FULL_POSES, POSE_CHANNELS, join, list_held, span_of
 from rovsim.measurement.recording.tidying import tidy_export
 
 FORMAT = "csv"  # other formats hold all sensors of a run in one file
@@ -114,7 +114,7 @@ def _one_each(run: Sequence[Contents], groups: Sequence[Sequence[Contents]]) -> 
 def _held(one: Contents) -> frozenset[str]:
     """Return the kinds of measurements in a file, with those that its poses imply."""
     kinds = list_held(one.tracks[0].export)
-    return frozenset([*kinds, *(TOLD if POSES in kinds else ())])
+    return frozenset([*kinds, *(POSE_CHANNELS if FULL_POSES in kinds else ())])
 
 
 def _all_different(files: Sequence[Contents]) -> bool:

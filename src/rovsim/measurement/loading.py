@@ -15,7 +15,7 @@ from rovsim.measurement.campaign_file import CampaignFile, Mocap, Run
 from rovsim.measurement.recording.readers import FileAxes, command_readers, mocap_readers
 from rovsim.measurement.unanswered import check_answered
 
-BAG = "rosbag2"  # the format whose channels are topics
+BAG_FORMAT = "rosbag2"  # the format whose channels are topics
 
 
 def load_campaign(path: Path) -> Campaign:
@@ -78,7 +78,7 @@ def _check_mocap(mocap: Mocap, file: Path) -> None:
     readers, plain = mocap_readers(), FileAxes()
     file_axes = readers[mocap.format].axes if mocap.format in readers else plain
     allowed = {*plain.every, *file_axes.every}
-    if mocap.topics is not None and mocap.format in readers and mocap.format != BAG:
+    if mocap.topics is not None and mocap.format in readers and mocap.format != BAG_FORMAT:
         raise BadInput(
             f"'mocap.topics' with 'mocap.format: {mocap.format}'",
             where=file,

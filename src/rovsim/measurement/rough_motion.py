@@ -12,9 +12,9 @@ from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.clock import time_step
 
 # A vehicle's speed answers within tenths of a second; a median over a step rejects single outliers.
-STEP = 0.05  # s
-MOST = 20_000  # steps: a quarter of an hour is as good for a comparison as a day
-BRIDGED = 0.3  # s without a pose over which a straight line still serves
+MIN_STEP_S = 0.05
+MAX_STEPS = 20_000  # a quarter of an hour is as good for a comparison as a day
+MAX_GAP_S = 0.3  # without a pose over which a straight line still serves
 # Lines over this many steps to either side: their slope is the velocity.
 HALF_WINDOW = 3
 
@@ -69,12 +69,12 @@ def even_poses(export: Export | Recording) -> ResampledPoses:
 
 
 def even_clock(time: Array) -> Array:
-    """Make an even clock over times (n,) s, with at most `MOST` steps.
+    """Make an even clock over times (n,) s, with at most `MAX_STEPS` steps.
 
-    Its step is `STEP`, or the median step of the times if that is longer.
+    Its step is `MIN_STEP_S`, or the median step of the times if that is longer.
     """
-    step = max(STEP, float(np.median(np.diff(time))))
-    count = min(max(int((time[-1] - time[0]) / step) + 1, 2), MOST)
+    step = max(MIN_STEP_S, float(np.median(np.diff(time))))
+    count = min(max(int((time[-1] - time[0]) / step) + 1, 2), MAX_STEPS)
     return time[0] + step * np.arange(count)
 
 
@@ -101,7 +101,7 @@ def _far(clock: Array, time: Array) -> Array:
     """Mask (n,) of the instants of a clock (n,) that lie in a long gap of the times (m,)."""
     after = np.clip(np.searchsorted(time, clock), 1, len(time) - 1)
     step = clock[1] - clock[0]
-    return time[after] - time[after - 1] > max(BRIDGED, 2.0 * step)
+    return time[after] - time[after - 1] > max(MAX_GAP_S, 2.0 * step)
 
 
 def estimate_velocities(export: Export | Recording) -> Velocities:

@@ -8,7 +8,7 @@ from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text
 
 ANSWER = "ANSWER"  # the value of keys that `rovsim init` leaves to the user
-HERE = re.compile(rf"^[^#]*\b{ANSWER}\b")
+ANSWER_LINE = re.compile(rf"^[^#]*\b{ANSWER}\b")
 
 
 def check_answered(content: Any, file: Path) -> None:
@@ -24,7 +24,7 @@ def check_answered(content: Any, file: Path) -> None:
     open_places = list(_unanswered(content, ""))
     if not open_places:
         return
-    lines = [n for n, line in enumerate(read_text(file).split("\n"), 1) if HERE.match(line)]
+    lines = [n for n, line in enumerate(read_text(file).split("\n"), 1) if ANSWER_LINE.match(line)]
     listed = ", ".join(f"line {n} ({p})" for n, p in zip(lines, open_places, strict=False))
     raise BadInput(
         f"still to be answered: {listed or ', '.join(open_places)}",

@@ -12,16 +12,16 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
-from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.diagnosis import Standstill
 from rovsim.simulation.samples import Samples
 
-MAX_REST_SPEED = 0.5 * EXCITED  # m/s, rad/s: slower than any axis that counts as moved
+MAX_REST_SPEED = 0.5 * MIN_SPREAD  # m/s, rad/s: slower than any axis that counts as moved
 MIN_REST_SECONDS = 1.0  # s; a vehicle that reverses its motion stands still for less
-MIN_SPEED_GAIN = 3.0 * EXCITED  # m/s, rad/s that the model would gain: far more than noise
+MIN_SPEED_GAIN = 3.0 * MIN_SPREAD  # m/s, rad/s that the model would gain: far more than noise
 # s over which errors are averaged while vehicles move; a standstill is compared with its length.
 BLOCK_SECONDS = (0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 MIN_BLOCKS = 10  # blocks of a length; if there are fewer, shorter blocks are used

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.signals.measured import find_measured
 
 MIN_SETTLED_SECONDS = 10.0  # s of settled readings; less does not tell noise from physics
@@ -79,5 +79,5 @@ def _find_axes(runs: Sequence[ObservedRun]) -> _Axes:
     for run in runs:
         free |= run.free_axes
         measured |= find_measured(run.motion.measured)
-        excited |= np.std(run.motion.nu[run.motion.usable], axis=0) > EXCITED
+        excited |= np.std(run.motion.nu[run.motion.usable], axis=0) > MIN_SPREAD
     return _Axes(free, measured, excited)

@@ -9,7 +9,7 @@ import scipy
 from numpy import ndarray as Array
 from numpy.lib.stride_tricks import sliding_window_view
 
-from rovsim.measurement.quality.excitation import EXCITED
+from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step
@@ -140,7 +140,7 @@ class Commanded:
         nu = np.where(finite, measured.nu, 0.0)
         table = self._correlations(nu, finite_rows(nu))
         defined = np.isfinite(table).all(axis=(1, 2))
-        driven = self.commanded.std(axis=0) > EXCITED
+        driven = self.commanded.std(axis=0) > MIN_SPREAD
         excited = finite & driven
         table = np.where(defined[:, None, None], table, 0.0)
         strength, unseen = (_strength(nu, self.commanded, excited), bool((driven & ~finite).any()))

@@ -14,7 +14,7 @@ from rovsim.core.run import Commands, latest
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.dynamics.vehicle.hydrodynamics import matrix
-from rovsim.measurement.rough_motion import STEP
+from rovsim.measurement.rough_motion import MIN_STEP_S
 from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.drive import Drive
 
@@ -62,7 +62,7 @@ def cause(
         Times (n,) in s, and velocities (n, 6) in m/s and rad/s, FRD.
     """
     end = min(float(commands.time[-1]), begin + longest)
-    time = np.arange(begin - BEFORE, end + AFTER, STEP)
+    time = np.arange(begin - BEFORE, end + AFTER, MIN_STEP_S)
     return time, predict_velocity(vehicle, commands, time)
 
 

@@ -14,8 +14,8 @@ from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind
 from rovsim.intake.survey.csv_commands import within
 from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
-from rovsim.measurement.recording.formats.rosbag2.commands import MANUAL, PULSES, pushed
-from rovsim.measurement.recording.formats.rosbag2.motion import POSES, read_bag
+from rovsim.measurement.recording.formats.rosbag2.commands import MANUAL_FIELDS, PULSE_TYPES, pushed
+from rovsim.measurement.recording.formats.rosbag2.motion import POSE_TYPES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
 
 # Topics that say where the vehicle should be, or where something else is: never read.
@@ -81,7 +81,7 @@ def look_into_bag(path: Path) -> Contents:
     raise BadInput(
         f"no topic of motion or of commands among {len(topics)}",
         where=path,
-        expected=f"{', '.join(POSES)}, Imu, pressure, or outputs to thrusters",
+        expected=f"{', '.join(POSE_TYPES)}, Imu, pressure, or outputs to thrusters",
         remedy=" ".join(notes) or "Record these topics as well.",
     )
 
@@ -105,7 +105,7 @@ def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[s
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:
     """List topics that hold poses of the vehicle, Odometry last."""
-    poses = [t for t, kind in topics.items() if _short(kind) in POSES and not WISHES.search(t)]
+    poses = [t for t, kind in topics.items() if _short(kind) in POSE_TYPES and not WISHES.search(t)]
     alone = [t for t in poses if _short(topics[t]) != "Odometry"]
     stems = {t.rsplit("/", 1)[0] for t in alone}
     # Odometry in the namespace of a pose repeats that pose
@@ -176,7 +176,7 @@ def _place(kind: str) -> int:
 def _drive(bag: Bag, topic: str) -> CommandCandidate:
     kind, message = bag.first(topic, "commands.topic")
     name = _short(kind)
-    if name in PULSES:
+    if name in PULSE_TYPES:
         pulses = bag.read(
             topic, "commands.topic", _padded("channels", len(message.channels)), "pulses"
         )
@@ -191,10 +191,10 @@ def _drive(bag: Bag, topic: str) -> CommandCandidate:
             topic,
         )
     if name == "ManualControl":
-        time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL])
+        time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL_FIELDS])
         return CommandCandidate(
             "rosbag2",
-            tuple(MANUAL),
+            tuple(MANUAL_FIELDS),
             time,
             value,
             "demand",

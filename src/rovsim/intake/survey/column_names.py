@@ -6,13 +6,13 @@ from typing import Iterator, Sequence
 
 from rovsim.measurement.recording.formats.csv import ANGULAR, EULER, LINEAR, POSITION, QUATERNION
 from rovsim.measurement.recording.tables.delimited import Lines
-from rovsim.measurement.recording.tables.named_columns import TIME
-from rovsim.measurement.recording.tables.units import TIMES, split_unit
+from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
+from rovsim.measurement.recording.tables.units import TIME_FACTORS, split_unit
 
 # Our name -> regex of names that mean the same, once unit, brackets and case are removed.
 FORMS = {
-    TIME: "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|time_boot|"
-    "rostime",
+    TIME_COLUMN: "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|"
+    "time_boot|rostime",
     **{
         ours: f"{letter}|p{letter}|pos_?{letter}|position_?{letter}|(pose_)*position_{letter}|"
         f"t{letter}|translation_{letter}|{letter}_pos(ition)?"
@@ -62,7 +62,7 @@ def _places(ours: str, lines: Lines, names: Sequence[tuple[str, str]]) -> Iterat
 
 
 def _fits(ours: str, unit: str) -> bool:
-    return (unit in TIMES) == (ours == TIME)
+    return (unit in TIME_FACTORS) == (ours == TIME_COLUMN)
 
 
 def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:

@@ -13,7 +13,7 @@ from rovsim.core.pwm import PILOT
 from rovsim.intake.survey.command_names import find_range, find_wrench, has_other_unit
 from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
 from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, find_sparse
-from rovsim.measurement.recording.commands import ALLOWED, PERCENT, are_pulses, guess_unit
+from rovsim.measurement.recording.commands import MAX_PERCENT, UNIT_RANGES, are_pulses, guess_unit
 from rovsim.measurement.recording.tables.delimited import Lines
 
 RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
@@ -168,7 +168,7 @@ def within(value: Array, kind: LoggedKind) -> bool:
     """Whether a column can be commands of a kind, by the size of its numbers."""
     if kind == "pwm":
         return are_pulses(value)
-    low, high = ALLOWED[kind][:2]
+    low, high = UNIT_RANGES[kind][:2]
     finite = value[np.isfinite(value)]
     return bool(len(finite) and finite.min() >= low and finite.max() <= high)
 
@@ -185,7 +185,7 @@ def _wrench(values: list[Array]) -> str:
     """Say what columns named after axes may be: their size does not tell forces from percent."""
     low, high = find_range(values)
     remark = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
-    if max(-low, high) <= PERCENT:
+    if max(-low, high) <= MAX_PERCENT:
         return f"{remark}. If these are percent, divide them by 100 and write demand"
     if max(-low, high) <= THOUSANDTHS:
         return f"{remark}. If these are thousandths, divide them by 1000 and write demand"

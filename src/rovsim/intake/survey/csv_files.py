@@ -15,10 +15,10 @@ from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, read_
 from rovsim.intake.survey.repeats import check_unmixed, tell_repeats
 from rovsim.intake.survey.sizes import Key, Unit, Units
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.formats.csv import KNOWN, read_csv
+from rovsim.measurement.recording.formats.csv import KNOWN_COLUMNS, read_csv
 from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.tables.delimited import Lines, csv_lines
-from rovsim.measurement.recording.tables.named_columns import TIME, no_time
+from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN, no_time
 from rovsim.measurement.recording.tidying import tidy_export
 
 EXPECTED = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
@@ -56,7 +56,7 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     """Find out what the file at `place` holds, which is `path` or a copy of it."""
     lines = csv_lines(place)
     check_unmixed(replace(lines, path=path))
-    channels = [name for name in lines.names if name in KNOWN]
+    channels = [name for name in lines.names if name in KNOWN_COLUMNS]
     other_columns = read_others(lines)
     drive = find_commands(lines, other_columns)
     if drive is not None:
@@ -67,7 +67,9 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     tracks = (_track(place),) if channels else ()
     drives = () if drive is None else (drive,)
     original = None if place == path else path
-    unread = tuple(name for name in lines.names if name and name not in (*KNOWN, TIME))
+    unread = tuple(
+        name for name in lines.names if name and name not in (*KNOWN_COLUMNS, TIME_COLUMN)
+    )
     doubts = tell_repeats(lines, [*channels, *(drive.bare if drive else ())])
     return Contents(
         place, "csv", tracks, drives, original, notes, unknown=unknown, unread=unread, doubts=doubts
@@ -82,7 +84,7 @@ def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
         lines: of the file.
         unknown: its columns of unknown numbers, as `_unknown` lists them.
     """
-    if TIME not in lines.names:
+    if TIME_COLUMN not in lines.names:
         return no_time(path, lines.names)
     if not unknown:
         return BadInput(

@@ -26,7 +26,7 @@ from rovsim.measurement.recording.tables.delimited import Lines, csv_lines, with
 from rovsim.measurement.recording.tables.named_columns import find_halves, no_time
 from rovsim.measurement.recording.tables.numbers import numbers
 from rovsim.measurement.recording.tables.times import dates, times
-from rovsim.measurement.recording.tables.units import DEGREE, FACTORS, split_unit
+from rovsim.measurement.recording.tables.units import DEGREE, SI_FACTORS, split_unit
 
 HALF_TURN = 180.0  # degrees
 
@@ -205,7 +205,10 @@ def _group(
     factor, reason = find_by_size(lines, here, value, time, told)
     return [
         ChannelColumn(
-            n, p, FACTORS[units[p]] if units[p] and not reason else factor, reason or _of(units[p])
+            n,
+            p,
+            SI_FACTORS[units[p]] if units[p] and not reason else factor,
+            reason or _of(units[p]),
         )
         for n, p in here.items()
     ]
@@ -223,7 +226,7 @@ def _depth(
         return Unit(1.0, "", is_height(-value))
 
     sign = told.settle((lines.names[place],), decide)
-    factor = sign.factor * FACTORS.get(units[place], 1.0)
+    factor = sign.factor * SI_FACTORS.get(units[place], 1.0)
     return ChannelColumn(ours, place, factor, f"{_of(units[place])}{sign.said}")
 
 

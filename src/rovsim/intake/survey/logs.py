@@ -8,7 +8,7 @@ import numpy as np
 from rovsim.core.pwm import PILOT, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, Track
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.formats.ardupilot.commands import SOURCES
+from rovsim.measurement.recording.formats.ardupilot.commands import LOG_FIELDS
 from rovsim.measurement.recording.formats.ardupilot.logs import open_log
 from rovsim.measurement.recording.formats.ardupilot.motion import read_log
 from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog
@@ -31,7 +31,7 @@ def look_into_log(path: Path) -> Contents:
 
 def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
     """List outputs to thrusters and the pilot's radio, without channels that carry no pulse."""
-    for kind, (name, field) in SOURCES[log.kind].items():
+    for kind, (name, field) in LOG_FIELDS[log.kind].items():
         if name not in log.series:
             continue
         series = log.series[name]

@@ -11,9 +11,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.formats.csv import KNOWN
+from rovsim.measurement.recording.formats.csv import KNOWN_COLUMNS
 from rovsim.measurement.recording.tables.delimited import Lines, without_cut_line
-from rovsim.measurement.recording.tables.named_columns import TIME, column_places
+from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN, column_places
 from rovsim.measurement.recording.tables.numbers import numbers
 from rovsim.measurement.recording.tables.times import times
 
@@ -30,16 +30,16 @@ TimedColumns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) 
 
 def read_others(lines: Lines) -> TimedColumns:
     """Read columns of numbers that are neither channels nor `WATCHED`; none without times."""
-    if TIME not in lines.names:
+    if TIME_COLUMN not in lines.names:
         return np.empty(0), {}
     names = [
         name
         for name in lines.names
-        if name not in (*KNOWN, TIME)
+        if name not in (*KNOWN_COLUMNS, TIME_COLUMN)
         and lines.names.count(name) == 1
         and not WATCHED.fullmatch(name)
     ]
-    places = column_places(lines.path, lines.names, [TIME, *names])
+    places = column_places(lines.path, lines.names, [TIME_COLUMN, *names])
     table, _ = without_cut_line(lines, places)
     columns = {
         n: v

@@ -6,10 +6,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.formats.csv import KNOWN, POSITION
+from rovsim.measurement.recording.formats.csv import KNOWN_COLUMNS, POSITION
 from rovsim.measurement.recording.one_run import SeveralRuns, find_begins
 from rovsim.measurement.recording.tables.delimited import Lines, without_cut_line
-from rovsim.measurement.recording.tables.named_columns import TIME
+from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
 from rovsim.measurement.recording.tables.numbers import numbers
 from rovsim.measurement.recording.tables.times import times
 
@@ -45,7 +45,7 @@ def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
     Yields:
         The name of a column, and its first `count` cells.
     """
-    places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN, TIME)]
+    places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN_COLUMNS, TIME_COLUMN)]
     head = _cells(lines, min(count, GLANCE), places)
     candidates = [k for k, column in zip(places, head, strict=True) if len(set(column)) <= LABELS]
     for place, column in zip(candidates, _cells(lines, count, candidates), strict=True):
@@ -99,7 +99,7 @@ def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
     time = _times(lines, places)
     if _double(time) < MANY * len(time) or not columns:
         return ()
-    value = numbers(without_cut_line(lines, [lines.names.index(TIME), *places])[0], places)
+    value = numbers(without_cut_line(lines, [lines.names.index(TIME_COLUMN), *places])[0], places)
     repeats = max(_double(time[np.isfinite(column)]) for column in value.T)
     if repeats < MANY * len(time):
         return ()
@@ -120,7 +120,7 @@ def _times(lines: Lines, others: Sequence[int] = ()) -> Array:
         lines: of the file.
         others: positions of columns that a line has to reach beside the times.
     """
-    if TIME not in lines.names:
+    if TIME_COLUMN not in lines.names:
         return np.empty(0)
-    place = lines.names.index(TIME)
+    place = lines.names.index(TIME_COLUMN)
     return times(without_cut_line(lines, [place, *others])[0], place)

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import usual_range
 from rovsim.core.rotations import unwrapped
-from rovsim.measurement.recording.csv_checks import FASTEST, usual_speed
+from rovsim.measurement.recording.csv_checks import MAX_SPEED, usual_speed
 from rovsim.measurement.recording.formats.csv import EULER, POSITION
 from rovsim.measurement.recording.tables.delimited import Lines
 from rovsim.measurement.recording.tables.units import DEGREE, split_unit
@@ -152,13 +152,13 @@ def _metres(of: _ColumnGroup) -> Unit:
     extent, speed = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
     if speed > CREEPING:
         return Unit(1e-3, f" in mm, by its size ({speed:.0f} m/s if it were m)", True)
-    if of.named and speed <= FASTEST:
+    if of.named and speed <= MAX_SPEED:
         return Unit(1.0, "", False)
     if speed < SLOW_ENOUGH and extent < 0.1 * FARTHEST:
         return Unit(1.0, " in m, by its size", False)
     raise of.asked(
         f"positions ({', '.join(of.key)}) over {extent:.3g}, {speed:.3g} per second, without a "
-        f"unit ({'mm or cm' if speed > FASTEST else 'm, cm or mm'}?)",
+        f"unit ({'mm or cm' if speed > MAX_SPEED else 'm, cm or mm'}?)",
         "x_m, y_m, z_m, or x_cm, y_cm, z_cm, or x_mm, y_mm, z_mm",
         large=True,
     )

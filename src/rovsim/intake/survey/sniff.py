@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.readers import mocap_readers
-from rovsim.measurement.recording.signature import HEAD, FileSignature, decoded, head_lines
+from rovsim.measurement.recording.signature import HEAD_BYTES, FileSignature, decoded, head_lines
 from rovsim.measurement.recording.tables.delimited import is_table
 
 AS_CSV = "docs/formats.md lists the columns"
@@ -56,7 +56,7 @@ def sniff(path: Path) -> str:
     if path.is_dir():
         return next(reader.name for reader in readers if reader.folder)
     with path.open("rb") as file:
-        head = file.read(HEAD)
+        head = file.read(HEAD_BYTES)
     for reader in readers:
         if reader.general:
             _refuse_known(path, head)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rovsim.measurement.recording.readers import mocap_readers
-from rovsim.measurement.recording.signature import HEAD
+from rovsim.measurement.recording.signature import HEAD_BYTES
 
 
 def find_start(path: Path) -> float | None:
@@ -11,6 +11,6 @@ def find_start(path: Path) -> float | None:
     if not path.is_file():
         return None
     with path.open("rb") as file:
-        head = file.read(HEAD)
+        head = file.read(HEAD_BYTES)
     starts = (reader.start(head) for reader in mocap_readers().values())
     return next((start for start in starts if start is not None), None)

@@ -4,11 +4,11 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.intake.survey.sizes import Unit, Units, UnknownUnit
-from rovsim.measurement.recording.csv_checks import LONGEST_STEP
+from rovsim.measurement.recording.csv_checks import MAX_STEP_S
 from rovsim.measurement.recording.tables.delimited import Lines
-from rovsim.measurement.recording.tables.named_columns import TIME
-from rovsim.measurement.recording.tables.times import LATEST, times
-from rovsim.measurement.recording.tables.units import FACTORS
+from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
+from rovsim.measurement.recording.tables.times import MAX_TIME_S, times
+from rovsim.measurement.recording.tables.units import SI_FACTORS
 
 SHORTEST_STEP = 2e-4  # s between two lines of any recording
 SHORTEST = 3.0  # s that a recording lasts, where its lines would come faster than any camera
@@ -39,14 +39,14 @@ def find_time_unit(
         times(lines, place)  # says what they are
     latest = float(np.nanmax(np.abs(value), initial=0.0))
     step = float(np.nanmedian(np.abs(np.diff(value)))) if len(value) > 1 else 1.0
-    in_seconds = lines.names[place] == TIME
-    if in_seconds and step < LONGEST_STEP and not latest > LATEST:
+    in_seconds = lines.names[place] == TIME_COLUMN
+    if in_seconds and step < MAX_STEP_S and not latest > MAX_TIME_S:
         return 1.0, ""
     if unit and not in_seconds:
-        return FACTORS[unit], f" in {unit}"
+        return SI_FACTORS[unit], f" in {unit}"
     for name, size in (("ns", 1e17), ("us", 1e14), ("ms", 1e11)):
         if latest > size:
-            return FACTORS[name], f" in {name} since 1970, by its size"
+            return SI_FACTORS[name], f" in {name} since 1970, by its size"
     if not step > 0.0:
         return 1.0, " in s, by its steps"
     key, duration = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
@@ -60,11 +60,11 @@ def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
     Raises:
         UnknownUnit: several units suit, or none.
     """
-    names = [n for n in ("s", "ms", "us", "ns") if _is_step(step * FACTORS[n])]
-    suited = [n for n in names if _is_recording(step * FACTORS[n], lasts * FACTORS[n])]
+    names = [n for n in ("s", "ms", "us", "ns") if _is_step(step * SI_FACTORS[n])]
+    suited = [n for n in names if _is_recording(step * SI_FACTORS[n], lasts * SI_FACTORS[n])]
     if len(suited) == 1:
         sure = len(names) == 1
-        return Unit(FACTORS[suited[0]], f" in {suited[0]}, by its steps", sure, shared=False)
+        return Unit(SI_FACTORS[suited[0]], f" in {suited[0]}, by its steps", sure, shared=False)
     options = " or ".join(suited) if suited else "days (of a spreadsheet, or datenum) or minutes"
     raise UnknownUnit(
         f"times ('{key[0]}') in steps of {step:.3g} over {lasts:.3g} ({options}?)",
@@ -77,7 +77,7 @@ def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
 
 def _is_step(seconds: float) -> bool:
     """Whether two lines of a recording can be so far apart."""
-    return SHORTEST_STEP <= seconds < LONGEST_STEP
+    return SHORTEST_STEP <= seconds < MAX_STEP_S
 
 
 def _is_recording(step: float, lasts: float) -> bool:

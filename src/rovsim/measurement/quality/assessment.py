@@ -10,7 +10,7 @@ from rovsim.measurement.quality.remarks import doubt, remark
 from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.quality.velocity_conventions import doubt_velocities
 from rovsim.measurement.quality.velocity_means import doubt_means
-from rovsim.measurement.recording.channels import KINDS
+from rovsim.measurement.recording.channels import CHANNEL_KINDS
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.repairs import Anomalies
 from rovsim.measurement.recording.tidying import measured_rate
@@ -18,7 +18,7 @@ from rovsim.measurement.signals.chosen_channels import doubt_delays
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 from rovsim.results.quality import CommandSummary, Gap, MeasuredChannel, Quality, Rate
 
-GAP = 0.05  # s; shorter ones are bridged by any resampling
+MIN_GAP_S = 0.05  # shorter ones are bridged by any resampling
 
 
 def report_quality(recording: Recording, anomalies: Anomalies, settings: Outliers) -> Quality:
@@ -83,7 +83,7 @@ def find_gaps(recording: Recording, used: Sequence[tuple[float, float]] = ()) ->
     """
     time = recording.time[recording.found]
     steps = np.diff(time)
-    limit = max(GAP, 2.0 * float(np.median(np.diff(recording.time))))
+    limit = max(MIN_GAP_S, 2.0 * float(np.median(np.diff(recording.time))))
     long = np.flatnonzero(steps > limit * (1.0 + 1e-9))
     gaps = [Gap(start_s=float(time[k]), duration_s=float(steps[k])) for k in long]
     return [gap for gap in gaps if not used or any(_within(gap, span) for span in used)]
@@ -102,7 +102,7 @@ def _describe_channels(recording: Recording) -> dict[str, MeasuredChannel]:
             end_s=float(channel.time[-1]),
             measured=tuple(
                 name
-                for name, column in zip(KINDS[kind].columns, channel.value.T, strict=True)
+                for name, column in zip(CHANNEL_KINDS[kind].columns, channel.value.T, strict=True)
                 if np.isfinite(column).any()
             ),
         )

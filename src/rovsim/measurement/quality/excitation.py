@@ -13,11 +13,11 @@ from rovsim.measurement.signals.resample import Linear
 from rovsim.measurement.signals.track import track_channels
 from rovsim.results.quality import Excitation
 
-BLOCK = 0.1  # s; the median of a block rejects single outlier frames
-READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
+BLOCK_S = 0.1  # the median of a block rejects single outlier frames
+MIN_BLOCK_READINGS = 3.0  # of the slowest channel in a block: fewer are its noise
 # An axis whose velocity varies less than this cannot be judged: on runs with no command on an
 # axis, disturbances alone move it up to about 0.02 m/s and 0.1 rad/s.
-EXCITED = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s, standard deviation
+MIN_SPREAD = np.array([0.03, 0.03, 0.03, 0.12, 0.12, 0.12])  # m/s, rad/s; std
 
 
 def measure_excitation(recording: Recording) -> dict[str, Excitation]:
@@ -31,7 +31,7 @@ def measure_excitation(recording: Recording) -> dict[str, Excitation]:
         axis: Excitation(
             std=float(spread[k]),
             unit=VELOCITY_UNITS[k],
-            excited=bool(spread[k] > EXCITED[k]),
+            excited=bool(spread[k] > MIN_SPREAD[k]),
         )
         for k, axis in enumerate(AXES)
         if measured[k]
@@ -47,7 +47,7 @@ def _velocity(recording: Recording) -> tuple[Array, Array]:
     except BadInput:  # no channel of the motion: this error is reported when the run is used
         return np.empty((0, 6)), np.zeros(6, bool)
     assert poses.measured is not None
-    length = max(BLOCK, READINGS * poses.measured.period)
+    length = max(BLOCK_S, MIN_BLOCK_READINGS * poses.measured.period)
     columns = poses.time[:, None], poses.eta[:, :3], poses.eta[:, 3:]
     used = tuple(column[poses.usable] for column in columns)
     return _differences(*used, rate=1.0 / time_step(poses.time), length=length), poses.measured.axes
@@ -57,7 +57,7 @@ def rough_velocity(recording: Recording) -> Array:
     """Body velocities (k, 6): the exported ones, else differences of medians of short blocks."""
     if recording.nu is not None:
         return recording.nu[recording.found]
-    return _differences(*select_found_poses(recording), rate=recording.rate, length=BLOCK)
+    return _differences(*select_found_poses(recording), rate=recording.rate, length=BLOCK_S)
 
 
 def _differences(

@@ -9,7 +9,7 @@ from rovsim.measurement.quality.excitation import select_found_poses
 from rovsim.measurement.recording.recording import Recording
 from rovsim.results.quality import PoseNoise
 
-THIRD_DIFFERENCE = 20.0  # its variance over that of white noise: 1 + 9 + 9 + 1
+THIRD_DIFFERENCE_GAIN = 20.0  # its variance over that of white noise: 1 + 9 + 9 + 1
 
 
 def measure_noise(recording: Recording) -> PoseNoise:
@@ -35,4 +35,4 @@ def _robust_std(third: Array) -> float | None:
     if len(third) < 10:
         return None
     per_axis = STD_PER_MAD * np.median(np.abs(third - np.median(third, axis=0)), axis=0)
-    return float(np.sqrt(np.mean(per_axis**2) / THIRD_DIFFERENCE))
+    return float(np.sqrt(np.mean(per_axis**2) / THIRD_DIFFERENCE_GAIN))

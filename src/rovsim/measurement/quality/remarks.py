@@ -3,13 +3,13 @@
 from typing import Iterator
 
 from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs, MotionRepairs
-from rovsim.measurement.signals.measured import HIGHEST
+from rovsim.measurement.signals.measured import MAX_CUTOFF_SHARE
 from rovsim.results.quality import Quality
 
 # Above these a recording is worth a second look; they change nothing else.
-MANY_MISSING = 0.05  # share of frames
-NOISY_POSITION, NOISY_ATTITUDE = 0.003, 0.015  # m, rad: three times a usual underwater MoCap
-SLOW = 20.0  # Hz; below it thruster lag and added mass are hard to see
+MAX_MISSING_SHARE = 0.05  # of frames
+NOISY_POSITION_M, NOISY_ATTITUDE_RAD = 0.003, 0.015  # three times a usual underwater MoCap
+MIN_RATE_HZ = 20.0  # below it thruster lag and added mass are hard to see
 
 
 def doubt(report: Quality) -> Iterator[str]:
@@ -43,19 +43,20 @@ def _frames(report: Quality, left_out: int) -> Iterator[str]:
         yield _held_channels(report)
         return
     share = report.not_found / max(report.frames - left_out, 1)
-    if share > MANY_MISSING:
+    if share > MAX_MISSING_SHARE:
         yield f"The body was not found in {share:.0%} of the frames: check markers and cameras."
     if report.longest_gap_s > 0.5:
         yield (f"The longest gap is {report.longest_gap_s:.2f} s; motion across it is not rebuilt.")
     rate = report.rate_hz.median
-    if rate < SLOW:
+    if rate < MIN_RATE_HZ:
         yield (
             f"{rate:.3g} Hz is slow: noise is overestimated, lags are hard to see, and the filter "
-            f"cuts off at {HIGHEST * rate:.2g} Hz at most."
+            f"cuts off at {MAX_CUTOFF_SHARE * rate:.2g} Hz at most."
         )
     noise = report.noise
-    if rate >= SLOW and (
-        (noise.position_m or 0.0) > NOISY_POSITION or (noise.attitude_rad or 0.0) > NOISY_ATTITUDE
+    if rate >= MIN_RATE_HZ and (
+        (noise.position_m or 0.0) > NOISY_POSITION_M
+        or (noise.attitude_rad or 0.0) > NOISY_ATTITUDE_RAD
     ):
         yield "The poses are noisy: check the calibration and the marker set of the body."
     if report.outliers and report.outliers > 0.01 * report.frames:

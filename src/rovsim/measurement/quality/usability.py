@@ -8,10 +8,10 @@ from rovsim.core.rotations import conjugate, log, multiply
 from rovsim.measurement.quality.velocity_conventions import find_impossible
 from rovsim.measurement.recording.recording import Recording
 
-SHORTEST_RUN = 2.0  # s; one scoring window
+MIN_RUN_S = 2.0  # one scoring window
 # A body at rest stays well inside these: MoCap noise spreads over a few mm and about 0.01 rad, a
 # manoeuvring vehicle over decimetres within seconds.
-STILL_POSITION, STILL_ATTITUDE = 0.01, 0.02  # m, rad
+REST_POSITION_SPREAD, REST_ATTITUDE_SPREAD = 0.01, 0.02  # m, rad
 
 
 def usable_reason(recording: Recording) -> str | None:
@@ -24,18 +24,18 @@ def usable_reason(recording: Recording) -> str | None:
         return too_fast
     if not recording.posed:
         length = float(np.ptp(recording.time))
-        reason = f"too short: it lasts {length:.2f} s, {SHORTEST_RUN:g} needed"
-        return reason if length < SHORTEST_RUN else None
+        reason = f"too short: it lasts {length:.2f} s, {MIN_RUN_S:g} needed"
+        return reason if length < MIN_RUN_S else None
     tracked_s = float(np.sum(tracked)) / recording.rate
     duration = float(np.ptp(recording.time[tracked])) if tracked.any() else 0.0
-    if min(tracked_s, duration) < SHORTEST_RUN:
+    if min(tracked_s, duration) < MIN_RUN_S:
         return (
             f"too short: the body was seen for {min(tracked_s, duration):.2f} s, "
-            f"{SHORTEST_RUN:g} needed"
+            f"{MIN_RUN_S:g} needed"
         )
     position = _spread(recording.position[tracked])
     attitude = _spread(_turns(recording.attitude[tracked]))
-    if position < STILL_POSITION and attitude < STILL_ATTITUDE:
+    if position < REST_POSITION_SPREAD and attitude < REST_ATTITUDE_SPREAD:
         return f"motionless: it stays within {1e3 * position:.1f} mm and {attitude:.3f} rad"
     return None
 

@@ -12,17 +12,17 @@ from rovsim.measurement.recording.csv_checks import LIMITS
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.recording import Recording
 
-AVERAGING_TIME = 0.5  # s, over which poses and velocities are compared: slower than noise
-FEWEST = 20  # windows
-EXCITED = 0.03  # m/s or rad/s, root mean square: slower motion is not compared
-ALIKE, UNLIKE = 0.9, 0.6  # cosine between measured velocities and those from the poses
-OTHER_SIZE = 1.3  # ratio of sizes: the scale of a sensor is never so wrong
-UNITS = {  # by channel: factors of sensors' units
+AVERAGING_TIME_S = 0.5  # over which poses and velocities are compared: slower than noise
+MIN_WINDOWS = 20
+MIN_RMS_VELOCITY = 0.03  # m/s or rad/s, root mean square: slower motion is not compared
+ALIKE_COSINE, UNLIKE_COSINE = 0.9, 0.6  # between measured velocities and those from the poses
+MAX_SCALE_RATIO = 1.3  # ratio of sizes: the scale of a sensor is never so wrong
+UNIT_FACTORS = {  # by channel: factors of sensors' units
     "velocity": ((100.0, "cm/s"), (1000.0, "mm/s")),
     "rates": ((180.0 / np.pi, "deg/s"),),
 }
-NEAR_UNIT = 0.15  # off the factor of a unit
-SAID = {"velocity": "velocities", "rates": "rates"}
+UNIT_TOLERANCE = 0.15  # off the factor of a unit
+PLURALS = {"velocity": "velocities", "rates": "rates"}
 
 
 class _Both(NamedTuple):
@@ -80,12 +80,12 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
     """Average both over sliding windows; None with too few windows or hardly any motion."""
     tracked = of.found & np.isfinite(measured).all(axis=1)
     time, position, attitude = of.time[tracked], of.position[tracked], of.attitude[tracked]
-    if len(time) < FEWEST:
+    if len(time) < MIN_WINDOWS:
         return None
-    k = max(1, round(AVERAGING_TIME / float(np.median(np.diff(time)))))
+    k = max(1, round(AVERAGING_TIME_S / float(np.median(np.diff(time)))))
     duration = (time[k:] - time[:-k])[:, None]
-    usable = duration[:, 0] < 2.0 * AVERAGING_TIME + 2.0 * np.median(np.diff(time))
-    if usable.sum() < FEWEST:
+    usable = duration[:, 0] < 2.0 * AVERAGING_TIME_S + 2.0 * np.median(np.diff(time))
+    if usable.sum() < MIN_WINDOWS:
         return None
     if kind == "velocity":
         world = (position[k:] - position[:-k]) / duration
@@ -99,17 +99,17 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
         [np.zeros((1, 3)), np.cumsum(0.5 * step * (value[1:] + value[:-1]), axis=0)]
     )
     mean = (integral[k:] - integral[:-k]) / duration
-    if float(np.sqrt(np.mean(body[usable] ** 2))) < EXCITED:
+    if float(np.sqrt(np.mean(body[usable] ** 2))) < MIN_RMS_VELOCITY:
         return None
     return _Both(body[usable], world[usable], mean[usable])
 
 
 def _judge(kind: str, both: _Both) -> str:
-    quantity, likeness = SAID[kind], _cosine(both.measured, both.body)
-    if likeness > ALIKE:
+    quantity, likeness = PLURALS[kind], _cosine(both.measured, both.body)
+    if likeness > ALIKE_COSINE:
         return _judge_size(kind, both)
     in_world = _cosine(both.measured, both.world)
-    if in_world > ALIKE:
+    if in_world > ALIKE_COSINE:
         return (
             f"The {quantity} lie along the axes of the world, by the poses beside them (likeness "
             f"{in_world:.2f}, along the body {likeness:.2f}): turn them into the body's axes, or "
@@ -117,14 +117,14 @@ def _judge(kind: str, both: _Both) -> str:
         )
     signs = max(product((1.0, -1.0), repeat=3), key=lambda s: _cosine(both.measured * s, both.body))
     mirrored = _cosine(both.measured * signs, both.body)
-    if mirrored > ALIKE:
+    if mirrored > ALIKE_COSINE:
         axes = " and ".join(n for n, s in zip("xyz", signs, strict=True) if s < 0.0)
         return (
             f"The {quantity} fit the poses beside them with the sign of {axes} turned (likeness "
             f"{mirrored:.2f}, as they are {likeness:.2f}): poses and {quantity} have other axes. "
             "Bring them to the same."
         )
-    if likeness < UNLIKE:
+    if likeness < UNLIKE_COSINE:
         return (
             f"The {quantity} do not fit the poses beside them (likeness {likeness:.2f}): check "
             "their axes, their order and their clock, or leave them out."
@@ -134,13 +134,13 @@ def _judge(kind: str, both: _Both) -> str:
 
 def _judge_size(kind: str, both: _Both) -> str:
     size = float(np.sum(both.measured * both.body) / np.sum(both.body**2))
-    if 1.0 / OTHER_SIZE < size < OTHER_SIZE:
+    if 1.0 / MAX_SCALE_RATIO < size < MAX_SCALE_RATIO:
         return ""
-    unit = next((u for f, u in UNITS[kind] if abs(size / f - 1.0) < NEAR_UNIT), "")
+    unit = next((u for f, u in UNIT_FACTORS[kind] if abs(size / f - 1.0) < UNIT_TOLERANCE), "")
     ours = LIMITS[kind].unit
     hint = f"they are {unit}, not {ours}." if unit else f"are they {ours}?"
     return (
-        f"The {SAID[kind]} are {size:.3g} times what the poses beside them say: {hint} Name "
+        f"The {PLURALS[kind]} are {size:.3g} times what the poses beside them say: {hint} Name "
         "their columns after their unit, or correct them."
     )
 

@@ -7,12 +7,12 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import exp, multiply, turns, unrotate
 from rovsim.measurement.recording.recording import Recording
-from rovsim.measurement.signals.binned import LONG_BIN
+from rovsim.measurement.signals.binned import MAX_BIN_RATIO
 
-FEWEST = 50  # steps
-NEARER = 0.85  # of the differences, over the axes: noise alone comes to 1
-UNEVEN = 0.1  # of a step, standard deviation: from there on, the readings can be distinguished
-APART = 1.1  # of the differences
+MIN_STEPS = 50
+MAX_INSTANT_RATIO = 0.85  # of the differences, over the axes: noise alone comes to 1
+EVEN_STEP_SPREAD = 0.1  # of a step, standard deviation: beyond, the readings can be distinguished
+MIN_MEANS_RATIO = 1.1  # of the differences
 
 
 def doubt_means(recording: Recording) -> Iterator[str]:
@@ -26,7 +26,9 @@ def doubt_means(recording: Recording) -> Iterator[str]:
     if differences is None:
         return
     to_next, at_times, both_means, even_steps = differences
-    if _ratio(at_times, to_next) < NEARER and (even_steps or _ratio(both_means, at_times) > APART):
+    if _ratio(at_times, to_next) < MAX_INSTANT_RATIO and (
+        even_steps or _ratio(both_means, at_times) > MIN_MEANS_RATIO
+    ):
         yield (
             "The body velocities fit the poses as values at their times, not as means from line to "
             "line: write 'velocity: instant' below 'mocap'. Only where the poses are means over "
@@ -55,11 +57,16 @@ def _differences(recording: Recording) -> tuple[Array, Array, Array, bool] | Non
         0.5 * (passed[:-1] + passed[1:]) / step[:, None],
     )
     mask = np.isfinite(np.hstack([pose_nu, *readings])).all(axis=1)
-    mask &= step < LONG_BIN * np.median(step)
-    if mask.sum() < FEWEST:
+    mask &= step < MAX_BIN_RATIO * np.median(step)
+    if mask.sum() < MIN_STEPS:
         return None
     to_next, at_times, both_means = (np.median(np.abs(pose_nu - x)[mask], axis=0) for x in readings)
-    return to_next, at_times, both_means, bool(np.std(step[mask]) < UNEVEN * np.mean(step[mask]))
+    return (
+        to_next,
+        at_times,
+        both_means,
+        bool(np.std(step[mask]) < EVEN_STEP_SPREAD * np.mean(step[mask])),
+    )
 
 
 def _moved(recording: Recording) -> Array:

@@ -29,7 +29,7 @@ class ChannelKind:
 # `specific_force` that of `sensors.imu_at` (acceleration less gravity: (0, 0, -g) at rest and
 # level), `depth` that of `sensors.depth_at` below the surface, whatever the world's axes. Angles
 # are R = Rz(yaw) Ry(pitch) Rx(roll); `euler` holds attitudes of which some angles are missing.
-KINDS: Mapping[str, ChannelKind] = {
+CHANNEL_KINDS: Mapping[str, ChannelKind] = {
     "position": ChannelKind(("x", "y", "z"), "m", "world"),
     "attitude": ChannelKind(("qw", "qx", "qy", "qz"), "1", "body"),
     "euler": ChannelKind(("roll", "pitch", "yaw"), "rad", "body"),
@@ -81,7 +81,7 @@ class TidyChannels(NamedTuple):
 def tidy_channels(channels: Channels) -> TidyChannels:
     """Sort channels by time, and keep the first of samples with equal times."""
     tidied, unsorted, duplicates = {}, 0, 0
-    for kind in KINDS:
+    for kind in CHANNEL_KINDS:
         if kind not in channels or not len(channels[kind].time):
             continue
         time, value = channels[kind].time, channels[kind].value
@@ -114,7 +114,7 @@ def _turned(kind: str, value: Array, mocap: Mocap) -> Array:
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
     if kind == "euler":
         return _turned_angles(value, world, body)
-    signs = {"world": world, "body": body, "none": 1.0}[KINDS[kind].axes]
+    signs = {"world": world, "body": body, "none": 1.0}[CHANNEL_KINDS[kind].axes]
     return value * signs
 
 
@@ -143,6 +143,6 @@ def from_names(arrays: Mapping[str, Array]) -> dict[str, Channel]:
     """Put together the channels whose arrays `by_name` named."""
     return {
         kind: Channel(arrays[f"channel.{kind}.time"], arrays[f"channel.{kind}.value"])
-        for kind in KINDS
+        for kind in CHANNEL_KINDS
         if f"channel.{kind}.time" in arrays
     }

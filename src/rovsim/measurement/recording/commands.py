@@ -13,19 +13,19 @@ from rovsim.core.run import Commands, Logged
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.recording.exports import CommandExport
-from rovsim.measurement.recording.readers import KIND
+from rovsim.measurement.recording.readers import COMMAND_KINDS
 from rovsim.measurement.recording.repairs import CommandRepairs
 
 # Beyond 1100 .. 1900 us a speed controller gives no more; beyond 800 .. 2200 us no servo signal is
 # valid.
-ALLOWED = {
+UNIT_RANGES = {
     "pwm": (800.0, 2200.0, "pulses of 800 to 2200 us"),
     "normalized": (-1.05, 1.05, "commands in [-1, 1]"),
     "demand": (-1.05, 1.05, "demands in [-1, 1], or pulses of 800 to 2200 us in all columns"),
     "wrench": (-np.inf, np.inf, "a finite wrench in N, N m"),
 }
 
-PERCENT, ABOUT_REST = 105.0, 700.0  # how far percent, and pulses less 1500 us, reach
+MAX_PERCENT, MAX_PULSE_OFFSET_US = 105.0, 700.0  # how far percent, and pulses less 1500 us, reach
 
 Locate = Callable[[int, int], str]  # where the value in (line, column) stands, for people
 
@@ -65,7 +65,7 @@ def as_commands(
         name: Logged(time[np.isfinite(column)], column[np.isfinite(column)])
         for name, column in zip(log.auxiliary, extra.T, strict=False)
     }
-    return CommandExport(time[complete], value, KIND[log.kind], repairs, notes, auxiliary)
+    return CommandExport(time[complete], value, COMMAND_KINDS[log.kind], repairs, notes, auxiliary)
 
 
 def are_pulses(value: Array) -> bool:
@@ -73,13 +73,13 @@ def are_pulses(value: Array) -> bool:
 
     NaN and the numbers that stand for no pulse do not count.
     """
-    low, high, _ = ALLOWED["pwm"]
+    low, high, _ = UNIT_RANGES["pwm"]
     pulses = value[np.isfinite(value) & ~pwm.absent(value)]
     return bool(len(pulses) and pulses.min() >= low and pulses.max() <= high)
 
 
 def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:
-    low, high, expected = ALLOWED[unit]
+    low, high, expected = UNIT_RANGES[unit]
     beyond = ((value < low) | (value > high)) & ~np.array(log.turned)
     invalid = np.argwhere(beyond | np.isinf(value))
     if invalid.size:
@@ -105,19 +105,19 @@ def _hint(value: Array, log: CommandLog) -> str:
 
 def guess_unit(low: float, high: float) -> str:
     """Say what commands from `low` to `high` may be and how to convert them; empty if unknown."""
-    if low >= ALLOWED["pwm"][0] and high <= ALLOWED["pwm"][1]:
+    if low >= UNIT_RANGES["pwm"][0] and high <= UNIT_RANGES["pwm"][1]:
         return "pulses in us, kind pwm"
     size = max(-low, high)
-    if size <= ALLOWED["normalized"][1]:
+    if size <= UNIT_RANGES["normalized"][1]:
         return "shares, kind normalized or demand"
-    if low >= 1e-3 * ALLOWED["pwm"][0] and high <= 1e-3 * ALLOWED["pwm"][1]:
+    if low >= 1e-3 * UNIT_RANGES["pwm"][0] and high <= 1e-3 * UNIT_RANGES["pwm"][1]:
         return "pulses in ms: times 1000 they are of kind pwm"
-    if size <= PERCENT:
+    if size <= MAX_PERCENT:
         return (
             "percent: divide them by 100, then they are shares; or newtons: divide them by the "
             "thrust at full command, or add them up to a wrench on the vehicle"
         )
-    if low < 0.0 and size <= ABOUT_REST:
+    if low < 0.0 and size <= MAX_PULSE_OFFSET_US:
         return (
             "pulses less 1500 us: add 1500; or revolutions per minute: convert them to shares "
             "from -1 to 1"

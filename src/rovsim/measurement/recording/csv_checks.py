@@ -9,11 +9,11 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.tables.cells import find_filler
 
-LONGEST_STEP = 5.0  # s between two lines of any recording
+MAX_STEP_S = 5.0  # between two lines of any recording
 POSITION = ["x_m", "y_m", "z_m"]
-FASTEST = 30.0  # m/s: 58 kn, the fastest ship (HSC Francisco, 2013)
-FASTEST_TURN = 10.0  # rad/s: more than one and a half turns a second
-USUAL = 90.0  # percentile
+MAX_SPEED = 30.0  # m/s: 58 kn, the fastest ship (HSC Francisco, 2013)
+MAX_TURN_RATE = 10.0  # rad/s: more than one and a half turns a second
+USUAL_PERCENTILE = 90.0
 LINEAR, ANGULAR = ["u_m_s", "v_m_s", "w_m_s"], ["p_rad_s", "q_rad_s", "r_rad_s"]
 
 
@@ -36,19 +36,19 @@ class Limit(NamedTuple):
         """The 90th percentile of the size of `value` (n, c) if it is above the limit; else None."""
         if not np.isfinite(value).any():
             return None
-        usual = float(np.nanpercentile(np.abs(value), USUAL))
+        usual = float(np.nanpercentile(np.abs(value), USUAL_PERCENTILE))
         return usual if usual > self.fastest else None
 
 
 LIMITS = {  # by channel
-    "velocity": Limit(LINEAR, FASTEST, "m/s", ("mm/s", "cm/s")),
-    "rates": Limit(ANGULAR, FASTEST_TURN, "rad/s", ("deg/s",)),
+    "velocity": Limit(LINEAR, MAX_SPEED, "m/s", ("mm/s", "cm/s")),
+    "rates": Limit(ANGULAR, MAX_TURN_RATE, "rad/s", ("deg/s",)),
 }
-TURNED = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and is hardly ever unwrapped
-ABOVE, SHARE = -0.1, 0.95  # m, beyond a wrong zero of the sensor; share of the lines above it
-DEEP = 0.5  # m: a height must reach so far
-UPRIGHT, TUMBLING = 0.9, 0.5  # fifth percentile of the tilt's cosine: 26 and 60 degrees
-RENAME = "Name the column after its unit ({}), and let `rovsim init` make a copy in {}."
+MAX_PITCH = np.pi + 0.1  # rad: a pitch lies within a quarter turn, and is hardly ever unwrapped
+ABOVE_SURFACE, MIN_ABOVE_SHARE = -0.1, 0.95  # m, beyond a wrong zero of the sensor; of the lines
+MIN_HEIGHT_REACH = 0.5  # m: a height must reach so far
+UPRIGHT_COSINE, TUMBLING_COSINE = 0.9, 0.5  # fifth percentile of the tilt's: 26 and 60 degrees
+RENAME_COLUMN = "Name the column after its unit ({}), and let `rovsim init` make a copy in {}."
 
 
 def without_fillers(names: Sequence[str], values: Array) -> tuple[Array, tuple[str, ...]]:
@@ -88,13 +88,13 @@ def check_plausible(path: Path, time: Array, values: Mapping[str, Array]) -> Non
 
 def _check_steps(path: Path, time: Array) -> None:
     step = float(np.median(np.abs(np.diff(time)))) if len(time) > 1 else 0.0
-    if step > LONGEST_STEP:
+    if step > MAX_STEP_S:
         raise _refused(
             path,
             "time_s",
             f"steps of {step:.3g} s: ms, us or ns?",
             "seconds",
-            RENAME.format("time_ms", "s"),
+            RENAME_COLUMN.format("time_ms", "s"),
         )
 
 
@@ -104,25 +104,25 @@ def _check_positions(path: Path, time: Array, values: Mapping[str, Array]) -> No
     order = np.argsort(time, kind="stable")
     position = np.stack([values[name] for name in POSITION], axis=1)
     speed = usual_speed(position[order], time[order])
-    if speed > FASTEST:
+    if speed > MAX_SPEED:
         raise _refused(
             path,
             "x_m",
             f"a vehicle that moves at {speed:.3g} m/s: mm or cm?",
             "m",
-            RENAME.format("x_mm", "m"),
+            RENAME_COLUMN.format("x_mm", "m"),
         )
 
 
 def _check_pitch(path: Path, values: Mapping[str, Array]) -> None:
     pitch = np.abs(values.get("pitch_rad", np.zeros(0)))
-    if np.nanmax(pitch, initial=0.0) > TURNED:
+    if np.nanmax(pitch, initial=0.0) > MAX_PITCH:
         raise _refused(
             path,
             "pitch_rad",
             f"angles up to {np.nanmax(pitch):.3g}: degrees?",
             "rad, within a quarter turn",
-            RENAME.format("pitch_deg", "rad"),
+            RENAME_COLUMN.format("pitch_deg", "rad"),
         )
 
 
@@ -136,7 +136,7 @@ def _check_velocities(path: Path, values: Mapping[str, Array]) -> None:
                 name,
                 f"values of {usual:.3g} {limit.unit}: {' or '.join(other_units)}?",
                 limit.unit,
-                RENAME.format(f"{name[0]}_{other_units[0]}", limit.unit),
+                RENAME_COLUMN.format(f"{name[0]}_{other_units[0]}", limit.unit),
             )
 
 
@@ -184,7 +184,7 @@ def doubt_order(quaternion: Array) -> tuple[str, ...]:
     square = (nonzero / np.linalg.norm(nonzero, axis=1, keepdims=True)) ** 2
     tilts = [np.abs(1.0 - 2.0 * (square[:, k] + square[:, k + 1])) for k in (1, 0)]
     as_named, reordered = (float(np.percentile(tilt, 5)) for tilt in tilts)
-    if as_named > TUMBLING or reordered < UPRIGHT:
+    if as_named > TUMBLING_COSINE or reordered < UPRIGHT_COSINE:
         return ()
     return (
         "As qw, qx, qy, qz say, the vehicle tumbles; it would stay upright if these columns, in "
@@ -195,7 +195,11 @@ def doubt_order(quaternion: Array) -> tuple[str, ...]:
 def is_height(depth: Array) -> bool:
     """Whether a depth (n,) m is positive up, since otherwise nearly all is above the surface."""
     finite = depth[np.isfinite(depth)]
-    return bool(len(finite) and np.mean(finite < ABOVE) > SHARE and finite.min() < -DEEP)
+    return bool(
+        len(finite)
+        and np.mean(finite < ABOVE_SURFACE) > MIN_ABOVE_SHARE
+        and finite.min() < -MIN_HEIGHT_REACH
+    )
 
 
 def _refused(path: Path, column: str, found: str, expected: str, remedy: str) -> BadInput:

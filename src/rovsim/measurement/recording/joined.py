@@ -10,14 +10,14 @@ from rovsim.core.errors import BadInput
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.repairs import MotionRepairs
 
-POSES = "full poses"
-TOLD = ("position", "attitude", "euler")  # channels that full poses contain as well
+FULL_POSES = "full poses"
+POSE_CHANNELS = ("position", "attitude", "euler")  # channels that full poses contain as well
 
 
 def list_held(export: Export) -> list[str]:
     """List what a file holds: full poses, and the kinds of channels with any sample."""
     channels = [kind for kind, channel in export.channels.items() if len(channel.time)]
-    return [*([POSES] if len(export.time) and export.found.any() else []), *channels]
+    return [*([FULL_POSES] if len(export.time) and export.found.any() else []), *channels]
 
 
 def join(exports: Mapping[Path, Export]) -> Export:
@@ -33,7 +33,7 @@ def join(exports: Mapping[Path, Export]) -> Export:
     _check_clocks(exports)
     exports, left_out = _beside_poses(exports)
     _check_different(exports)
-    posed = [export for export in exports.values() if POSES in list_held(export)]
+    posed = [export for export in exports.values() if FULL_POSES in list_held(export)]
     basis = (posed or list(exports.values()))[0]
     repairs = sum((export.repairs for export in exports.values()), MotionRepairs())
     channels = {
@@ -45,14 +45,16 @@ def join(exports: Mapping[Path, Export]) -> Export:
 
 def _beside_poses(exports: Mapping[Path, Export]) -> tuple[Mapping[Path, Export], list[str]]:
     """Drop channels that the full poses of another file contain; with sentences about them."""
-    posed = [path for path, export in exports.items() if POSES in list_held(export)]
+    posed = [path for path, export in exports.items() if FULL_POSES in list_held(export)]
     if len(posed) != 1:
         return exports, []
     remaining, notes = dict(exports), []
     for path, export in exports.items():
-        repeated = [kind for kind in list_held(export) if kind in TOLD and path != posed[0]]
+        repeated = [
+            kind for kind in list_held(export) if kind in POSE_CHANNELS and path != posed[0]
+        ]
         if repeated:
-            channels = {kind: c for kind, c in export.channels.items() if kind not in TOLD}
+            channels = {kind: c for kind, c in export.channels.items() if kind not in POSE_CHANNELS}
             remaining[path] = replace(export, channels=channels)
             notes.append(
                 f"The {' and '.join(repeated)} in {path.name} is not used: {posed[0].name} holds "

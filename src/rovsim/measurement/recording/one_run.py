@@ -8,9 +8,9 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 
-BACK = 1.0  # s: lines that are merely out of order step back less
-FEWEST, SHARE = 10, 0.05  # smallest part that counts: so many samples, and such a share of all
-COMMON = 0.5  # of the shorter part: a clock that was merely set back repeats less of the time
+MIN_STEP_BACK_S = 1.0  # lines that are merely out of order step back less
+MIN_SAMPLES, MIN_SHARE = 10, 0.05  # of the smallest part that counts; of all
+MIN_OVERLAP_SHARE = 0.5  # of the shorter part: a clock that was merely set back repeats less of it
 
 
 class SeveralRuns(BadInput):
@@ -19,7 +19,7 @@ class SeveralRuns(BadInput):
 
 def find_begins(time: Array) -> Array:
     """Indices (k,) of the samples at which times (n,) s start again; the first is 0."""
-    return np.concatenate([[0], np.flatnonzero(np.diff(time) < -BACK) + 1])
+    return np.concatenate([[0], np.flatnonzero(np.diff(time) < -MIN_STEP_BACK_S) + 1])
 
 
 def check_one_run(time: Array, path: Path) -> None:
@@ -32,11 +32,11 @@ def check_one_run(time: Array, path: Path) -> None:
     """
     begins = find_begins(time)
     parts = np.split(time, begins[1:])
-    if len(parts) < 2 or min(map(len, parts)) < max(FEWEST, SHARE * len(time)):
+    if len(parts) < 2 or min(map(len, parts)) < max(MIN_SAMPLES, MIN_SHARE * len(time)):
         return
     for before, after in pairwise(parts):
         low, high = max(before.min(), after.min()), min(before.max(), after.max())
-        if high - low > COMMON * min(np.ptp(before), np.ptp(after)):
+        if high - low > MIN_OVERLAP_SHARE * min(np.ptp(before), np.ptp(after)):
             break
     else:
         return

@@ -14,7 +14,7 @@ from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.signature import FileSignature
 
 # What each kind of logged command drives.
-KIND: dict[str, CommandKind] = {
+COMMAND_KINDS: dict[str, CommandKind] = {
     "pwm": "thruster",
     "normalized": "thruster",
     "demand": "demand",

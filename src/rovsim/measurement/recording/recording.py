@@ -12,7 +12,7 @@ from rovsim.core.run import Commands, Logged, RunInfo, Site
 from rovsim.measurement.recording.channels import Channel, by_name, from_names
 from rovsim.measurement.sensors import Sensors
 
-BESIDE = "beside_"  # what was logged beside the commands
+AUX_PREFIX = "beside_"  # what was logged beside the commands
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ def labels(run: RunInfo, site: Site, commands: Commands) -> dict[str, Array]:
         "level": np.array(site.level),
         "command_time": commands.time,
         "command_value": commands.value,
-        **{f"{BESIDE}{name}": np.stack([x.time, x.value]) for name, x in auxiliary.items()},
+        **{f"{AUX_PREFIX}{name}": np.stack([x.time, x.value]) for name, x in auxiliary.items()},
     }
 
 
@@ -106,7 +106,9 @@ def unlabelled(a: dict[str, Array]) -> tuple[RunInfo, Site, Commands]:
     """Put together run, site and commands from the arrays of `labels`."""
     *run, kind = (str(s) for s in a["run"])
     auxiliary = {
-        name.removeprefix(BESIDE): Logged(a[name][0], a[name][1]) for name in a if BESIDE in name
+        name.removeprefix(AUX_PREFIX): Logged(a[name][0], a[name][1])
+        for name in a
+        if AUX_PREFIX in name
     }
     value = a["command_value"]
     commands = Commands(a["command_time"], value, kind, auxiliary)  # type: ignore[arg-type]

@@ -15,19 +15,20 @@ from rovsim.core.rotations import turns
 from rovsim.measurement.recording.exports import Export
 
 # A camera is slower than its log if nearly all poses stand in several lines, most in equally many.
-FEWEST, NEARLY_ALL, MOST = 20, 0.9, 0.8  # poses; shares
-UNEVEN = 0.2  # of the lines of a pose; one line at least
-NEARBY = 3  # steps to either side that show how fast the vehicle moves
+MIN_POSES, MIN_REPEATED, MIN_REGULAR = 20, 0.9, 0.8  # poses; shares
+COUNT_TOLERANCE = 0.2  # of the lines of a pose; one line at least
+NEARBY_STEPS = 3  # steps to either side that show how fast the vehicle moves
 # A jump is a step after a repetition that is faster than the fastest steps nearby, by a factor of
-# JUMP if one line is repeated (steady motion makes it 2), of JUMP_OF_MORE if more are. It covers at
-# most MAKES_UP times the distance of the fastest steps in that time, and is more than a last digit.
-JUMP, JUMP_OF_MORE = 1.5, 2.0
-MAKES_UP = 3.0
-SLOWED = 1 / 3  # of the steps nearby: the last one before a halt is a fifth, if it brakes evenly
-DIGITS = 3.0
-SMALLEST = 1.0  # percentile of the steps that are not zero: the last digit, or less than the noise
-ROUNDING = 1e-9  # m, rad: no step
-SEVERAL = 4  # frames: a vehicle that moves right before and right after does not rest for so long
+# JUMP_RATIO if one line is repeated (steady motion makes it 2), LONG_JUMP_RATIO if more are. It
+# covers at most MAX_CATCH_UP_RATIO times the distance of the fastest steps in that time, and more
+# than a last digit (MIN_DIGITS of it).
+JUMP_RATIO, LONG_JUMP_RATIO = 1.5, 2.0
+MAX_CATCH_UP_RATIO = 3.0
+MIN_STEP_RATIO = 1 / 3  # of the steps nearby: the last before a halt is a fifth, braking evenly
+MIN_DIGITS = 3.0
+DIGIT_PERCENTILE = 1.0  # of the steps that are not zero: the last digit, or less than the noise
+ZERO_STEP = 1e-9  # m, rad: no step
+MIN_FROZEN_FRAMES = 4  # a vehicle that moves right before and right after does not rest for so long
 
 
 def without_repeated(export: Export) -> Export:
@@ -97,10 +98,10 @@ def _lines_of_a_pose(seen: _Seen) -> int:
     """Number of lines in which each pose stands; 1 where that number is not regular."""
     count = np.array([n for _, n in seen.runs()])
     usual = int(np.median(count))
-    if usual < 2 or len(count) < FEWEST:
+    if usual < 2 or len(count) < MIN_POSES:
         return 1
-    regular = np.abs(count - usual) <= max(1.0, UNEVEN * usual)
-    return usual if np.mean(count > 1) >= NEARLY_ALL and np.mean(regular) >= MOST else 1
+    regular = np.abs(count - usual) <= max(1.0, COUNT_TOLERANCE * usual)
+    return usual if np.mean(count > 1) >= MIN_REPEATED and np.mean(regular) >= MIN_REGULAR else 1
 
 
 def _slower(export: Export, seen: _Seen, lines: int) -> Export:
@@ -134,23 +135,30 @@ class _Way:
 
     def __init__(self, step: Array, took: Array) -> None:
         self.step, self.took, self.speed = step, took, step / took
-        moving = step[step > ROUNDING]
-        self.seen = DIGITS * float(np.percentile(moving, SMALLEST)) if len(moving) else np.inf
+        moving = step[step > ZERO_STEP]
+        self.seen = (
+            MIN_DIGITS * float(np.percentile(moving, DIGIT_PERCENTILE)) if len(moving) else np.inf
+        )
 
     def left(self, first: int, count: int) -> bool:
         """Whether the vehicle left the pose that `count` frames from `first` on repeat."""
         end = first + count - 1
-        before, after = slice(max(first - NEARBY, 0), first), slice(end + 1, end + 1 + NEARBY)
-        if count >= SEVERAL and self._moves(self.step[before][::-1]):
+        before, after = (
+            slice(max(first - NEARBY_STEPS, 0), first),
+            slice(end + 1, end + 1 + NEARBY_STEPS),
+        )
+        if count >= MIN_FROZEN_FRAMES and self._moves(self.step[before][::-1]):
             at_end = end == len(self.step)
-            if at_end or self._moves(self.step[end : end + NEARBY]):
+            if at_end or self._moves(self.step[end : end + NEARBY_STEPS]):
                 return True
         return self._jumped(before, after, first, end)
 
     def _moves(self, steps: Array) -> bool:
         """Whether steps beside a repetition, the nearest first, are those of a moving vehicle."""
         return bool(
-            len(steps) and steps.sum() > NEARBY * self.seen and steps[0] > SLOWED * steps.max()
+            len(steps)
+            and steps.sum() > NEARBY_STEPS * self.seen
+            and steps[0] > MIN_STEP_RATIO * steps.max()
         )
 
     def _jumped(self, before: slice, after: slice, first: int, end: int) -> bool:
@@ -158,10 +166,10 @@ class _Way:
         if end >= len(self.step):
             return False
         fastest = max(self.speed[before].max(initial=0.0), self.speed[after].max(initial=0.0))
-        jump = JUMP if end == first + 1 else JUMP_OF_MORE
+        jump = JUMP_RATIO if end == first + 1 else LONG_JUMP_RATIO
         duration = float(self.took[first : end + 1].sum())
         return bool(
             self.step[end] > self.seen
             and self.speed[end] > jump * fastest
-            and self.step[end] <= MAKES_UP * fastest * duration
+            and self.step[end] <= MAX_CATCH_UP_RATIO * fastest * duration
         )

@@ -14,17 +14,22 @@ from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.campaign_file import CommandLog, Mocap, Run
 from rovsim.measurement.recording import channels
 from rovsim.measurement.recording.channels import Channels
-from rovsim.measurement.recording.csv_checks import LONGEST_STEP
+from rovsim.measurement.recording.csv_checks import MAX_STEP_S
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.joined import join
-from rovsim.measurement.recording.readers import KIND, command_readers, mocap_readers, reader_of
+from rovsim.measurement.recording.readers import (
+    COMMAND_KINDS,
+    command_readers,
+    mocap_readers,
+    reader_of,
+)
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs
 from rovsim.measurement.recording.tidying import measured_rate, tidy_commands, tidy_export
 
 # Times beyond this are dates (seconds since 1970 or since the machine was started); a day is none.
-LATE = 1e5  # s
-LONGER = 100.0  # times as long as the recording: the log has another unit of time
+MIN_DATE_S = 1e5
+MAX_DURATION_RATIO = 100.0  # times as long as the recording: the log has another unit of time
 
 
 def read_run(campaign: Campaign, run_id: str) -> tuple[Recording, Anomalies]:
@@ -69,7 +74,7 @@ def _read_commands(
 
 def _no_commands(log: CommandLog | None) -> Commands:
     """Make a log without lines, of the kind of the other runs, or a wrench if none has commands."""
-    kind = KIND[log.kind] if log else "wrench"
+    kind = COMMAND_KINDS[log.kind] if log else "wrench"
     columns = len(log.columns) if log and not log.per_axis else len(AXES)
     return Commands(np.empty(0), np.empty((0, columns)), kind)
 
@@ -80,7 +85,7 @@ def _from_zero(export: Export, commands: Commands) -> tuple[Export, Commands]:
     Near 1.7e9 s, floating-point times are 2.4e-7 s apart, and one per mille of a time is weeks.
     """
     start = float(np.floor(export.time[0]))
-    if abs(start) < LATE:
+    if abs(start) < MIN_DATE_S:
         return export, commands
     shifted = {k: replace(c, time=c.time - start) for k, c in export.channels.items()}
     export = replace(export, time=export.time - start, channels=shifted)
@@ -183,8 +188,8 @@ def _check_clocks(measured: Array, commands: Array, path: Path) -> None:
         f"the commands run from {commands[0]:.10g} to {commands[-1]:.10g} s, "
         f"what was measured from {measured[0]:.10g} to {measured[-1]:.10g} s"
     )
-    longer = float(np.ptp(commands)) > LONGER * float(np.ptp(measured))
-    if len(commands) > 1 and longer and np.median(np.diff(commands)) > LONGEST_STEP:
+    longer = float(np.ptp(commands)) > MAX_DURATION_RATIO * float(np.ptp(measured))
+    if len(commands) > 1 and longer and np.median(np.diff(commands)) > MAX_STEP_S:
         raise BadInput(
             f"{span}: ms, us or ns?",
             where=path,

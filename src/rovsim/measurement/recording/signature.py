@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-HEAD = 1 << 16  # bytes from the start of a file: more than any header
+HEAD_BYTES = 1 << 16  # from the start of a file: more than any header
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ def decoded(head: bytes) -> str | None:
     """Decode the first bytes of a file as UTF-8; None where it is not a text file."""
     try:
         # the last character may be cut
-        text = head.decode("utf-8-sig", errors="strict" if len(head) < HEAD else "ignore")
+        text = head.decode("utf-8-sig", errors="strict" if len(head) < HEAD_BYTES else "ignore")
     except UnicodeDecodeError:
         return None
     return None if "\0" in text else text

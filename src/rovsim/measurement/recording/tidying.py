@@ -15,7 +15,7 @@ from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.repairs import CommandRepairs, MotionRepairs
 from rovsim.measurement.recording.repeated import without_repeated
 
-RATES_DIFFER = 0.02  # share of the header's rate; clock jitter stays far below
+RATE_TOLERANCE = 0.02  # share of the header's rate; clock jitter stays far below
 
 
 def tidy_export(export: Export, path: Path) -> Export:
@@ -42,7 +42,7 @@ def tidy_export(export: Export, path: Path) -> Export:
     if len(keep) < 2 or not export.found[keep].any():
         raise _nothing(export, len(keep), path)
     rate, measured = export.rate, measured_rate(export.time[keep])
-    if rate and abs(measured / rate - 1.0) > RATES_DIFFER:
+    if rate and abs(measured / rate - 1.0) > RATE_TOLERANCE:
         rate, repairs = None, replace(repairs, wrong_header_rate=1)
     repairs += MotionRepairs(
         unsorted=int(np.sum(np.diff(export.time) < 0)), duplicates=len(time) - len(keep)

@@ -16,14 +16,14 @@ from rovsim.measurement.signals.motion import Motion
 
 # A bin this many median bins long has rows missing in it. Bins of 0.1 to 0.3 s occur side by side
 # in the KTH tank's recordings, where the median is 0.19 s.
-LONG_BIN = 2.5
+MAX_BIN_RATIO = 2.5
 
 
 def bin_motion(recording: Recording) -> Motion:
     """Make a motion from a recording whose velocities are means over bins.
 
     Pose and velocity at the start of a bin come from `edge_values`: the recorded poses are bin
-    means too. Not usable are rows with a missing number, rows whose bin is longer than `LONG_BIN`
+    means too. Not usable are rows with a missing number, rows whose bin is over `MAX_BIN_RATIO`
     median bins, the first row of each stretch (its starting state would be an extrapolation), and
     the last row (the end of its bin is unknown). Nothing is interpolated across unusable rows.
 
@@ -42,7 +42,7 @@ def bin_motion(recording: Recording) -> Motion:
     end = float(time[-1] + np.median(length))
     edges = np.append(time, end)
     usable = recording.found & np.isfinite(nu).all(axis=1)
-    usable = usable & (np.diff(edges) <= LONG_BIN * np.median(length))
+    usable = usable & (np.diff(edges) <= MAX_BIN_RATIO * np.median(length))
     usable[-1] = False
     eta, state_nu = _states(recording, nu, edges, usable)
     usable = usable & np.append(False, usable[:-1])

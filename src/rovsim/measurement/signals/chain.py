@@ -25,7 +25,7 @@ from rovsim.measurement.signals.filter import (
     filter_eta,
     filter_poses,
 )
-from rovsim.measurement.signals.measured import HIGHEST, blank
+from rovsim.measurement.signals.measured import MAX_CUTOFF_SHARE, blank
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.measurement.signals.outliers import OutlierSettings
 from rovsim.measurement.signals.resample import Linear, Resampling, resample
@@ -63,7 +63,7 @@ class SignalSettings(OutlierSettings):
     def _below_sampling(self, motion: Poses | Motion) -> "SignalSettings":
         if len(motion.time) < 2 or (isinstance(motion, Motion) and motion.binned):
             return self
-        highest = HIGHEST / time_step(motion.time)
+        highest = MAX_CUTOFF_SHARE / time_step(motion.time)
         return self.model_copy(update={"filter": self.filter.below(highest)})
 
     @property

@@ -10,7 +10,7 @@ from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.recording.recording import Recording
 
 # Vehicles move below 2 Hz (filter.py): what comes less often than twice that does not show it all.
-OFTEN = 4.0  # Hz
+MIN_MOTION_RATE_HZ = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +98,7 @@ def _suffices(known: Mapping[str, Channel], direct: str, rate: str) -> bool:
 
     It must come often enough, and its noise over a second must not exceed that of the integral.
     """
-    often = (known[direct].rate or 0.0) >= OFTEN
+    often = (known[direct].rate or 0.0) >= MIN_MOTION_RATE_HZ
     return often and noise_density(known[direct]) <= noise_density(known[rate])
 
 

@@ -17,10 +17,10 @@ from rovsim.measurement.signals.motion import Poses
 # The extension at either end and the stretch its parabola is fitted to, in periods of the cut-off
 # frequency. Four periods let the filter settle (below 1e-6 at order 3). A longer fit is calmer but
 # misses more of the motion; half a period balances 0.5 mm of noise and 1 m/s of 1 Hz motion.
-EXTENSION, FIT = 4.0, 0.5
+EXTENSION_PERIODS, FIT_PERIODS = 4.0, 0.5
 # What lies two periods away or more adds less than 1e-3 to a smoothed sample (order 3).
-REACH = 2.0
-HALF_POWER = 1.45  # Hz s: half-power frequency times window of Savitzky-Golay at degree 3
+REACH_PERIODS = 2.0
+HALF_POWER_PRODUCT = 1.45  # Hz s: half-power frequency times window of Savitzky-Golay at degree 3
 
 
 class Butterworth(Section):
@@ -44,7 +44,7 @@ class Butterworth(Section):
     @property
     def reach(self) -> float:
         """Time in s to either side over which samples affect a smoothed one."""
-        return REACH / self.cutoff
+        return REACH_PERIODS / self.cutoff
 
     def smoothed(self, x: Array, dt: float) -> Array:
         """Filter `x` (..., time, channels), `dt` s apart.
@@ -60,8 +60,8 @@ class Butterworth(Section):
                 remedy="Lower signals.filter.cutoff or raise signals.resample.rate.",
             )
         period = 1.0 / (self.cutoff * dt)
-        pad = round(EXTENSION * period)
-        extended = _continued(x, pad, max(round(FIT * period), 5))
+        pad = round(EXTENSION_PERIODS * period)
+        extended = _continued(x, pad, max(round(FIT_PERIODS * period), 5))
         sos = scipy.signal.butter(self.order, self.cutoff, fs=1.0 / dt, output="sos")
         forward = _one_way(sos, extended)
         back = _one_way(sos, forward[..., ::-1, :])[..., ::-1, :]
@@ -81,7 +81,7 @@ class SavitzkyGolay(Section):
 
     def below(self, cutoff: float) -> "SavitzkyGolay":
         """This filter with a window long enough for a half-power frequency of at most that (Hz)."""
-        wider = max(1.0, HALF_POWER / (self.window * cutoff))
+        wider = max(1.0, HALF_POWER_PRODUCT / (self.window * cutoff))
         return self.model_copy(update={"window": self.window * wider})
 
     @property

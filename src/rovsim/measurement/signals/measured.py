@@ -6,9 +6,9 @@ from typing import Iterator, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-SHARE = 0.25  # of the rate of the slowest channel: half of its Nyquist frequency
-HIGHEST = 0.4  # of the sampling rate: a low-pass that cuts off nearer to its half hardly filters
-NAMES = ("coordinates", "heading", "axes", "summed", "when", "cutoff")
+CUTOFF_SHARE = 0.25  # of the rate of the slowest channel: half of its Nyquist frequency
+MAX_CUTOFF_SHARE = 0.4  # of the sampling rate: nearer to its half, a low-pass hardly filters
+ARRAY_NAMES = ("coordinates", "heading", "axes", "summed", "when", "cutoff")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Measured:
     @property
     def period(self) -> float:
         """Time between two samples of the slowest channel, s."""
-        return SHARE / float(self.cutoff[0])
+        return CUTOFF_SHARE / float(self.cutoff[0])
 
     def part(self, at: slice) -> "Measured":
         """What was measured in a slice of the samples."""
@@ -43,15 +43,15 @@ class Measured:
 
     def by_name(self) -> Iterator[tuple[str, Array]]:
         """Yield the arrays with the names under which `from_names` finds them."""
-        for name in NAMES:
+        for name in ARRAY_NAMES:
             yield f"measured.{name}", getattr(self, name)
 
     @staticmethod
     def from_names(arrays: Mapping[str, Array]) -> "Measured | None":
         """Put together what `by_name` named; None where everything was measured."""
-        if f"measured.{NAMES[0]}" not in arrays:
+        if f"measured.{ARRAY_NAMES[0]}" not in arrays:
             return None
-        return Measured(*(arrays[f"measured.{name}"] for name in NAMES))
+        return Measured(*(arrays[f"measured.{name}"] for name in ARRAY_NAMES))
 
 
 def find_measured(measured: Measured | None) -> Array:

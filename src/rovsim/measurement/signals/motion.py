@@ -12,7 +12,7 @@ from rovsim.measurement.recording.recording import labels, unlabelled
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import Measured
 
-BESIDE = 10.0  # s of the log kept on either side of a part: longer than any delay of a command
+COMMAND_MARGIN_S = 10.0  # kept of the log beside a part: longer than any delay of a command
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +111,14 @@ class Motion:
     def part(self, at: slice) -> "Motion":
         """The motion of a slice of the samples or bins.
 
-        Its commands are those from `BESIDE` seconds before it to as long after it; their `before`
+        Its commands are those from `COMMAND_MARGIN_S` before it to as long after it; their `before`
         and `after` say how much of the recording lies on either side.
         """
         names = ("time", "eta", "nu", "nu_dot", "state_nu", "usable")
         arrays = {name: getattr(self, name)[at] for name in names}
         time, bins = arrays["time"], self.time[at.stop :]
         end = float(bins[0] if self.binned and len(bins) else self.end if self.binned else time[-1])
-        commands = self.commands.within(float(time[0]) - BESIDE, end + BESIDE)
+        commands = self.commands.within(float(time[0]) - COMMAND_MARGIN_S, end + COMMAND_MARGIN_S)
         before = commands.before + float(time[0] - self.time[0])
         after = commands.after + self.end - end
         return replace(

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-OTHERS, FAR_MORE = 7, 6.0  # frames to either side, and how much more than their median is far
-BRIDGED = 3.5  # steps: neighbours may be as far apart, two frames being lost between them
+NEIGHBOUR_FRAMES, OUTLIER_MEDIANS = 7, 6.0  # to either side; times their median that is far
+MAX_NEIGHBOUR_STEPS = 3.5  # neighbours may be as far apart: two frames are lost between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Neighbours:
         for k, j in np.argwhere(~np.eye(4, dtype=bool)):
             weights[k] *= dt[j] / (dt[j] - dt[k])
         longest_step = np.diff(np.insert(dt, 2, 0.0, axis=0), axis=0).max(axis=0)
-        weights[:, longest_step >= BRIDGED * step] = np.nan
+        weights[:, longest_step >= MAX_NEIGHBOUR_STEPS * step] = np.nan
         return Neighbours(time, weights, _padded(np.abs(np.sum((weights * dt)[2:], axis=0))))
 
     def beside(self, x: Array) -> Array:
@@ -53,7 +53,7 @@ def find_far(off: Array, limit: Array) -> Array:
     """Find single outliers by their distance from the cubic through their neighbours.
 
     A frame is one if it is further off than its limit, further than the two frames to either side
-    (whose cubics an outlier spoils, too), and more than `FAR_MORE` times as far as the median of
+    (whose cubics an outlier spoils, too), and over `OUTLIER_MEDIANS` times as far as the median of
     the frames nearby. If the next frame on either side has no cubic, that one may be the outlier:
     then none is reported.
 
@@ -64,13 +64,13 @@ def find_far(off: Array, limit: Array) -> Array:
     Returns:
         Mask (n,), True for outliers.
     """
-    padded = np.pad(off, OTHERS, constant_values=np.nan)
-    nearby = np.lib.stride_tricks.sliding_window_view(padded, 2 * OTHERS + 1)
+    padded = np.pad(off, NEIGHBOUR_FRAMES, constant_values=np.nan)
+    nearby = np.lib.stride_tricks.sliding_window_view(padded, 2 * NEIGHBOUR_FRAMES + 1)
     outliers = np.zeros(len(off), bool)
     for k in np.flatnonzero(off > limit):
-        window = nearby[k, OTHERS - 2 : OTHERS + 3]
-        outer = np.delete(nearby[k], slice(OTHERS - 2, OTHERS + 3))
+        window = nearby[k, NEIGHBOUR_FRAMES - 2 : NEIGHBOUR_FRAMES + 3]
+        outer = np.delete(nearby[k], slice(NEIGHBOUR_FRAMES - 2, NEIGHBOUR_FRAMES + 3))
         usual = np.median(outer[~np.isnan(outer)]) if not np.isnan(outer).all() else np.inf
         sure = np.isfinite(window[1:4]).all() and off[k] >= np.nanmax(window)
-        outliers[k] = sure and off[k] > FAR_MORE * usual
+        outliers[k] = sure and off[k] > OUTLIER_MEDIANS * usual
     return outliers

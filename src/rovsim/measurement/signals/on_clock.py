@@ -11,11 +11,11 @@ from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.signals.chosen_channels import noise_density
 from rovsim.measurement.signals.resample import find_bridged
 
-LONG = 2.5  # usual steps of a channel: a longer one is a gap
-# s: shortest and longest time over which the drift of an integral is averaged. Slower than the
+MAX_GAP_STEPS = 2.5  # usual steps of a channel: a longer one is a gap
+# Shortest and longest time over which the drift of an integral is averaged. Slower than the
 # disturbances that a Kalman filter allows for (a second), so that within it the noise is that of
 # the integral alone; within a minute.
-DRIFT = (3.0, 60.0)
+DRIFT_TIMES_S = (3.0, 60.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +57,7 @@ class OnClock:
 
     def bridged(self, channel: Channel) -> Array:
         """Whether each sample (n,) is close enough to where the channel was measured."""
-        longest = max(self.max_gap, LONG / (channel.rate or 1.0))
+        longest = max(self.max_gap, MAX_GAP_STEPS / (channel.rate or 1.0))
         return find_bridged(channel.time, self.clock, longest)
 
     def nearest(self, instants: Array) -> Array:
@@ -112,7 +112,7 @@ class OnClock:
         """
         ratio = noise_density(direct) / max(noise_density(summed), 1e-12)
         # a noise density is NaN for two readings: then the shortest time
-        width = np.clip(np.nan_to_num(ratio), *DRIFT)
+        width = np.clip(np.nan_to_num(ratio), *DRIFT_TIMES_S)
         sigma = np.sqrt(2.0) * width * (direct.rate or 1.0)
         correction = np.full((len(self.clock), apart.shape[1]), np.nan)
         for k, column in enumerate(apart.T):

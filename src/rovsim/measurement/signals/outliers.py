@@ -13,15 +13,15 @@ from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.neighbours import Neighbours, find_far
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
-LOOK_BACK = 1000
+MAX_LOOK_BACK = 1000
 # Leaving found frames out has to be worth more than this many frames, so that a frame of a burst
 # that happens to be within reach is left out with the rest of the burst.
-DETOUR = 3.0
+DETOUR_COST = 3.0
 # The same for leaving out an end of the run, where a swap can be judged from one side only.
-CUT_END = 1.0
-# s: from such steps on, frames are compared with their neighbours; of faster cameras the filter
+CUT_END_COST = 1.0
+# From such steps on, frames are compared with their neighbours; of faster cameras the filter
 # takes away what the gate lets pass.
-SLOW = 0.04
+SLOW_STEP_S = 0.04
 
 
 class VelocityGate(Section):
@@ -60,7 +60,7 @@ class VelocityGate(Section):
         Returns:
             Mask (n,), True for frames to reject.
         """
-        if step < SLOW:
+        if step < SLOW_STEP_S:
             return ~self._chained(time, position, attitude, step)
         frames, count = np.arange(len(time)), -1
         while len(frames) != count:
@@ -219,8 +219,8 @@ def _longest_chain(
     """Find the chain of stretches with the most frames, each within reach of the one before.
 
     Dynamic programming over the stretches: best[j] = frames of j + max over the reachable
-    i < j of best[i] - `DETOUR` if found frames between i and j are left out.
-    Starting late and ending early cost `CUT_END` each.
+    i < j of best[i] - `DETOUR_COST` if found frames between i and j are left out.
+    Starting late and ending early cost `CUT_END_COST` each.
 
     Args:
         gate: the limits.
@@ -236,9 +236,9 @@ def _longest_chain(
     """
     size = (ends - starts + 1).astype(float)
     best, previous = size.copy(), np.full(len(size), -1)
-    best[1:] -= CUT_END
+    best[1:] -= CUT_END_COST
     for j in range(1, len(size)):
-        i = np.arange(max(0, j - LOOK_BACK), j)
+        i = np.arange(max(0, j - MAX_LOOK_BACK), j)
         end, start = ends[i], starts[j]
         reachable = _within_reach(
             gate,
@@ -248,11 +248,11 @@ def _longest_chain(
             attitude[start],
             step,
         )
-        score = np.where(reachable, best[i] - DETOUR * (i < j - 1), -np.inf)
+        score = np.where(reachable, best[i] - DETOUR_COST * (i < j - 1), -np.inf)
         k = int(np.argmax(score))
         if size[j] + score[k] > best[j]:
             best[j], previous[j] = size[j] + score[k], i[k]
-    cut_short = CUT_END * (np.arange(len(size)) < len(size) - 1)
+    cut_short = CUT_END_COST * (np.arange(len(size)) < len(size) - 1)
     chain = [int(np.argmax(best - cut_short))]
     while previous[chain[-1]] >= 0:
         chain.append(int(previous[chain[-1]]))

@@ -15,7 +15,7 @@ from rovsim.measurement.signals.motion import Poses
 from rovsim.measurement.signals.outliers import Outliers, find_outliers
 
 # A sample this close to a recorded frame is that frame: MoCap stamps resolve 10 microseconds.
-SAME_INSTANT = 2e-5
+SAME_INSTANT_S = 2e-5
 
 
 class _Clock(Section):
@@ -90,9 +90,9 @@ def find_bridged(time: Array, clock: Array, max_gap: float) -> Array:
         clock: times (n,), s.
         max_gap: longest time between two frames that is bridged, s.
     """
-    before = np.clip(np.searchsorted(time, clock + SAME_INSTANT, side="right") - 1, 0, None)
-    after = np.clip(np.searchsorted(time, clock - SAME_INSTANT), None, len(time) - 1)
-    return time[after] - time[before] <= max_gap + SAME_INSTANT
+    before = np.clip(np.searchsorted(time, clock + SAME_INSTANT_S, side="right") - 1, 0, None)
+    after = np.clip(np.searchsorted(time, clock - SAME_INSTANT_S), None, len(time) - 1)
+    return time[after] - time[before] <= max_gap + SAME_INSTANT_S
 
 
 def _nothing_usable(recording: Recording, rate: float) -> Poses:

@@ -17,14 +17,14 @@ from rovsim.measurement.recording.channels import Channel
 from rovsim.measurement.recording.recording import Recording
 from rovsim.measurement.signals.chosen_channels import ChosenChannels, choose_channels
 from rovsim.measurement.signals.clock import uniform_clock, without_short
-from rovsim.measurement.signals.measured import SHARE, Measured
+from rovsim.measurement.signals.measured import CUTOFF_SHARE, Measured
 from rovsim.measurement.signals.motion import Poses
 from rovsim.measurement.signals.on_clock import OnClock, between, instants_between
 from rovsim.measurement.signals.resample import Resampling
 
-FASTEST = 100.0  # Hz of the clock; a faster sensor shows no more of a motion below 2 Hz
-LONGEST = 1e7  # samples: more than a day at 100 Hz
-SUMMED = ("rates", "velocity")
+MAX_RATE_HZ = 100.0  # of the clock; a faster sensor shows no more of a motion below 2 Hz
+MAX_SAMPLES = 1e7  # more than a day at 100 Hz
+SUMMED_CHANNELS = ("rates", "velocity")
 
 
 def track_channels(recording: Recording, settings: Resampling) -> Poses:
@@ -64,23 +64,23 @@ def track_channels(recording: Recording, settings: Resampling) -> Poses:
 
 
 def _make_clock(chosen: ChosenChannels, settings: Resampling, where: str) -> Array:
-    """Make a uniform clock (n,) at the rate of the fastest main channel, at most `FASTEST`.
+    """Make a uniform clock (n,) at the rate of the fastest main channel, at most `MAX_RATE_HZ`.
 
     It starts at a sample of that channel, or midway between two if the channel is integrated, and
     covers the time in which all chosen channels were measured.
     """
     kind, fastest = max(chosen.read.items(), key=lambda item: item[1].rate or 0.0)
-    rate = min(settings.rate or FASTEST, FASTEST, fastest.rate or FASTEST)
+    rate = min(settings.rate or MAX_RATE_HZ, MAX_RATE_HZ, fastest.rate or MAX_RATE_HZ)
     start = max(channel.time[0] for channel in chosen.all.values())
     end = min(channel.time[-1] for channel in chosen.all.values())
-    if (end - start) * rate > LONGEST:
+    if (end - start) * rate > MAX_SAMPLES:
         raise BadInput(
             f"its channels last {end - start:.3g} s",
             where=f"run {where}",
-            expected=f"at most {LONGEST / rate:.3g} s",
+            expected=f"at most {MAX_SAMPLES / rate:.3g} s",
             remedy="Look for time stamps that jump.",
         )
-    instants = instants_between(fastest.time) if kind in SUMMED else fastest.time
+    instants = instants_between(fastest.time) if kind in SUMMED_CHANNELS else fastest.time
     start = float(instants[min(np.searchsorted(instants, start), len(instants) - 1)])
     return uniform_clock(start, max(end, start), rate)
 
@@ -218,10 +218,10 @@ def _describe(at: OnClock, chosen: ChosenChannels, turned: _Tracked, moved: _Tra
         axes,
         np.append(moved.summed, turned.summed),
         samples & axes,
-        np.array([SHARE * slowest]),
+        np.array([CUTOFF_SHARE * slowest]),
     )
 
 
 def _read_at(kind: str, channel: Channel) -> Array:
     """Times at which a channel is read: midway between its samples if it is integrated."""
-    return instants_between(channel.time)[1:-1] if kind in SUMMED else channel.time
+    return instants_between(channel.time)[1:-1] if kind in SUMMED_CHANNELS else channel.time

@@ -23,9 +23,9 @@ from rovsim.measurement.recording.readers import MocapReader, choose_body
 from rovsim.measurement.recording.repairs import MotionRepairs
 from rovsim.measurement.recording.signature import FileSignature
 
-BLOCK, KEY = 512, 0x50
-INTEL, SUN = 84, 86  # processor types; 85 is DEC, with floats of its own
-PER_ROTATION = 17
+BLOCK_BYTES, C3D_KEY = 512, 0x50
+INTEL_PROCESSOR, SUN_PROCESSOR = 84, 86  # processor types; 85 is DEC, with floats of its own
+NUMBERS_PER_ROTATION = 17
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
 RE_EXPORT = "Export rigid bodies (rotations) with the file, or another format that holds them."
 
@@ -92,14 +92,14 @@ def _refused(path: Path, found: str, expected: str) -> BadInput:
 
 def _open(path: Path) -> Content:
     raw = path.read_bytes()
-    if len(raw) < 2 * BLOCK or raw[1] != KEY or raw[0] < 1:
+    if len(raw) < 2 * BLOCK_BYTES or raw[1] != C3D_KEY or raw[0] < 1:
         problem = "the file is empty" if not raw else "it does not start as a C3D file does"
         raise _refused(path, problem, "a C3D file")
-    start = (raw[0] - 1) * BLOCK
+    start = (raw[0] - 1) * BLOCK_BYTES
     processor = raw[start + 3]
-    if processor not in (INTEL, SUN):
+    if processor not in (INTEL_PROCESSOR, SUN_PROCESSOR):
         raise _refused(path, f"processor type {processor}", "84 (Intel) or 86 (Sun)")
-    order = "<" if processor == INTEL else ">"
+    order = "<" if processor == INTEL_PROCESSOR else ">"
     return Content(path, raw, order, _parameters(raw, start + 4, order))
 
 
@@ -160,14 +160,14 @@ def _rotations(content: Content, used: int) -> tuple[Array, int]:
     # unsigned, as the header's count of frames is
     first_frame, last_frame = struct.unpack_from(content.order + "HH", content.raw, 6)
     expected = (last_frame - first_frame + 1) * max(int(float(ratio[0])), 1)
-    start = (int(content.number("ROTATION:DATA_START")) - 1) * BLOCK
-    if start < BLOCK:
+    start = (int(content.number("ROTATION:DATA_START")) - 1) * BLOCK_BYTES
+    if start < BLOCK_BYTES:
         raise _refused(content.path, "ROTATION:DATA_START is not behind the header", "a block")
-    size = PER_ROTATION * used
+    size = NUMBERS_PER_ROTATION * used
     frames = max(min(expected, (len(content.raw) - start) // (4 * size)), 0)
     values = np.frombuffer(content.raw, content.order + "f4", frames * size, start if frames else 0)
     with np.errstate(invalid="ignore"):  # damaged numbers may be signalling NaN
-        table = values.reshape(frames, used, PER_ROTATION).astype(float)
+        table = values.reshape(frames, used, NUMBERS_PER_ROTATION).astype(float)
     return table, int(frames < expected)
 
 
@@ -190,7 +190,7 @@ def body_names(path: Path) -> list[str]:
 
 
 def _recognised(head: bytes) -> bool:
-    return len(head) > 2 and head[1] == KEY and head[0] < 32
+    return len(head) > 2 and head[1] == C3D_KEY and head[0] < 32
 
 
 MOCAP_READER = MocapReader("c3d", "a C3D file", read_c3d, (FileSignature(_recognised),), body_names)

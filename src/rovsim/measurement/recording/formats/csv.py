@@ -39,17 +39,24 @@ from rovsim.measurement.recording.tables.times import times
 
 EULER = ["roll_rad", "pitch_rad", "yaw_rad"]  # R = Rz(yaw) Ry(pitch) Rx(roll)
 QUATERNION = ["qw", "qx", "qy", "qz"]
-EXTRA = {  # kind of channel -> columns, beside poses and velocities
+EXTRA_COLUMNS = {  # kind of channel -> columns, beside poses and velocities
     "depth": ["depth_m"],
     "specific_force": ["ax_m_s2", "ay_m_s2", "az_m_s2"],
     "voltage": ["voltage_v"],
 }
-KNOWN = [*POSITION, *EULER, *QUATERNION, *LINEAR, *ANGULAR, *(n for c in EXTRA.values() for n in c)]
+KNOWN_COLUMNS = [
+    *POSITION,
+    *EULER,
+    *QUATERNION,
+    *LINEAR,
+    *ANGULAR,
+    *(n for c in EXTRA_COLUMNS.values() for n in c),
+]
 # In at least this share of the lines with a position or an attitude, both must be given to count as
 # full poses; likewise, poses and velocities must share lines for velocities to count as bin means.
-TOGETHER = 0.5
+MIN_SHARED_LINES = 0.5
 NEAR_ZERO = 0.5  # m, rad: more than a vehicle moves from one line to the next
-NEAR = 0.75  # similarity of names: 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
+MIN_NAME_SIMILARITY = 0.75  # 'depth' is near 'depth_m', a demand 'pitch' not near 'pitch_rad'
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,9 +128,11 @@ def _export(
     angles = columns.of(QUATERNION if quaternions else EULER)
     notes += doubt_order(angles) if quaternions else ()
     posed = finite_rows(position, angles)
-    channels = {kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA.items()}
+    channels = {
+        kind: measured(columns.time, columns.of(names)) for kind, names in EXTRA_COLUMNS.items()
+    }
     nonempty = np.isfinite(np.hstack([position, angles])).any(axis=1)
-    if not posed.any() or posed.sum() < TOGETHER * nonempty.sum():
+    if not posed.any() or posed.sum() < MIN_SHARED_LINES * nonempty.sum():
         channels |= _apart(columns, position, angles) | _velocities(columns, nu)
         return Export.of_channels(channels, repairs, notes)
     binned = _means(posed, nu, mocap)
@@ -155,7 +164,9 @@ def _means(posed: Array, nu: Array, mocap: Mocap) -> bool:
         return False
     nonempty = np.isfinite(nu).any(axis=1)
     complete = finite_rows(nu) & posed
-    return bool(complete.any() and complete.sum() >= TOGETHER * max(nonempty.sum(), posed.sum()))
+    return bool(
+        complete.any() and complete.sum() >= MIN_SHARED_LINES * max(nonempty.sum(), posed.sum())
+    )
 
 
 def _instant(channels: Mapping[str, Channel], mocap: Mocap) -> tuple[str, ...]:
@@ -209,12 +220,12 @@ def _known_columns(lines: Lines) -> list[str]:
     """
     if any(name in lines.names for name in QUATERNION):
         column_places(lines.path, lines.names, ["time_s", *QUATERNION])
-    names = [name for name in KNOWN if name in lines.names]
+    names = [name for name in KNOWN_COLUMNS if name in lines.names]
     if not names:
         raise BadInput(
             f"no column of a measured channel, but {', '.join(lines.names)}",
             where=lines.path,
-            expected=f"time_s and some of {', '.join(KNOWN)}",
+            expected=f"time_s and some of {', '.join(KNOWN_COLUMNS)}",
             remedy="Name the columns with their units; docs/formats.md lists them.",
         )
     return names
@@ -222,13 +233,13 @@ def _known_columns(lines: Lines) -> list[str]:
 
 def _near_misses(names: list[str]) -> tuple[str, ...]:
     """Sentences about unread columns whose names resemble those of a channel."""
-    missing = [name for name in KNOWN if name not in names]
+    missing = [name for name in KNOWN_COLUMNS if name not in names]
     matches = {
         name: close[0]
         for name in names
-        if name not in KNOWN
+        if name not in KNOWN_COLUMNS
         and name != "time_s"
-        and (close := get_close_matches(name, missing, n=1, cutoff=NEAR))
+        and (close := get_close_matches(name, missing, n=1, cutoff=MIN_NAME_SIMILARITY))
     }
     return tuple(
         f"The column '{name}' is not read: was '{channel}' meant?"

@@ -28,11 +28,11 @@ RE_EXPORT = (
     "coordinates Global."
 )
 METRES = {"meters": 1.0, "centimeters": 1e-2, "millimeters": 1e-3}
-ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
-TALLEST = 30  # lines above the data that can be column names
+EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+MAX_HEADER_LINES = 30  # above the data that can be column names
 # A quarter turn about x takes (x, up, z) to (x, -z, up): y_up to z_up, and fur to flu.
-QUARTER = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
-CHECK_UP = (
+QUARTER_TURN_X = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+CHECK_UP_AXIS = (
     "Motive exports y up unless its Axis Convention was changed, and the file does not say: check "
     "'mocap.world_axes' (y_up) and 'mocap.body_axes' (fur)."
 )
@@ -76,7 +76,7 @@ def read_motive(path: Path, mocap: Mocap) -> Export:
         doubts = check_unit_length(angles, lambda row: f"{path}, line {table.numbers[row]}")
     valid &= finite_rows(position)
     position, attitude = _upright(position, attitude, mocap)
-    notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP)
+    notes = doubts if mocap.world_axes == "y_up" else (*doubts, CHECK_UP_AXIS)
     repairs = MotionRepairs(cut_lines=cut_lines)
     return Export(time, position, attitude, valid, _rate(layout), repairs=repairs, notes=notes)
 
@@ -87,9 +87,9 @@ def _upright(position: Array, attitude: Array, mocap: Mocap) -> tuple[Array, Arr
     Only what the campaign states as `y_up` or `fur` is turned.
     """
     if mocap.world_axes == "y_up":
-        position, attitude = rotate(QUARTER, position), multiply(QUARTER, attitude)
+        position, attitude = rotate(QUARTER_TURN_X, position), multiply(QUARTER_TURN_X, attitude)
     if mocap.body_axes == "fur":
-        attitude = multiply(attitude, conjugate(QUARTER))
+        attitude = multiply(attitude, conjugate(QUARTER_TURN_X))
     return position, attitude
 
 
@@ -102,7 +102,7 @@ def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
     kind = layout.header.get("rotation type", "Quaternion").strip()
     if values.shape[1] == 4 and kind.lower() == "quaternion":
         return unit_quaternions(values[:, [3, 0, 1, 2]])
-    if values.shape[1] == 3 and kind.upper() in ORDERS:
+    if values.shape[1] == 3 and kind.upper() in EULER_ORDERS:
         valid = finite_rows(values)
         # intrinsic angles: each about the axis that the earlier ones have turned (OptiTrack)
         order = ["XYZ".index(axis) for axis in kind.upper()]
@@ -112,14 +112,14 @@ def _attitude(path: Path, layout: Layout, values: Array) -> tuple[Array, Array]:
     raise BadInput(
         f"Rotation Type is '{kind}' with {values.shape[1]} columns",
         where=path,
-        expected=f"Quaternion, or Euler angles in an order such as {ORDERS[0]}",
+        expected=f"Quaternion, or Euler angles in an order such as {EULER_ORDERS[0]}",
         remedy=RE_EXPORT,
     )
 
 
 def _layout(path: Path, lines: list[str]) -> Layout:
     """Find the columns by the line that starts with Frame and the lines of names above it."""
-    top = [next(csv.reader(io.StringIO(line)), []) for line in lines[:TALLEST]]
+    top = [next(csv.reader(io.StringIO(line)), []) for line in lines[:MAX_HEADER_LINES]]
     cells = [[cell.strip() for cell in row] for row in top]
     name_line = next((n for n, row in enumerate(cells) if row and row[0] == "Frame"), None)
     header = _header(path, cells, lines)

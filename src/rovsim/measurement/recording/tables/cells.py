@@ -3,18 +3,19 @@
 import numpy as np
 from numpy import ndarray as Array
 
-MISSING = {"", "na", "n/a", "#n/a", "null", "none", "-"}  # words for "not measured", in any case
+# Words for "not measured", in any case.
+MISSING_WORDS = {"", "na", "n/a", "#n/a", "null", "none", "-"}
 # What loggers write where a sensor gave nothing; believed where no other value comes near.
-FILLERS = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
-NEAR = 0.5  # of a filler: a column that reaches so far may mean it
+FILLER_VALUES = (-999.0, -9999.0, -99999.0, 9999.0, 99999.0)
+READING_SHARE = 0.5  # of a filler: a column that reaches so far may mean it
 
 
 def find_filler(values: Array) -> float | None:
     """Find the number that stands for "not measured" in a column (n,); None if there is none."""
-    for filler in FILLERS:
+    for filler in FILLER_VALUES:
         is_filler = values == filler
         readings = np.abs(values[~is_filler & np.isfinite(values)])
-        if is_filler.sum() > 1 and len(readings) and readings.max() < NEAR * abs(filler):
+        if is_filler.sum() > 1 and len(readings) and readings.max() < READING_SHARE * abs(filler):
             return filler
     return None
 
@@ -24,5 +25,5 @@ def is_number(cell: str) -> bool:
     try:
         float(cell)
     except ValueError:
-        return cell.strip().lower() in MISSING
+        return cell.strip().lower() in MISSING_WORDS
     return True

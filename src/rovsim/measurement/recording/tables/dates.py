@@ -10,7 +10,7 @@ from numpy import ndarray as Array
 DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d")
 TIME_OF_DAY = re.compile(r"\d\d:\d\d:\d\d")
 # As people, MATLAB and spreadsheets write them: 27.11.2026, 11/27/2026 1:02 PM, 27-Nov-2026.
-ANY_SPELLING = re.compile(
+DATE_SPELLINGS = re.compile(
     r"\d{1,4}([/.-])\d{1,2}\1\d{1,4}\b.*|\d{1,2}-[A-Za-z]{3}-\d{2,4}\b.*|\d{1,2}:\d\d\b.*"
 )
 DAY = 86_400.0  # s
@@ -23,7 +23,7 @@ def is_date(cell: str) -> bool:
 
 def resembles_date(cell: str) -> bool:
     """Whether a cell is a date or a time of day in one of several spellings other than ISO 8601."""
-    return bool(ANY_SPELLING.fullmatch(cell))
+    return bool(DATE_SPELLINGS.fullmatch(cell))
 
 
 def to_seconds(cells: Iterable[str]) -> Array:

@@ -6,10 +6,10 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.tables.cells import MISSING
+from rovsim.measurement.recording.tables.cells import MISSING_WORDS
 from rovsim.measurement.recording.tables.delimited import Lines
 
-AT_ONCE = 10_000  # lines: if one of them needs the slow way, all of these are read in it
+LINES_PER_BATCH = 10_000  # lines: if one of them needs the slow way, all of these are read in it
 
 
 def numbers(table: Lines, columns: list[int]) -> Array:
@@ -19,9 +19,9 @@ def numbers(table: Lines, columns: list[int]) -> Array:
         BadInput: a cell is missing or holds no number.
     """
     values = np.empty((len(table), len(columns)))
-    for start in range(0, len(table), AT_ONCE):
-        part = table.between(start, start + AT_ONCE)
-        values[start : start + AT_ONCE] = _plain_numbers(part, columns)
+    for start in range(0, len(table), LINES_PER_BATCH):
+        part = table.between(start, start + LINES_PER_BATCH)
+        values[start : start + LINES_PER_BATCH] = _plain_numbers(part, columns)
     return values
 
 
@@ -44,7 +44,7 @@ def _number(table: Lines, row: list[str], line: int, column: int) -> float:
             remedy="Export the run again, or remove that line.",
         )
     cell = row[column].strip()
-    if cell.lower() in MISSING:
+    if cell.lower() in MISSING_WORDS:
         return float("nan")
     try:
         return float(cell)

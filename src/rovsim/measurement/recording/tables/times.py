@@ -8,7 +8,7 @@ from rovsim.measurement.recording.tables.dates import is_date, resembles_date, t
 from rovsim.measurement.recording.tables.delimited import Lines
 from rovsim.measurement.recording.tables.numbers import bad_cell, numbers
 
-LATEST = 1e11  # s since 1970: the year 5138
+MAX_TIME_S = 1e11  # since 1970: the year 5138
 
 
 def times(table: Lines, column: int) -> Array:
@@ -28,7 +28,7 @@ def times(table: Lines, column: int) -> Array:
         raise bad_cell(
             table, table.numbers[invalid[0]], column, cell, "a time in s, or all as dates"
         )
-    if len(time) and np.abs(time).max() > LATEST:
+    if len(time) and np.abs(time).max() > MAX_TIME_S:
         raise BadInput(
             f"times up to {np.abs(time).max():.3g}: ms, us or ns since 1970?",
             where=f"{table.path}, column '{table.names[column]}'",

@@ -7,14 +7,14 @@ import numpy as np
 
 DEGREE = np.pi / 180.0
 # Factor of each unit that turns a number into SI: s, m, rad and their quotients.
-TIMES = {"h": 3600.0, "min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-FACTORS = {
-    **TIMES,
+TIME_FACTORS = {"h": 3600.0, "min": 60.0, "s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+SI_FACTORS = {
+    **TIME_FACTORS,
     "m": 1.0, "cm": 1e-2, "mm": 1e-3, "rad": 1.0, "deg": DEGREE,
     "m_s": 1.0, "cm_s": 1e-2, "mm_s": 1e-3, "rad_s": 1.0, "deg_s": DEGREE,
 }  # fmt: skip
-UNCONVERTED = {"m_s2", "v"}  # read as they are
-SPELT = {
+UNCONVERTED_UNITS = {"m_s2", "v"}  # read as they are
+UNIT_SPELLINGS = {
     "hours": "h", "minutes": "min", "mins": "min", "sec": "s", "secs": "s", "second": "s",
     "seconds": "s", "milliseconds": "ms", "msec": "ms", "microseconds": "us", "usec": "us",
     "nanoseconds": "ns", "nsec": "ns", "metre": "m", "metres": "m", "meter": "m", "meters": "m",
@@ -26,30 +26,30 @@ SPELT = {
     "m/s2": "m_s2", "m/s^2": "m_s2", "m/s²": "m_s2",
 }  # fmt: skip
 # Further words in a line of units, for columns that are no measured channels.
-OTHER = {
+OTHER_UNITS = {
     "", "-", "1", "%", "us", "n", "nm", "n m", "n*m", "a", "pa", "mbar", "bar", "hz", "rpm",
 }  # fmt: skip
-OF_TIMES = re.compile(r"t|.*(time|stamp).*", re.IGNORECASE)
-MICRO = str.maketrans("µμ", "uu")
+TIME_NAME = re.compile(r"t|.*(time|stamp).*", re.IGNORECASE)
+MICRO_SIGNS = str.maketrans("µμ", "uu")
 
 
 def find_unit_of(text: str) -> str:
-    """The unit that a text means, as in `FACTORS` and `UNCONVERTED`; empty where it is none."""
-    text = text.strip().strip('"[]()').strip().lower().translate(MICRO)
-    text = SPELT.get(text, text)
-    return text if text in FACTORS or text in UNCONVERTED else ""
+    """The unit that a text means, of `SI_FACTORS` or `UNCONVERTED_UNITS`; empty if it is none."""
+    text = text.strip().strip('"[]()').strip().lower().translate(MICRO_SIGNS)
+    text = UNIT_SPELLINGS.get(text, text)
+    return text if text in SI_FACTORS or text in UNCONVERTED_UNITS else ""
 
 
 def split_unit(name: str) -> tuple[str, str]:
     """Split the name of a column into the bare name, as `in_words` writes it, and its unit."""
-    text = in_words(name.strip().lstrip("%")).translate(MICRO)
-    for unit in _LONGEST_FIRST:
+    text = in_words(name.strip().lstrip("%")).translate(MICRO_SIGNS)
+    for unit in _UNITS_BY_LENGTH:
         if text.endswith(f"_{unit}"):
-            return text.removesuffix(f"_{unit}"), SPELT.get(unit, unit)
+            return text.removesuffix(f"_{unit}"), UNIT_SPELLINGS.get(unit, unit)
     return text, ""
 
 
-_LONGEST_FIRST = sorted((*FACTORS, *SPELT), key=len, reverse=True)
+_UNITS_BY_LENGTH = sorted((*SI_FACTORS, *UNIT_SPELLINGS), key=len, reverse=True)
 
 
 def in_words(name: str) -> str:
@@ -79,7 +79,8 @@ def with_units(
     cells = [cell.strip().strip('"[]()').lower() for cell in lines[below].split(separator)]
     units = [find_unit_of(cell) for cell in cells]
     recognised = [
-        u or c.translate(MICRO) in OTHER - {"1"} for u, c in zip(units, cells, strict=True)
+        u or c.translate(MICRO_SIGNS) in OTHER_UNITS - {"1"}
+        for u, c in zip(units, cells, strict=True)
     ]
     if not any(cells) or not all(recognised):
         return list(names), header
@@ -88,5 +89,5 @@ def with_units(
 
 
 def _ended(name: str, unit: str) -> str:
-    pulses = unit == "us" and not OF_TIMES.fullmatch(name)
+    pulses = unit == "us" and not TIME_NAME.fullmatch(name)
     return name if not unit or pulses or split_unit(name)[1] == unit else f"{name}_{unit}"

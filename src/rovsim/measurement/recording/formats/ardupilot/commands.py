@@ -15,7 +15,7 @@ from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, 
 from rovsim.measurement.recording.readers import CommandReader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.
-SOURCES = {
+LOG_FIELDS = {
     "dataflash": {"SERVO": ("RCOU", "C{}"), "RC": ("RCIN", "C{}")},
     "telemetry": {
         "SERVO": ("SERVO_OUTPUT_RAW", "servo{}_raw"),
@@ -37,7 +37,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     missing = [log.names[k] for k, name in enumerate(names) if name not in series.fields]
     if missing:
         raise BadInput(
-            f"no output or channel {', '.join(missing)} in {SOURCES[vehicle_log.kind][kind][0]}",
+            f"no output or channel {', '.join(missing)} in {LOG_FIELDS[vehicle_log.kind][kind][0]}",
             where=path,
             expected="columns that the log holds",
             remedy="Correct 'commands.columns'.",
@@ -66,7 +66,7 @@ def _wanted(path: Path, log: CommandLog) -> tuple[str, list[int]]:
 
 
 def _series(held: ArduPilotLog, wanted: str) -> tuple[Series, str]:
-    name, field = SOURCES[held.kind][wanted]
+    name, field = LOG_FIELDS[held.kind][wanted]
     if name not in held.series:
         raise needs(held, [name], "no commands")
     series = held.series[name]

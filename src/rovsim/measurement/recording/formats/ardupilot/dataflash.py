@@ -17,19 +17,19 @@ from numpy import ndarray as Array
 
 from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series, no_log
 
-HEAD = b"\xa3\x95"
-FORMAT = 128
+MESSAGE_MARKER = b"\xa3\x95"
+FORMAT_ID = 128
 # Character of a field -> NumPy type and factor (AP_Logger/README.md, "Format types").
-FIELDS = {
+FIELD_TYPES = {
     "a": ("64V", 1.0), "b": ("i1", 1.0), "B": ("u1", 1.0), "h": ("<i2", 1.0), "H": ("<u2", 1.0),
     "i": ("<i4", 1.0), "I": ("<u4", 1.0), "f": ("<f4", 1.0), "d": ("<f8", 1.0), "g": ("<f2", 1.0),
     "n": ("S4", 1.0), "N": ("S16", 1.0), "Z": ("S64", 1.0), "c": ("<i2", 0.01), "C": ("<u2", 0.01),
     "e": ("<i4", 0.01), "E": ("<u4", 0.01), "L": ("<i4", 1e-7), "M": ("u1", 1.0),
     "q": ("<i8", 1.0), "Q": ("<u8", 1.0),
 }  # fmt: skip
-WANTED = ["ATT", "IMU", "BARO", "CTUN", "BAT", "CURR", "XKF1", "XKF4", "NKF1", "NKF4"]
-WANTED += ["RCOU", "RCIN", "MODE", "MSG"]
-INSTANCE = ("I", "C", "Inst", "Instance")  # fields with the number of the sensor, or of the filter
+WANTED_TYPES = ["ATT", "IMU", "BARO", "CTUN", "BAT", "CURR", "XKF1", "XKF4", "NKF1", "NKF4"]
+WANTED_TYPES += ["RCOU", "RCIN", "MODE", "MSG"]
+INSTANCE_FIELDS = ("I", "C", "Inst", "Instance")  # the number of the sensor, or of the filter
 
 
 @dataclass(frozen=True)
@@ -64,19 +64,19 @@ class _Index(NamedTuple):
 
 
 def read_dataflash(path: Path) -> ArduPilotLog:
-    """Read the messages of the types in `WANTED`.
+    """Read the messages of the types in `WANTED_TYPES`.
 
     Raises:
         BadInput: not a dataflash log, or nothing in it can be read.
     """
     raw = path.read_bytes()
-    if not raw.startswith(HEAD):
+    if not raw.startswith(MESSAGE_MARKER):
         raise no_log(path, "the file is empty" if not raw else "it does not start as a .BIN does")
     formats, places, skipped = _index(raw)
     kind_by_name = {form.name: kind for kind, form in formats.items() if form.fields is not None}
     tables = {
         name: _table(raw, formats[kind_by_name[name]], places[kind_by_name[name]])
-        for name in WANTED
+        for name in WANTED_TYPES
         if name in kind_by_name and places[kind_by_name[name]]
     }
     messages = tables.pop("MSG", None)
@@ -101,16 +101,16 @@ def _submarine(texts: bytes) -> bool | None:
 
 def _index(raw: bytes) -> _Index:
     """Find all messages in a log, and skip what is damaged."""
-    formats = {FORMAT: Format("FMT", 89, None, {})}
+    formats = {FORMAT_ID: Format("FMT", 89, None, {})}
     places: dict[int, list[int]] = defaultdict(list)
     offset = end = 0  # where to look, and where the last message ended
     skipped = 0
-    while (offset := raw.find(HEAD, offset)) >= 0 and offset + 2 < len(raw):
+    while (offset := raw.find(MESSAGE_MARKER, offset)) >= 0 and offset + 2 < len(raw):
         form = formats.get(raw[offset + 2])
         if form is None or offset + form.length > len(raw):
             offset += 1
             continue
-        if raw[offset + 2] == FORMAT:
+        if raw[offset + 2] == FORMAT_ID:
             _learn(raw[offset + 3 : offset + 89], formats)
         places[raw[offset + 2]].append(offset)
         skipped += offset - end
@@ -126,13 +126,13 @@ def _learn(body: bytes, formats: dict[int, Format]) -> None:
         for part in (body[2:6], body[6:22], body[22:])
     )
     names = columns.split(",")
-    if kind in formats or length < 4 or any(code not in FIELDS for code in codes):
+    if kind in formats or length < 4 or any(code not in FIELD_TYPES for code in codes):
         return
     if len(names) != len(codes) or len(set(names)) < len(names) or not all(names):
         return
-    fields = np.dtype([(n, FIELDS[c][0]) for n, c in zip(names, codes, strict=True)])
+    fields = np.dtype([(n, FIELD_TYPES[c][0]) for n, c in zip(names, codes, strict=True)])
     if fields.itemsize + 3 == length:
-        factors = {n: FIELDS[c][1] for n, c in zip(names, codes, strict=True)}
+        factors = {n: FIELD_TYPES[c][1] for n, c in zip(names, codes, strict=True)}
         formats[kind] = Format(name, length, fields, factors)
 
 
@@ -150,7 +150,9 @@ def _series(table: Array, form: Format) -> Series | None:
     clock = next((n for n in ("TimeUS", "TimeMS") if n in names), None)
     if clock is None:
         return None
-    instance = next((n for n in INSTANCE if n in names and table[n].dtype.kind in "iu"), None)
+    instance = next(
+        (n for n in INSTANCE_FIELDS if n in names and table[n].dtype.kind in "iu"), None
+    )
     if instance:
         table = table[table[instance] == table[instance].min()]
     time = table[clock] * (1e-6 if clock == "TimeUS" else 1e-3)

@@ -30,7 +30,7 @@ class ChannelSource:
 
 
 # Kind of channel -> where it stands, the first that the log has. Altitudes are up.
-SOURCES = {
+CHANNEL_SOURCES = {
     "dataflash": {
         "attitude": [ChannelSource("ATT", ("Roll", "Pitch", "Yaw"), DEGREE)],
         "rates": [ChannelSource("IMU", ("GyrX", "GyrY", "GyrZ"))],
@@ -50,8 +50,8 @@ SOURCES = {
 }
 # Where the autopilot's Kalman filter states its status, with the same bits in both kinds of log
 # (nav_filter_status).
-STATUS = {"dataflash": [("XKF4", "SS"), ("NKF4", "SS")]}
-STATUS["telemetry"] = [("EKF_STATUS_REPORT", "flags")]
+STATUS_FIELDS = {"dataflash": [("XKF4", "SS"), ("NKF4", "SS")]}
+STATUS_FIELDS["telemetry"] = [("EKF_STATUS_REPORT", "flags")]
 POSITION_KNOWN, POSITION_ASSUMED = 0b11000, 0b10000000  # relative or absolute; constant
 NO_VOLTAGE = 65.535  # V: UINT16_MAX
 MODES = {0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 7: "CIRCLE"}
@@ -66,14 +66,16 @@ def read_log(path: Path, mocap: Mocap) -> Export:
     """
     _check_axes(mocap, path)
     log = open_log(path)
-    readings = {kind: _read(log, sources) for kind, sources in SOURCES[log.kind].items()}
+    readings = {kind: _read(log, sources) for kind, sources in CHANNEL_SOURCES[log.kind].items()}
     channels = {
         kind: channel
         for kind, channel in readings.items()
         if channel is not None and len(channel.time)
     }
     if not channels:
-        names = [source.series for options in SOURCES[log.kind].values() for source in options]
+        names = [
+            source.series for options in CHANNEL_SOURCES[log.kind].values() for source in options
+        ]
         raise needs(log, list(dict.fromkeys(names)), "nothing of the motion")
     notes = log.notes + _adapt(log, channels) + _modes(log)
     return Export.of_channels(channels, notes=notes)
@@ -132,7 +134,7 @@ def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[
 
 def _known(log: ArduPilotLog, time: Array) -> Array:
     """Mask (n,) of times at which the filter's last status said that it knows the position."""
-    source = next(((s, f) for s, f in STATUS[log.kind] if s in log.series), None)
+    source = next(((s, f) for s, f in STATUS_FIELDS[log.kind] if s in log.series), None)
     if source is None:
         return np.zeros(len(time), bool)
     status = _in_order(log.series[source[0]])

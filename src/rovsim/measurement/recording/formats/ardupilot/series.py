@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
 
-RE_RECORD = "Download it again from the vehicle or the ground station."
+DOWNLOAD_AGAIN = "Download it again from the vehicle or the ground station."
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,5 +54,5 @@ def no_log(path: Path, found: str) -> BadInput:
         found,
         where=path,
         expected="an ArduPilot log: dataflash (.BIN) or telemetry (.tlog)",
-        remedy=RE_RECORD,
+        remedy=DOWNLOAD_AGAIN,
     )

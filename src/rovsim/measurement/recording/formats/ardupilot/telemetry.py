@@ -13,19 +13,19 @@ from rovsim.core.extras import require
 from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series, no_log
 
 # https://mavlink.io/en/guide/serialization.html: marker, bytes of a packet besides the payload
-MARKERS = {0xFD: 12, 0xFE: 8}
-MARKER = re.compile(rb"[\xfd\xfe]")
-SIGNED, SIGNATURE = 0x01, 13
-WANTED = ["HEARTBEAT", "ATTITUDE", "RAW_IMU", "VFR_HUD", "LOCAL_POSITION_NED", "SYS_STATUS"]
-WANTED += ["EKF_STATUS_REPORT", "SERVO_OUTPUT_RAW", "RC_CHANNELS"]
+PACKET_OVERHEAD = {0xFD: 12, 0xFE: 8}
+MARKER_PATTERN = re.compile(rb"[\xfd\xfe]")
+SIGNED_FLAG, SIGNATURE_BYTES = 0x01, 13
+WANTED_TYPES = ["HEARTBEAT", "ATTITUDE", "RAW_IMU", "VFR_HUD", "LOCAL_POSITION_NED", "SYS_STATUS"]
+WANTED_TYPES += ["EKF_STATUS_REPORT", "SERVO_OUTPUT_RAW", "RC_CHANNELS"]
 NO_AUTOPILOT, SUBMARINE = 8, 12  # MAV_AUTOPILOT_INVALID, MAV_TYPE_SUBMARINE
-REBOOT = 1.0  # s by which the time since boot may step back and still be a late packet
+REBOOT_STEP_S = 1.0  # by which the time since boot may step back and still be a late packet
 
 Received = tuple[float, Any]  # s since 1970, message
 
 
 def read_telemetry(path: Path) -> ArduPilotLog:
-    """Read the messages of the types in `WANTED` that the vehicle itself sent.
+    """Read the messages of the types in `WANTED_TYPES` that the vehicle itself sent.
 
     Raises:
         BadInput: not a telemetry log, or nothing in it can be read.
@@ -34,7 +34,7 @@ def read_telemetry(path: Path) -> ArduPilotLog:
     from pymavlink.dialects.v20 import ardupilotmega as dialect
 
     raw = path.read_bytes()
-    numbers = {m.id for m in dialect.mavlink_map.values() if m.msgname in WANTED}
+    numbers = {m.id for m in dialect.mavlink_map.values() if m.msgname in WANTED_TYPES}
     packets = list(_messages(raw, dialect, numbers))
     if not packets:
         problem = f"no message of a known type in {len(raw)} bytes" if raw else "the file is empty"
@@ -56,7 +56,7 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
         length = _length(raw, offset + 8)
         packet = raw[offset + 8 : offset + 8 + length]
         if not length or len(packet) < length:
-            marker = MARKER.search(raw, offset + 9)
+            marker = MARKER_PATTERN.search(raw, offset + 9)
             if marker is None:
                 return
             offset = marker.start() - 8
@@ -64,7 +64,9 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
         if _number(packet) not in numbers:
             # an unwanted packet is taken for a whole one if another packet follows it
             following = offset + 16 + length
-            offset += 8 + length if following >= len(raw) or raw[following] in MARKERS else 1
+            offset += (
+                8 + length if following >= len(raw) or raw[following] in PACKET_OVERHEAD else 1
+            )
             continue
         try:
             message = decoder.decode(bytearray(packet))
@@ -77,11 +79,11 @@ def _messages(raw: bytes, dialect: Any, numbers: set[int]) -> Iterator[Received]
 
 def _length(raw: bytes, at: int) -> int:
     """Length in bytes of the packet at offset `at`; 0 where there is none."""
-    around = MARKERS.get(raw[at], 0)
+    around = PACKET_OVERHEAD.get(raw[at], 0)
     if not around:
         return 0
-    signed = raw[at] == 0xFD and raw[at + 2] & SIGNED
-    return around + raw[at + 1] + (SIGNATURE if signed else 0)
+    signed = raw[at] == 0xFD and raw[at + 2] & SIGNED_FLAG
+    return around + raw[at + 1] + (SIGNATURE_BYTES if signed else 0)
 
 
 def _number(packet: bytes) -> int:
@@ -128,7 +130,9 @@ def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
     boot, received = boot[valid], received[valid]
     steps = np.diff(boot)
     delay = received - boot
-    if len(steps) and (steps.min() < -REBOOT or np.ptp(np.percentile(delay, [5, 95])) > REBOOT):
+    if len(steps) and (
+        steps.min() < -REBOOT_STEP_S or np.ptp(np.percentile(delay, [5, 95])) > REBOOT_STEP_S
+    ):
         note = "The vehicle's clock does not go on (a reboot?): the times of reception hold."
         return float("nan"), (note,)
     return float(np.median(delay)), ()

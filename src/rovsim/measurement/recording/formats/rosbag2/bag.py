@@ -14,8 +14,8 @@ from rovsim.measurement.recording.foreign import read_by
 from rovsim.measurement.recording.formats.rosbag2.definitions import store_for
 from rovsim.measurement.recording.formats.rosbag2.stamps import on_bag_clock, stamp
 
-WHOLE = "a whole ROS 2 bag: its folder, or one .db3 or .mcap file"
-REPAIR = "Check it with `ros2 bag info`; `ros2 bag reindex` or `mcap recover` repair a cut one."
+EXPECTED_BAG = "a whole ROS 2 bag: its folder, or one .db3 or .mcap file"
+REPAIR_BAG = "Check it with `ros2 bag info`; `ros2 bag reindex` or `mcap recover` repair a cut one."
 
 
 Numbers = Callable[[Any], Sequence[float]]
@@ -121,7 +121,7 @@ def opened(path: Path, by: str) -> Iterator[Bag]:
     from rosbags.rosbag2 import Reader
 
     storage = _storage(path)
-    with read_by("rosbags", path, WHOLE, REPAIR), Reader(storage) as reader:
+    with read_by("rosbags", path, EXPECTED_BAG, REPAIR_BAG), Reader(storage) as reader:
         yield Bag(path, reader)
 
 
@@ -133,7 +133,7 @@ def _storage(path: Path) -> Path:
         raise BadInput(
             f"a file that ends in '{path.suffix}'",
             where=path,
-            expected=WHOLE,
+            expected=EXPECTED_BAG,
             remedy="Name the folder of the bag; a ROS 1 bag is turned by `rosbags-convert`.",
         )
     if (path / "metadata.yaml").exists():
@@ -144,6 +144,6 @@ def _storage(path: Path) -> Path:
     raise BadInput(
         f"a folder without metadata.yaml and with {len(files)} storage files",
         where=path,
-        expected=WHOLE,
+        expected=EXPECTED_BAG,
         remedy="Name one of its files, or `ros2 bag reindex` the folder.",
     )

@@ -16,16 +16,16 @@ from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
 from rovsim.measurement.recording.readers import CommandReader
 
-LIKELY = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
-PULSES = ("RCOut", "OverrideRCIn", "RCIn")
+COMMAND_TYPES = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
+PULSE_TYPES = ("RCOut", "OverrideRCIn", "RCIn")
 # MAVLink MANUAL_CONTROL as ArduSub takes it: x, y, r in -1000 .. 1000, z in 0 .. 1000 and up
-MANUAL: Mapping[str, tuple[str, int, int]] = {
+MANUAL_FIELDS: Mapping[str, tuple[str, int, int]] = {
     "surge": ("x", 0, 1000),
     "sway": ("y", 0, 1000),
     "heave": ("z", 500, -500),
     "yaw": ("r", 0, 1000),
 }
-FORCES = dict(
+WRENCH_FIELDS = dict(
     zip(AXES, [f"{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"], strict=True)
 )
 
@@ -55,7 +55,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     def place(line: int, column: int) -> str:
         return f"{path}, {samples.topic}, message {line + 1}, column '{log.names[column]}'"
 
-    pulses = samples.kind.endswith(PULSES) and log.kind != "wrench"
+    pulses = samples.kind.endswith(PULSE_TYPES) and log.kind != "wrench"
     value, notes = _without_pulse(samples) if pulses else (samples.value, ())
     notes = (*samples.notes, *notes)
     return as_commands(samples.time, value, log, place, pulses=pulses, notes=notes)
@@ -63,12 +63,12 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
 
 def pushed(message: Any, axis: str) -> float:
     """Deflection of a stick, in [-1, 1], from a ManualControl message."""
-    field, center, span = MANUAL[axis]
+    field, center, span = MANUAL_FIELDS[axis]
     return float((getattr(message, field) - center) / span)
 
 
 def _only_topic(bag: Bag) -> str:
-    likely = [t for t, kind in bag.topics.items() if any(word in kind for word in LIKELY)]
+    likely = [t for t, kind in bag.topics.items() if any(word in kind for word in COMMAND_TYPES)]
     if len(likely) == 1:
         return likely[0]
     raise BadInput(
@@ -102,11 +102,11 @@ def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
     """
     name = log.names[k]
     axis = log.axes[k] if log.axes else name
-    if kind.endswith("ManualControl") and axis in MANUAL:
+    if kind.endswith("ManualControl") and axis in MANUAL_FIELDS:
         return lambda message: pushed(message, axis)
     inner = getattr(first, "wrench", first)
-    if hasattr(inner, "force") and axis in FORCES:
-        return _walk(("wrench." if inner is not first else "") + FORCES[axis])
+    if hasattr(inner, "force") and axis in WRENCH_FIELDS:
+        return _walk(("wrench." if inner is not first else "") + WRENCH_FIELDS[axis])
     if re.fullmatch(r"[A-Za-z]\w*([.[].*)?", name) and hasattr(first, re.split(r"[.[]", name)[0]):
         return _walk(name)
     arrays = [f for f in getattr(first, "__dataclass_fields__", {}) if _is_array(first, f)]

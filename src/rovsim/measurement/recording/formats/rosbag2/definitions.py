@@ -8,7 +8,7 @@ from rovsim.core.errors import BadInput
 
 # Bags of sqlite3 before ROS 2 Iron hold no definitions, and rosbags knows only those of ROS itself.
 # Fields as in github.com/mavlink/mavros, mavros_msgs/msg (branch ros2).
-MAVROS = {
+MAVROS_MESSAGES = {
     "mavros_msgs/msg/RCIn": "std_msgs/Header header\nuint8 rssi\nuint16[] channels\n",
     "mavros_msgs/msg/RCOut": "std_msgs/Header header\nuint16[] channels\n",
     "mavros_msgs/msg/OverrideRCIn": "uint16[18] channels\n",
@@ -26,7 +26,7 @@ def _known() -> Any:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
-    for name, text in MAVROS.items():
+    for name, text in MAVROS_MESSAGES.items():
         store.register(get_types_from_msg(text, name))
     return store
 

@@ -14,7 +14,7 @@ from rovsim.measurement.recording.formats.rosbag2.messages import TopicReader, p
 from rovsim.measurement.recording.readers import FileAxes, MocapReader
 from rovsim.measurement.recording.signature import FileSignature, starts_with
 
-POSES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")
+POSE_TYPES = ("PoseStamped", "PoseWithCovarianceStamped", "TransformStamped", "Odometry")
 
 
 def read_bag(path: Path, mocap: Mocap) -> Export:
@@ -48,7 +48,9 @@ def _pose_topic(bag: Bag, mocap: Mocap, topics: Topics) -> str | None:
     if mocap.topics is not None:
         return None
     candidates = [
-        topic for topic, kind in bag.topics.items() if kind.endswith(tuple(f"/{p}" for p in POSES))
+        topic
+        for topic, kind in bag.topics.items()
+        if kind.endswith(tuple(f"/{p}" for p in POSE_TYPES))
     ]
     if len(candidates) == 1:
         return candidates[0]

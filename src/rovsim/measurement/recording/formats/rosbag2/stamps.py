@@ -9,9 +9,9 @@ from rovsim.core.signs import minus
 
 NANO = 1e-9
 # Transport within one computer or network takes less; clocks of two computers differ by more.
-SAME_CLOCK = 0.5  # s
+MAX_CLOCK_OFFSET_S = 0.5
 # Stamps of one clock differ from the arrivals by a delay that varies by less than this.
-STEADY = 0.5  # s, between the 5th and the 95th percentile
+MAX_DELAY_SPREAD_S = 0.5  # between the 5th and the 95th percentile
 
 
 def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tuple[str, ...]]:
@@ -34,9 +34,9 @@ def on_bag_clock(topic: str, arrived: Array, stamps: Array) -> tuple[Array, tupl
         return bag, notes
     delay = (arrived - stamps) * NANO
     low, median, high = np.percentile(delay, [5.0, 50.0, 95.0])
-    if high - low > STEADY or (len(stamps) > 1 and not stamps[-1] > stamps[0]):
+    if high - low > MAX_DELAY_SPREAD_S or (len(stamps) > 1 and not stamps[-1] > stamps[0]):
         return bag, (f"{topic}: stamps do not go with the bag's clock; the bag's times hold.",)
-    if abs(median) <= SAME_CLOCK:
+    if abs(median) <= MAX_CLOCK_OFFSET_S:
         return stamps * NANO, ()
     shifted = (stamps - stamps[0]) * NANO + (stamps[0] * NANO + median)
     offset = minus(f"{-median:+.3f}")
