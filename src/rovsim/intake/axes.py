@@ -16,17 +16,17 @@ from rovsim.intake.survey.contents import Track
 from rovsim.measurement.recording.readers import FileAxes
 
 # Rotation (3, 3) from FRD into the file's body axes: its columns are forward, starboard and down.
-BODY = {
+BODY_ROTATIONS = {
     "flu": np.diag([1.0, -1.0, -1.0]),
     "frd": np.eye(3),
     "fur": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
 }
 # Unit vector that points down, in the file's world axes.
-DOWN = {"z_up": (0.0, 0.0, -1.0), "ned": (0.0, 0.0, 1.0), "y_up": (0.0, -1.0, 0.0)}
-LEVEL = 0.7  # mean of the cosine of the tilt: 45 degrees
-CLOSE = 0.8  # correlation of depth and height
-RESTING = 5.0  # m/s2 of specific force, about half of gravity
-AXIS = "xyz"
+DOWN_VECTORS = {"z_up": (0.0, 0.0, -1.0), "ned": (0.0, 0.0, 1.0), "y_up": (0.0, -1.0, 0.0)}
+MIN_LEVEL_COSINE = 0.7  # mean over the tilt: 45 degrees
+MIN_DEPTH_CORRELATION = 0.8  # of depth and height
+MIN_REST_FORCE = 5.0  # m/s2 of specific force, about half of gravity
+LETTERS = "xyz"
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Axes:
     """World and body axes of the files.
 
     Attributes:
-        world: key of `DOWN`, empty where the files do not tell.
-        body: key of `BODY`, empty where the files do not tell.
+        world: key of `DOWN_VECTORS`, empty where the files do not tell.
+        body: key of `BODY_ROTATIONS`, empty where the files do not tell.
         said: how they are known, or why they are not.
         likely: pairs of world and body axes in which the vehicle is upright on average, where the
             body axes have to be asked for.
@@ -76,7 +76,7 @@ def find_axes(
     match = [pair for pair in pairs if pair[0] == world]
     if world and len(match) == 1:
         return Axes(
-            world, match[0][1], f"{AXIS[-1]} goes with the depth, and the vehicle is upright"
+            world, match[0][1], f"{LETTERS[-1]} goes with the depth, and the vehicle is upright"
         )
     if own.usual in pairs:
         return Axes(*own.usual, own.said)
@@ -90,9 +90,11 @@ def _upright(
     mean = _mean_attitude(tracks)
     if mean is None:
         return list(turned)
-    vertical = [np.abs(DOWN[world]) @ mean for world in worlds]
+    vertical = [np.abs(DOWN_VECTORS[world]) @ mean for world in worlds]
     upright = [
-        (s, axes) for s, axes in turned if any(abs(v @ axes[:, 2]) > LEVEL for v in vertical)
+        (s, axes)
+        for s, axes in turned
+        if any(abs(v @ axes[:, 2]) > MIN_LEVEL_COSINE for v in vertical)
     ]
     return upright or list(turned)
 
@@ -114,7 +116,7 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
         return "", f"no motion that its commands explain{best}" if turned else ""
     score, axes = turned[0]
     rival = turned[1][0] if len(turned) > 1 else 0.0
-    name = next((n for n in bodies if np.array_equal(axes, BODY[n])), "")
+    name = next((n for n in bodies if np.array_equal(axes, BODY_ROTATIONS[n])), "")
     if score < AHEAD * rival:
         return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
     if name:
@@ -135,7 +137,7 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
 
 def _named(column: Array) -> str:
     k = int(np.argmax(np.abs(column)))
-    return f"{'-' if column[k] < 0 else '+'}{AXIS[k]}"
+    return f"{'-' if column[k] < 0 else '+'}{LETTERS[k]}"
 
 
 def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]:
@@ -152,7 +154,7 @@ def _by_force(tracks: Sequence[Track], bodies: Sequence[str]) -> tuple[str, str]
     if not forces:
         return "", ""
     up = float(np.nanmean(np.vstack(forces)[:, 2]))
-    name = "flu" if up > RESTING else "frd" if up < -RESTING else ""
+    name = "flu" if up > MIN_REST_FORCE else "frd" if up < -MIN_REST_FORCE else ""
     return (name if name in bodies else ""), f"specific force along z is {up:+.1f} m/s² on average"
 
 
@@ -167,7 +169,7 @@ def _level(
         (world, body)
         for world in worlds
         for body in bodies
-        if mean @ BODY[body][:, 2] @ np.array(DOWN[world]) > LEVEL
+        if mean @ BODY_ROTATIONS[body][:, 2] @ np.array(DOWN_VECTORS[world]) > MIN_LEVEL_COSINE
     ]
 
 
@@ -192,7 +194,11 @@ def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
         z = np.interp(depth.time, track.export.time[tracked], track.export.position[tracked, 2])
         if min(np.std(z), np.std(depth.value)) > 0:
             signs.append(float(np.corrcoef(z, depth.value[:, 0])[0, 1]))
-    if not signs or min(abs(s) for s in signs) < CLOSE or len({s > 0 for s in signs}) > 1:
+    if (
+        not signs
+        or min(abs(s) for s in signs) < MIN_DEPTH_CORRELATION
+        or len({s > 0 for s in signs}) > 1
+    ):
         return ""
     name = "ned" if signs[0] > 0 else "z_up"
     return name if name in worlds else ""

@@ -16,7 +16,7 @@ from rovsim.intake.motions import correlate, turned
 from rovsim.intake.pairing import Pair
 from rovsim.intake.vehicles import VehicleMatch
 
-SAME = 0.03  # correlation by which vehicles of one hull differ
+SAME_HULL_DIFFERENCE = 0.03  # correlation by which vehicles of one hull differ
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ def _first(ordered: Sequence[VehicleMatch], scores: dict[str, float]) -> Vehicle
     """Return the best vehicle, or the default one if it has that hull and is nearly as good."""
     best = ordered[0]
     for fit in ordered:
-        close = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME
+        close = scores.get(fit.name, 0.0) > scores.get(best.name, 0.0) - SAME_HULL_DIFFERENCE
         if close and fit.name == default_vehicle() and _one_hull(fit, best):
             return fit
     return best

@@ -13,9 +13,9 @@ from rovsim.intake.survey.sizes import Key, Unit, UnknownUnit
 from rovsim.intake.together import put_together
 from rovsim.measurement.recording.one_run import SeveralRuns
 
-ASKED = (UnknownUnit, SeveralRuns)  # errors that stop init for a file of a folder, too
+ASKED_ERRORS = (UnknownUnit, SeveralRuns)  # that stop init for a file of a folder, too
 
-MOST_TOLD = 5  # files and reasons in one message
+MAX_LISTED = 5  # files and reasons in one message
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ def collect_files(paths: Sequence[Path], scratch: Path) -> CollectedFiles:
     """
     recordings, inside = gather(paths)
     by_path, refused = _look_into_all([*recordings, *inside], scratch)
-    ambiguous = [path for path in inside if isinstance(refused.get(path), ASKED)]
+    ambiguous = [path for path in inside if isinstance(refused.get(path), ASKED_ERRORS)]
     errors = [str(refused[path]) for path in (*recordings, *ambiguous) if path in refused]
     if errors:
         raise RovsimError("\n".join(errors))
@@ -122,7 +122,7 @@ def _check(
         formats.setdefault(motion.format, []).append(motion.named.name)
     if len(formats) > 1:
         descriptions = (
-            f"{name}: {', '.join(files[:MOST_TOLD])}" for name, files in formats.items()
+            f"{name}: {', '.join(files[:MAX_LISTED])}" for name, files in formats.items()
         )
         listed = "; ".join(descriptions)
         raise BadInput(
@@ -137,14 +137,14 @@ def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: obj
     """Make the error of files without a motion: why each was refused, and what may help."""
     content = "no recording"
     if logs:
-        content = f"commands alone ({', '.join(c.named.name for c in logs[:MOST_TOLD])})"
+        content = f"commands alone ({', '.join(c.named.name for c in logs[:MAX_LISTED])})"
     groups: dict[tuple[str, str], list[str]] = {}
     for error in refused:
         name = Path(error.where.partition(", ")[0]).name
         groups.setdefault((error.found, error.remedy), []).append(f"{name}{_place(error)}")
     reasons = [
-        f"{', '.join(names[:MOST_TOLD])}: {problem}"
-        for (problem, _), names in [*groups.items()][:MOST_TOLD]
+        f"{', '.join(names[:MAX_LISTED])}: {problem}"
+        for (problem, _), names in [*groups.items()][:MAX_LISTED]
     ]
     remedies = [remedy for _, remedy in groups if remedy]
     remedies += [note for log in logs for note in log.notes]
@@ -154,5 +154,5 @@ def _no_motion(logs: Sequence[Contents], refused: Sequence[BadInput], where: obj
         content + (f" ({'; '.join(reasons)})" if reasons else ""),
         where=where,
         expected="at least one file that tells how the vehicle moved",
-        remedy=" ".join([*dict.fromkeys(remedies)][:MOST_TOLD]),
+        remedy=" ".join([*dict.fromkeys(remedies)][:MAX_LISTED]),
     )

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, rotations
 from rovsim.intake import checks, sections
-from rovsim.intake.axes import BODY
+from rovsim.intake.axes import BODY_ROTATIONS
 from rovsim.intake.collect_files import collect_files
 from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts, find_facts
@@ -98,7 +98,7 @@ def _checked(facts: Facts) -> Iterator[str]:
 def _against_commands(facts: Facts, fit: VehicleMatch) -> Iterator[str]:
     """Tell of runs whose motion does not go with the motion that a vehicle's commands cause."""
     runs, body = facts.choice.runs, facts.axes.body
-    axes = BODY[body] if body else facts.choice.turned[0][1]
+    axes = BODY_ROTATIONS[body] if body else facts.choice.turned[0][1]
     most_excited = max(runs, key=lambda n: int(runs[n].excited.sum()))
     remarks = dict(_by_convention(facts, fit, axes, most_excited))
     if body and facts.choice.fit:

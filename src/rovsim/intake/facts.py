@@ -20,8 +20,8 @@ from rovsim.intake.together import list_stems
 from rovsim.intake.vehicles import VehicleMatch, fitting
 from rovsim.measurement.recording.readers import mocap_readers
 
-OTHER_LOG = "Run init for each kind of log, with another out=."
-ATTITUDE = (
+OTHER_LOG_REMEDY = "Run init for each kind of log, with another out=."
+ATTITUDE_REMEDY = (
     "If these are measured angles, name them after their unit: roll_deg, pitch_deg, yaw_deg, or "
     "roll_rad …; they are then read beside the rest of the run."
 )
@@ -144,7 +144,7 @@ def _check_same(first: CommandFile, log: CommandFile) -> None:
             f"{', '.join(first.drive.columns)}",
             where=log.path,
             expected="the same columns in every log of commands",
-            remedy=ATTITUDE if set(log.drive.columns) <= set(AXES[3:]) else OTHER_LOG,
+            remedy=ATTITUDE_REMEDY if set(log.drive.columns) <= set(AXES[3:]) else OTHER_LOG_REMEDY,
         )
 
 

@@ -4,10 +4,10 @@ from types import MappingProxyType
 from typing import Any, Iterator, Mapping
 
 from rovsim.intake.proposal import ANSWER, CampaignProposal
-from rovsim.intake.sections import KINDS, MEANING
+from rovsim.intake.sections import AXES_MEANINGS, KIND_MEANINGS
 from rovsim.reporting.wording import listed
 
-GUESS = "guess: "
+GUESS_PREFIX = "guess: "
 
 
 def list_taken(proposal: CampaignProposal) -> list[str]:
@@ -18,9 +18,9 @@ def list_taken(proposal: CampaignProposal) -> list[str]:
 def _taken(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     mocap, commands = content.get("mocap", {}), content.get("commands", {})
     yield "vehicle", _known(content, "vehicle")
-    yield "axes of the world", _meant(_known(mocap, "world_axes"), MEANING)
-    yield "axes of the body", _meant(_known(mocap, "body_axes"), MEANING)
-    yield "commands", _meant(_known(commands, "kind"), KINDS)
+    yield "axes of the world", _meant(_known(mocap, "world_axes"), AXES_MEANINGS)
+    yield "axes of the body", _meant(_known(mocap, "body_axes"), AXES_MEANINGS)
+    yield "commands", _meant(_known(commands, "kind"), KIND_MEANINGS)
     columns, axes = commands.get("columns", []), commands.get("axes", [])
     if isinstance(columns, list) and columns:
         pairs = [f"{c} ({a})" for c, a in zip(columns, axes, strict=False)] or columns
@@ -51,7 +51,7 @@ def list_guesses(
     runs: dict[str, list[str]] = {}  # ids of the runs that have a reason
     for place, lines in proposal.comments.items():
         for line in lines:
-            reason = line.removeprefix(GUESS)
+            reason = line.removeprefix(GUESS_PREFIX)
             if line == reason:
                 continue
             if place.startswith("runs."):

@@ -20,7 +20,7 @@ from rovsim.intake.survey.contents import CommandCandidate, Track
 from rovsim.intake.vehicles import VehicleMatch, convert_log
 from rovsim.measurement.rough_motion import Velocities, estimate_velocities
 
-LONGEST = 600.0  # s of commands that are looked at: minutes tell as much as hours
+MAX_COMPARED_S = 600.0  # of commands that are looked at: minutes tell as much as hours
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +80,7 @@ class CommandFile:
         commands = convert_log(self.drive, fit, self.path)
         if commands is None or len(commands.time) < 2:
             return None
-        return cause(fit.vehicle, commands, float(commands.time[0]), LONGEST)
+        return cause(fit.vehicle, commands, float(commands.time[0]), MAX_COMPARED_S)
 
 
 def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossCorrelation | None:
@@ -101,7 +101,7 @@ def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossC
     disjoint = clock[-1] < time[0] or time[-1] < clock[0]
     shift = float(clock[0] - time[0]) if disjoint else 0.0
     reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if disjoint else REACH
-    return cross_correlate(motion.measured, time, nu, shift, min(reach, LONGEST))
+    return cross_correlate(motion.measured, time, nu, shift, min(reach, MAX_COMPARED_S))
 
 
 def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:

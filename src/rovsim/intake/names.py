@@ -17,9 +17,9 @@ SENSORS = (
     "orientation|heading|compass|dvl|velocity|velocities|vel|speed|usbl|gps|position|pos|nav|ekf|odom|"
     "odometry|battery|voltage|bat|sensors?"
 )
-WORD = re.compile(rf"(^|[_\-\s.]+)({ROLES})(?=$|[_\-\s.]+)", re.IGNORECASE)
+ROLE_PATTERN = re.compile(rf"(^|[_\-\s.]+)({ROLES})(?=$|[_\-\s.]+)", re.IGNORECASE)
 # A number may follow at the end: `depth1` and `pwm1` are of run 1.
-OF_SENSOR = re.compile(rf"(^|[_\-\s.]+)({ROLES}|{SENSORS})(?=$|[_\-\s.]+|\d+$)", re.IGNORECASE)
+SENSOR_PATTERN = re.compile(rf"(^|[_\-\s.]+)({ROLES}|{SENSORS})(?=$|[_\-\s.]+|\d+$)", re.IGNORECASE)
 
 
 def run_key(stem: str) -> str:
@@ -37,7 +37,7 @@ def sensor_key(stem: str) -> str:
 
 def without_sensor(stem: str) -> str:
     """Remove from a file's stem the words for its role and for its sensor."""
-    return _without(OF_SENSOR, stem)
+    return _without(SENSOR_PATTERN, stem)
 
 
 def run_ids(stems: Sequence[str]) -> list[str]:
@@ -54,7 +54,7 @@ def run_ids(stems: Sequence[str]) -> list[str]:
 
 
 def _without_role(stem: str) -> str:
-    return _without(WORD, stem)
+    return _without(ROLE_PATTERN, stem)
 
 
 def _without(words: re.Pattern[str], stem: str) -> str:

@@ -8,7 +8,7 @@ from rovsim.intake.collect_files import CollectedFiles
 from rovsim.intake.names import campaign_name
 from rovsim.intake.survey.contents import Contents
 
-CONVERTED = "converted"  # folder of copies whose columns have rovsim's names and units
+CONVERTED_FOLDER = "converted"  # folder of copies whose columns have rovsim's names and units
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Places:
     def _place(self, one: Contents) -> str:
         if one.original is None:
             return _relative(one.path.absolute(), self.base)
-        names = (f"{CONVERTED}/{k or ''}{one.path.name}" for k in range(len(self.names) + 1))
+        names = (f"{CONVERTED_FOLDER}/{k or ''}{one.path.name}" for k in range(len(self.names) + 1))
         self.copies[one.path] = next(n for n in names if n not in self.copies.values())
         return _relative(self.out / self.copies[one.path], self.base)
 

@@ -13,17 +13,19 @@ from rovsim.intake.places import Places
 from rovsim.intake.spans import RunEntry, list_run_entries
 from rovsim.intake.survey.timing import RowTiming
 
-# rad/s that the commands alone would cause in yaw: beyond, the pilot turned the vehicle. Roll and
+# rad/s in yaw that the commands alone would cause: beyond, the pilot turned the vehicle. Roll and
 # pitch do not tell: whoever pushes below CO has to hold them.
-TURNING = 0.2
-NOTHING = (
+MIN_TURN_RATE = 0.2
+NO_LOG_COMMENT = (
     "guess: no log of commands was among the files, and 'none' says that nothing was commanded. If "
     "there is one, put it beside them and begin again"
 )
 
 
-PART = "guess: a run of its own, for nothing was recorded for {:.0f} s before it"
-FIRST = "guess: several runs are in this file, one after the other; 'use' says where each is"
+PART_COMMENT = "guess: a run of its own, for nothing was recorded for {:.0f} s before it"
+FIRST_COMMENT = (
+    "guess: several runs are in this file, one after the other; 'use' says where each is"
+)
 
 
 def runs(facts: Facts, places: Places, draft: CampaignDraft) -> None:
@@ -52,9 +54,9 @@ def runs(facts: Facts, places: Places, draft: CampaignDraft) -> None:
 def _remarks(facts: Facts, one: RunEntry) -> list[str]:
     """List comments on a run: what its files hold, and why it is a run."""
     if one.pause:
-        return [PART.format(one.pause)]
+        return [PART_COMMENT.format(one.pause)]
     comments = [*described(facts.pairs[one.file]), *facts.motions[one.file].notes]
-    return [*comments, FIRST] if one.use else comments
+    return [*comments, FIRST_COMMENT] if one.use else comments
 
 
 def described(one: Pair) -> list[str]:
@@ -93,7 +95,7 @@ def _log(facts: Facts, run: RunEntry, place: str, places: Places, draft: Campaig
     if pair.log is not None:
         return places.of(pair.log.path)
     if not pair.options:
-        draft.say(place, NOTHING)
+        draft.say(place, NO_LOG_COMMENT)
         return "none"
     answers = {places.of(log.path): "" for log in pair.options} | {"none": "nothing was commanded"}
     asks = f"Which file holds the commands of {run.id} ({pair.said})?"
@@ -109,7 +111,7 @@ def _control(facts: Facts, run: RunEntry) -> tuple[str, str]:
     if caused is None:
         return "6dof", "guess: 6dof, for nothing says that it was never turned"
     spread = float(_during(run, *caused).std(axis=0)[5])
-    name = "6dof" if spread > TURNING else "3dof"
+    name = "6dof" if spread > MIN_TURN_RATE else "3dof"
     return name, f"guess: {name}, by how much its commands turn it ({spread:.2f} rad/s in yaw)"
 
 

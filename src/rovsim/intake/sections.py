@@ -11,7 +11,7 @@ from rovsim.intake.facts import Facts
 from rovsim.intake.survey.contents import CommandCandidate
 from rovsim.measurement.recording.readers import mocap_readers
 
-MEANING = {
+AXES_MEANINGS = {
     "z_up": "right-handed, z up",
     "ned": "right-handed, z down",
     "y_up": "right-handed, y up: what Motive exports unless it was changed",
@@ -19,13 +19,13 @@ MEANING = {
     "frd": "x forward, y right, z down",
     "fur": "x forward, y up, z right",
 }
-KINDS = {
+KIND_MEANINGS = {
     "pwm": "pulses in µs, 1500 at rest",
     "normalized": "-1 to 1 for each thruster",
     "demand": "-1 to 1 for each axis, through the vehicle's mixer",
     "wrench": "N and N m for each axis",
 }
-WALLS = (
+WALLS_COMMENT = (
     "tank: {{x: [0, 10], y: [0, 5], z: [0, 3]}} would tell walls, floor and surface (m, along the "
     "axes of the world); the motion is within {}"
 )
@@ -63,7 +63,7 @@ def mocap(facts: Facts, draft: CampaignDraft) -> None:
             "its time",
         )
     if track.posed:
-        draft.say("mocap", WALLS.format(_extent(track.export.position[track.export.found])))
+        draft.say("mocap", WALLS_COMMENT.format(_extent(track.export.position[track.export.found])))
 
 
 def _extent(position: Array) -> str:
@@ -86,7 +86,7 @@ def _axes(facts: Facts, draft: CampaignDraft, section: dict[str, Any]) -> None:
         ("body_axes", axes.body, file_axes.body, "rigid body"),
     ):
         asks = f"Which way do the axes of the {owner} point{reason}?{level}"
-        meanings: dict[str, str] = {name: MEANING[name] for name in choices}
+        meanings: dict[str, str] = {name: AXES_MEANINGS[name] for name in choices}
         section[key] = answer or draft.ask(f"mocap.{key}", asks, meanings)
 
 
@@ -123,7 +123,7 @@ def _kinds(facts: Facts) -> dict[str, str]:
     """List kinds to choose from: only demand and wrench for columns that are named after axes."""
     of_axes = ("demand", "wrench")
     named_by_axis = facts.kind_asked and _first_asked(facts).kind in of_axes
-    return {name: KINDS[name] for name in (of_axes if named_by_axis else KINDS)}
+    return {name: KIND_MEANINGS[name] for name in (of_axes if named_by_axis else KIND_MEANINGS)}
 
 
 def _columns(facts: Facts, draft: CampaignDraft) -> list[str] | str:

@@ -9,8 +9,8 @@ import numpy as np
 from rovsim.intake.facts import Facts
 from rovsim.measurement.recording.exports import Export
 
-PAUSE = 30.0  # s without the body: within a run, cameras lose it for less
-SHORT = 10.0  # s: what lasts less between two pauses is no run
+MIN_PAUSE_S = 30.0  # without the body: within a run, cameras lose it for less
+MIN_RUN_S = 10.0  # what lasts less between two pauses is no run
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ def list_run_entries(facts: Facts) -> list[RunEntry]:
 def find_run_spans(export: Export) -> list[tuple[float, float]]:
     """Find the first and last time in s of each run in a file; none where it is one run."""
     time = export.time[export.found] if export.found.any() else export.time
-    pauses = np.flatnonzero(np.diff(time) > PAUSE)
+    pauses = np.flatnonzero(np.diff(time) > MIN_PAUSE_S)
     begins, ends = time[np.append(0, pauses + 1)], time[np.append(pauses, len(time) - 1)]
-    long = ends - begins >= SHORT
+    long = ends - begins >= MIN_RUN_S
     if len(pauses) == 0 or long.sum() < 2:
         return []
     return list(zip(begins[long].tolist(), ends[long].tolist(), strict=True))

@@ -11,8 +11,8 @@ from rovsim.intake.survey import Contents, Track
 from rovsim.measurement.recording.joined import FULL_POSES, POSE_CHANNELS, join, list_held, span_of
 from rovsim.measurement.recording.tidying import tidy_export
 
-FORMAT = "csv"  # other formats hold all sensors of a run in one file
-BESIDE = 0.5  # share of the shorter file that lies beside another of its run
+JOINED_FORMAT = "csv"  # other formats hold all sensors of a run in one file
+MIN_OVERLAP_SHARE = 0.5  # of the shorter file that lies beside another of its run
 
 
 def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tuple[str, ...]]:
@@ -22,7 +22,7 @@ def put_together(motions: Sequence[Contents]) -> tuple[tuple[Contents, ...], tup
         One entry for each run, in the order of their first files, and sentences about files that
         may be of one run but could not be put together.
     """
-    if len(motions) < 2 or any(contents.format != FORMAT for contents in motions):
+    if len(motions) < 2 or any(contents.format != JOINED_FORMAT for contents in motions):
         return tuple(motions), ()
     runs, notes = _by_name(motions)
     if len(runs) == len(motions) and not notes:
@@ -101,9 +101,9 @@ def _at_that_time(one: Contents, groups: Sequence[Sequence[Contents]]) -> Iterat
 
 
 def _beside(one: Contents, other: Contents) -> bool:
-    """Whether two files overlap in time by more than `BESIDE` of the shorter one."""
+    """Whether two files overlap in time by more than `MIN_OVERLAP_SHARE` of the shorter one."""
     (a, b), (c, d) = (span_of(x.tracks[0].export) for x in (one, other))
-    return min(b, d) - max(a, c) > BESIDE * min(b - a, d - c)
+    return min(b, d) - max(a, c) > MIN_OVERLAP_SHARE * min(b - a, d - c)
 
 
 def _one_each(run: Sequence[Contents], groups: Sequence[Sequence[Contents]]) -> bool:

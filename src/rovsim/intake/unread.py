@@ -10,7 +10,7 @@ from rovsim.intake.pairing import Pair
 from rovsim.intake.spans import list_run_entries
 from rovsim.intake.survey.contents import Contents
 
-MOST = 20  # names of columns or files in a sentence
+MAX_LISTED = 20  # names of columns or files in a sentence
 
 
 def list_unread(facts: Facts, draft: CampaignDraft) -> list[str]:
@@ -56,5 +56,5 @@ def _left(one: Contents, facts: Facts, draft: CampaignDraft) -> tuple[str, ...]:
 
 
 def _named(names: Sequence[str]) -> str:
-    suffix = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return ", ".join(names[:MOST]) + suffix
+    suffix = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+    return ", ".join(names[:MAX_LISTED]) + suffix

@@ -16,7 +16,7 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.tidying import tidy_commands
 
-OUTPUTS = "SERVO"  # columns of a log that may hold more outputs than thrusters
+OUTPUT_PREFIX = "SERVO"  # columns of a log that may hold more outputs than thrusters
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ def _fit(name: str, drive: CommandCandidate) -> VehicleMatch | None:
         kind = drive.kind or _kind(drive, vehicle)
         return VehicleMatch(name, vehicle, expected, kind, own_names) if kind else None
     count = len(expected)
-    outputs = all(column.startswith(OUTPUTS) for column in drive.columns)
+    outputs = all(column.startswith(OUTPUT_PREFIX) for column in drive.columns)
     if drive.kind is None or not count or len(drive.columns) < count or any(vehicle.angles):
         return None
     if len(drive.columns) == count or outputs:

@@ -7,7 +7,7 @@ from rovsim.core.files import copy_file, write_text
 from rovsim.intake.proposal import CampaignProposal
 from rovsim.intake.yaml_file import as_yaml
 
-FILE = "campaign.yaml"
+CAMPAIGN_FILE = "campaign.yaml"
 
 
 def check_place(out: Path, force: bool = False) -> None:
@@ -16,7 +16,7 @@ def check_place(out: Path, force: bool = False) -> None:
     Raises:
         BadInput: `out` has a campaign.yaml and `force` is false, or is not a folder.
     """
-    file = out / FILE
+    file = out / CAMPAIGN_FILE
     if out.exists() and not out.is_dir():
         raise BadInput(
             "is not a folder", where=out, expected="a folder", remedy="Give another out=."
@@ -47,5 +47,5 @@ def write_proposal(proposal: CampaignProposal, out: Path, force: bool = False) -
     check_place(out, force)
     for place, name in proposal.copies.items():
         copy_file(place, out / name)
-    write_text(out / FILE, as_yaml(proposal))
-    return out / FILE
+    write_text(out / CAMPAIGN_FILE, as_yaml(proposal))
+    return out / CAMPAIGN_FILE

@@ -9,8 +9,8 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from rovsim.intake.proposal import CampaignProposal, OpenQuestion
 
-WIDTH = 110
-HEAD = (
+MAX_LINE_WIDTH = 110
+HEADER = (
     "Written by `rovsim init` from what stands in the recordings. Values without a comment were "
     "found there; 'guess' marks what may be otherwise, and says why it was taken. docs/formats.md "
     "explains the keys."
@@ -27,7 +27,7 @@ def as_yaml(proposal: CampaignProposal) -> str:
         comments.setdefault(question.place, []).extend(_asked(question))
     for place, lines in comments.items():
         _write(document, place.split("."), lines)
-    document.yaml_set_start_comment(_wrapped([HEAD, *_open(proposal)], WIDTH))
+    document.yaml_set_start_comment(_wrapped([HEADER, *_open(proposal)], MAX_LINE_WIDTH))
     yaml, text = YAML(), io.StringIO()
     yaml.width, yaml.allow_unicode = 1 << 16, True
     yaml.indent(mapping=2, sequence=4, offset=2)
@@ -84,7 +84,7 @@ def _write(document: CommentedMap, place: list[str], lines: list[str]) -> None:
 
 def _above(node: Any, key: Any, lines: list[str], depth: int) -> None:
     existing = node.ca.items.get(key)
-    comments = [*_texts(existing), _wrapped(lines, WIDTH - depth)]
+    comments = [*_texts(existing), _wrapped(lines, MAX_LINE_WIDTH - depth)]
     node.yaml_set_comment_before_after_key(key, before="\n".join(comments), indent=depth)
 
 

@@ -19,9 +19,9 @@ from rovsim.measurement.recording.formats.rosbag2.motion import POSE_TYPES, read
 from rovsim.measurement.recording.tidying import tidy_export
 
 # Topics that say where the vehicle should be, or where something else is: never read.
-WISHES = re.compile(r"goal|waypoint|setpoint|initialpose|target|desired|landing|mission|gp_", re.I)
+GOALS = re.compile(r"goal|waypoint|setpoint|initialpose|target|desired|landing|mission|gp_", re.I)
 # Key of `mocap.topics` -> message types, regex of topics preferred, regex of topics never taken.
-CHANNELS = {
+CHANNEL_TOPICS = {
     "imu": (("Imu",), "data$", "raw"),
     "depth": (("FluidPressure",), "static|depth|bar", "diff"),
     "velocity": (
@@ -32,7 +32,7 @@ CHANNELS = {
     "battery": (("BatteryState",), "battery", "$^"),
 }
 # Message types of commands, in order of preference: what was sent to the thrusters comes first.
-OUTPUTS = (
+COMMAND_TYPES = (
     "RCOut",
     "MultiArray",
     "Wrench",
@@ -42,11 +42,11 @@ OUTPUTS = (
     "RCIn",
 )
 
-NOT_POSES = (
+NO_POSES_NOTE = (
     "Transforms on {} are not read: write the vehicle's to a topic of PoseStamped or "
     "TransformStamped, and record that."
 )
-NOT_COMMANDS = (
+NO_COMMANDS_NOTE = (
     "{} says how fast the vehicle should be, and not what was sent to its thrusters: record RCOut, "
     "a MultiArray, a Wrench or ManualControl as well"
 )
@@ -63,7 +63,7 @@ def look_into_bag(path: Path) -> Contents:
         topics = bag.topics
         drives = tuple(_drives(bag, notes))
     poses = _pose_topics(topics)
-    channels = {key: topic for key in CHANNELS if (topic := _channel(topics, key))}
+    channels = {key: topic for key in CHANNEL_TOPICS if (topic := _channel(topics, key))}
     tracks = tuple(_tracks(path, poses, notes))
     if not tracks and channels:
         tracks = tuple(_of_channels(path, channels, notes))
@@ -71,8 +71,10 @@ def look_into_bag(path: Path) -> Contents:
         listed = ", ".join(f"{key}: {topic}" for key, topic in channels.items())
         notes.append(f"{path.name}: the bag also holds {listed}; 'mocap.topics' would read them.")
     if not tracks:
-        notes += _unread(topics, "", "TFMessage", NOT_POSES)
-    command_notes = () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NOT_COMMANDS)
+        notes += _unread(topics, "", "TFMessage", NO_POSES_NOTE)
+    command_notes = (
+        () if drives else _unread(topics, "cmd|command|teleop", "Twist.*", NO_COMMANDS_NOTE)
+    )
     if tracks or drives:
         return Contents(
             path, "rosbag2", tracks, drives, notes=tuple(notes), unknown=" ".join(command_notes)
@@ -105,7 +107,7 @@ def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[s
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:
     """List topics that hold poses of the vehicle, Odometry last."""
-    poses = [t for t, kind in topics.items() if _short(kind) in POSE_TYPES and not WISHES.search(t)]
+    poses = [t for t, kind in topics.items() if _short(kind) in POSE_TYPES and not GOALS.search(t)]
     alone = [t for t in poses if _short(topics[t]) != "Odometry"]
     stems = {t.rsplit("/", 1)[0] for t in alone}
     # Odometry in the namespace of a pose repeats that pose
@@ -118,13 +120,13 @@ def _short(kind: str) -> str:
 
 def _channel(topics: dict[str, str], key: str) -> str | None:
     """Return the topic to read for a key of `mocap.topics`; None where the bag has none."""
-    types, preferred, excluded = CHANNELS[key]
+    types, preferred, excluded = CHANNEL_TOPICS[key]
     candidates = [
         topic
         for topic, kind in topics.items()
         if _short(kind) in types
         and not re.search(excluded, topic, re.I)
-        and not WISHES.search(topic)
+        and not GOALS.search(topic)
     ]
     if key == "velocity":
         candidates = [
@@ -154,9 +156,9 @@ def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterat
 
 
 def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
-    """Read what may be commands, in the order of `OUTPUTS`; notes tell of what cannot be read."""
+    """Read what may be commands, by `COMMAND_TYPES`; notes tell of what cannot be read."""
     outputs = [
-        t for t in bag.topics if _place(bag.topics[t]) < len(OUTPUTS) and not WISHES.search(t)
+        t for t in bag.topics if _place(bag.topics[t]) < len(COMMAND_TYPES) and not GOALS.search(t)
     ]
     for topic in sorted(outputs, key=lambda topic: _place(bag.topics[topic])):
         try:
@@ -168,9 +170,9 @@ def _drives(bag: Bag, notes: list[str]) -> Iterator[CommandCandidate]:
 
 
 def _place(kind: str) -> int:
-    """Return the position of a message type in `OUTPUTS`, its length where it is no command."""
-    ranks = [k for k, name in enumerate(OUTPUTS) if _short(kind).endswith(name)]
-    return min(ranks, default=len(OUTPUTS))
+    """Return the position of a type in `COMMAND_TYPES`, its length where it is no command."""
+    ranks = [k for k, name in enumerate(COMMAND_TYPES) if _short(kind).endswith(name)]
+    return min(ranks, default=len(COMMAND_TYPES))
 
 
 def _drive(bag: Bag, topic: str) -> CommandCandidate:

@@ -10,7 +10,7 @@ from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
 from rovsim.measurement.recording.tables.units import TIME_FACTORS, split_unit
 
 # Our name -> regex of names that mean the same, once unit, brackets and case are removed.
-FORMS = {
+NAME_PATTERNS = {
     TIME_COLUMN: "t|(time_?)?stamp|(date_?)?time|utc(_time)?|secs?|seconds|elapsed(_time)?|"
     "time_boot|rostime",
     **{
@@ -28,11 +28,11 @@ FORMS = {
     **{ours: ours.removesuffix("_rad_s") for ours in ANGULAR},
     "depth_m": "depth",
 }
-FORMS["roll_rad"] += "|phi"
-FORMS["pitch_rad"] += "|theta"
-FORMS["yaw_rad"] += "|psi|heading"
+NAME_PATTERNS["roll_rad"] += "|phi"
+NAME_PATTERNS["pitch_rad"] += "|theta"
+NAME_PATTERNS["yaw_rad"] += "|psi|heading"
 # Columns of a ROS topic with poses: the group of our channels, and the regex of their names.
-IN_POSES = (
+POSE_TOPIC_COLUMNS = (
     (POSITION, r"(.*_pose)_position_([xyz])"),
     (QUATERNION, r"(.*_pose)_orientation_([wxyz])"),
 )
@@ -48,7 +48,7 @@ def find_columns(lines: Lines) -> dict[str, int]:
         Positions of columns, by our names; without channels that the file lacks.
     """
     names = list(map(split_unit, lines.names))
-    columns = ((ours, next(_places(ours, lines, names), None)) for ours in FORMS)
+    columns = ((ours, next(_places(ours, lines, names), None)) for ours in NAME_PATTERNS)
     return _of_a_topic(names) | {ours: place for ours, place in columns if place is not None}
 
 
@@ -58,7 +58,7 @@ def _places(ours: str, lines: Lines, names: Sequence[tuple[str, str]]) -> Iterat
     fitting = [k for k, (_, unit) in enumerate(names) if not unit or _fits(ours, unit)]
     bare_name = split_unit(ours)[0]
     yield from (k for k in fitting if names[k][0] == bare_name)
-    yield from (k for k in fitting if re.fullmatch(FORMS[ours], names[k][0]))
+    yield from (k for k in fitting if re.fullmatch(NAME_PATTERNS[ours], names[k][0]))
 
 
 def _fits(ours: str, unit: str) -> bool:
@@ -68,7 +68,7 @@ def _fits(ours: str, unit: str) -> bool:
 def _of_a_topic(names: Sequence[tuple[str, str]]) -> dict[str, int]:
     """Find positions and quaternions of a ROS topic, if exactly one topic has all components."""
     columns: dict[str, int] = {}
-    for group, form in IN_POSES:
+    for group, form in POSE_TOPIC_COLUMNS:
         topics: dict[str, dict[str, int]] = defaultdict(dict)
         for k, (stem, _) in enumerate(names):
             if part := re.fullmatch(form, stem):

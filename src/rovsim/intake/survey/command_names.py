@@ -11,18 +11,18 @@ from rovsim.measurement.recording.commands import guess_unit
 from rovsim.measurement.recording.tables.units import in_words
 
 # Axis -> regex of names in lower case with underscores, without their units.
-WRENCH = dict(
+WRENCH_NAMES = dict(
     zip(
         AXES,
         [rf"(.*_)?({word})_?{axis}" for word in ("f|force", "m|t|moment|torque") for axis in "xyz"],
         strict=True,
     )
 )
-SNAME = dict(zip(AXES, "xyzkmn", strict=True))  # X Y Z K M N (SNAME 1950)
-FORCE = r"_?(n|nm|n_m|n\*m)"
-NO_SHARE = re.compile(r".*[\W_](n|nm|n_m|%|percent|pct|rpm)\W*", re.IGNORECASE)
-OF_A_FORCE = re.compile(r".*[\W_]n\W*", re.IGNORECASE)
-POSE = re.compile(
+SNAME_LETTERS = dict(zip(AXES, "xyzkmn", strict=True))  # X Y Z K M N (SNAME 1950)
+FORCE_UNIT = r"_?(n|nm|n_m|n\*m)"
+OTHER_UNIT_NAME = re.compile(r".*[\W_](n|nm|n_m|%|percent|pct|rpm)\W*", re.IGNORECASE)
+FORCE_NAME = re.compile(r".*[\W_]n\W*", re.IGNORECASE)
+POSE_NAME = re.compile(
     r"(?!tau)(^|[^a-z])(p?[xyz]|q[wxyz]|roll|pitch|yaw|heading|lat|lon|alt(itude)?|depth|position|"
     r"orientation|east|north|up)([^a-z]|$)",
     re.IGNORECASE,
@@ -41,12 +41,14 @@ def find_wrench(names: Collection[str]) -> dict[str, str]:
     """
     by_stem = {stem(name): name for stem in (in_words, _without_force) for name in names}
     for form in ("{}", "tau_{}", "tau{}"):
-        if all(form.format(letter) in by_stem for letter in SNAME.values()):
-            return {axis: by_stem[form.format(letter)] for axis, letter in SNAME.items()}
+        if all(form.format(letter) in by_stem for letter in SNAME_LETTERS.values()):
+            return {axis: by_stem[form.format(letter)] for axis, letter in SNAME_LETTERS.items()}
     by_axis: dict[str, str] = {}
     for stem, name in by_stem.items():
         axis = stem if stem in AXES and stem != in_words(name) else None
-        axis = axis or next((a for a, form in WRENCH.items() if re.fullmatch(form, stem)), None)
+        axis = axis or next(
+            (a for a, form in WRENCH_NAMES.items() if re.fullmatch(form, stem)), None
+        )
         if axis:
             by_axis.setdefault(axis, name)
     if len(by_axis) < 2 or not set(AXES[:3]) & by_axis.keys():
@@ -57,12 +59,12 @@ def find_wrench(names: Collection[str]) -> dict[str, str]:
 def _without_force(name: str) -> str:
     """Write a name in lower case with underscores, without a unit of forces or moments."""
     text = in_words(name)
-    return re.sub(rf"{FORCE}$", "", text) if re.search(rf"_{FORCE[2:]}$", text) else text
+    return re.sub(rf"{FORCE_UNIT}$", "", text) if re.search(rf"_{FORCE_UNIT[2:]}$", text) else text
 
 
 def has_other_unit(name: str) -> bool:
     """Whether a name states a unit (N, %, rpm …) that neither pulses nor shares have."""
-    return bool(NO_SHARE.fullmatch(name))
+    return bool(OTHER_UNIT_NAME.fullmatch(name))
 
 
 def are_sticks(columns: Mapping[str, Array]) -> bool:
@@ -82,9 +84,9 @@ def hint(columns: Mapping[str, Array]) -> str:
             "They may be MANUAL_CONTROL: write surge = x / 1000, sway = y / 1000, heave = "
             "(500 - z) / 500 where 500 is neutral, and yaw = r / 1000"
         )
-    if any(POSE.search(name) for name in columns):
+    if any(POSE_NAME.search(name) for name in columns):
         return "They may be a pose: name them x_m, y_m, … as docs/formats.md does"
-    if all(OF_A_FORCE.fullmatch(name) for name in columns):
+    if all(FORCE_NAME.fullmatch(name) for name in columns):
         return (
             "They are forces in N by their names: add them up to the wrench on the vehicle, with "
             "columns surge … yaw in N and N m, kind wrench"

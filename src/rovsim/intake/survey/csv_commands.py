@@ -16,10 +16,10 @@ from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, find_
 from rovsim.measurement.recording.commands import MAX_PERCENT, UNIT_RANGES, are_pulses, guess_unit
 from rovsim.measurement.recording.tables.delimited import Lines
 
-RADIO = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
-THOUSANDTHS = 1050.0  # how far shares of a full stick reach that were multiplied by 1000
-NEAR_HALF = 0.1  # of commands whose medians lie so near to it
-HALF = "numbers within 0 and 1 about 0.5; if 0.5 is at rest, write 2 x - 1 and normalized"
+RADIO_CHANNEL = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
+MAX_THOUSANDTHS = 1050.0  # how far shares of a full stick reach that were multiplied by 1000
+HALF_TOLERANCE = 0.1  # of commands whose medians lie so near to it
+HALF_AT_REST = "numbers within 0 and 1 about 0.5; if 0.5 is at rest, write 2 x - 1 and normalized"
 
 
 def find_commands(lines: Lines, others: TimedColumns) -> CommandCandidate | None:
@@ -98,7 +98,7 @@ def _logged(time: Array, columns: dict[str, Array], likely: "_LikelyCommands") -
         kind,
         reason,
         rest={name: column for name, column in columns.items() if name not in names},
-        asked=kind == "wrench" or reason == HALF,
+        asked=kind == "wrench" or reason == HALF_AT_REST,
     )
 
 
@@ -111,7 +111,7 @@ def _radio(columns: dict[str, Array]) -> dict[str, str]:
     numbered = {
         f"RC{int(match[1])}": name
         for name, value in columns.items()
-        if (match := RADIO.fullmatch(name)) and within(value, "pwm")
+        if (match := RADIO_CHANNEL.fullmatch(name)) and within(value, "pwm")
     }
     return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
 
@@ -150,7 +150,7 @@ def _likely_commands(columns: dict[str, Array]) -> _LikelyCommands:
     shares = [name for name in plain if within(columns[name], "normalized")]
     if shares and len(shares) == len(columns):
         if _rests_at_half([columns[name] for name in shares]):
-            return _LikelyCommands("normalized", ordered(shares), HALF)
+            return _LikelyCommands("normalized", ordered(shares), HALF_AT_REST)
         return _LikelyCommands("normalized", ordered(shares), "all within -1 and 1")
     numbered = [name for name in columns if re.search(r"\d$", name)]
     reason = _sizes([columns[name] for name in numbered])
@@ -161,7 +161,7 @@ def _rests_at_half(values: list[Array]) -> bool:
     """Whether shares lie within 0 and 1, about the middle: then 0.5 may be at rest."""
     low, high = find_range(values)
     usual = float(np.median([np.nanmedian(value) for value in values]))
-    return low >= 0.0 and high <= 1.0 and low < 0.5 < high and abs(usual - 0.5) < NEAR_HALF
+    return low >= 0.0 and high <= 1.0 and low < 0.5 < high and abs(usual - 0.5) < HALF_TOLERANCE
 
 
 def within(value: Array, kind: LoggedKind) -> bool:
@@ -187,7 +187,7 @@ def _wrench(values: list[Array]) -> str:
     remark = f"named after axes, beyond -1 and 1 ({low:.4g} to {high:.4g})"
     if max(-low, high) <= MAX_PERCENT:
         return f"{remark}. If these are percent, divide them by 100 and write demand"
-    if max(-low, high) <= THOUSANDTHS:
+    if max(-low, high) <= MAX_THOUSANDTHS:
         return f"{remark}. If these are thousandths, divide them by 1000 and write demand"
     return remark
 

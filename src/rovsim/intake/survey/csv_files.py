@@ -21,7 +21,7 @@ from rovsim.measurement.recording.tables.delimited import Lines, csv_lines
 from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN, no_time
 from rovsim.measurement.recording.tidying import tidy_export
 
-EXPECTED = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
+EXPECTED_COMMANDS = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
 
 
 class UnknownColumns(BadInput):
@@ -96,7 +96,7 @@ def _nothing(path: Path, lines: Lines, unknown: str) -> BadInput:
     return UnknownColumns(
         f"no measured channel, and no commands that rovsim knows: {unknown}",
         where=path,
-        expected=EXPECTED,
+        expected=EXPECTED_COMMANDS,
         remedy="Convert them, name the columns after measurements with their units, or leave the "
         "file out.",
     )

@@ -6,12 +6,12 @@ from typing import Sequence
 from rovsim.core.errors import BadInput
 from rovsim.intake.survey.sniff import sniff
 
-STORAGE = (".db3", ".mcap")
-# Bytes that a reader takes into memory at once, several times over; bags are read bit by bit.
-LARGEST = 1 << 30
-MANY = 500  # files in a folder: more is no folder of recordings
+BAG_SUFFIXES = (".db3", ".mcap")
+# A reader takes so much into memory at once, several times over; bags are read bit by bit.
+MAX_BYTES = 1 << 30
+MAX_FILES = 500  # in a folder: more is no folder of recordings
 # Names of what rovsim itself writes into such folders, or keeps beside recordings.
-OTHERS = ("campaign.yaml", "truth.yaml", "metadata.yaml")
+IGNORED_FILES = ("campaign.yaml", "truth.yaml", "metadata.yaml")
 
 
 def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
@@ -40,7 +40,9 @@ def gather(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
 
 def is_bag(path: Path) -> bool:
     """Whether a folder is a ROS 2 bag: its files belong together."""
-    storage = any(file.suffix in STORAGE for file in path.iterdir()) if path.is_dir() else False
+    storage = (
+        any(file.suffix in BAG_SUFFIXES for file in path.iterdir()) if path.is_dir() else False
+    )
     return storage and (path / "metadata.yaml").is_file()
 
 
@@ -69,22 +71,22 @@ def _is_recording(path: Path) -> bool:
 
 def _directly_within(folder: Path) -> list[Path]:
     entries = sorted(p for p in folder.iterdir() if not p.name.startswith("."))
-    if len(entries) > MANY:
+    if len(entries) > MAX_FILES:
         raise BadInput(
             f"{len(entries)} files",
             where=folder,
-            expected=f"a folder of recordings, at most {MANY} files",
+            expected=f"a folder of recordings, at most {MAX_FILES} files",
             remedy="Name the recordings themselves, or put them into a folder of their own.",
         )
     bags = [p for p in entries if p.is_dir() and is_bag(p)]
-    files = [p for p in entries if p.is_file() and p.name not in OTHERS and p.stat().st_size]
-    return bags + [p for p in files if p.suffix in STORAGE or p.stat().st_size <= LARGEST]
+    files = [p for p in entries if p.is_file() and p.name not in IGNORED_FILES and p.stat().st_size]
+    return bags + [p for p in files if p.suffix in BAG_SUFFIXES or p.stat().st_size <= MAX_BYTES]
 
 
 def _checked(path: Path) -> Path:
-    if path.is_dir() or (path.is_file() and 0 < path.stat().st_size <= LARGEST):
+    if path.is_dir() or (path.is_file() and 0 < path.stat().st_size <= MAX_BYTES):
         return path
-    if path.is_file() and path.suffix in STORAGE and path.stat().st_size:
+    if path.is_file() and path.suffix in BAG_SUFFIXES and path.stat().st_size:
         return path
     if not path.exists():
         problem, remedy = "no such file or folder", "Check the path."

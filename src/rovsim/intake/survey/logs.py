@@ -14,7 +14,7 @@ from rovsim.measurement.recording.formats.ardupilot.motion import read_log
 from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog
 from rovsim.measurement.recording.tidying import tidy_export
 
-MOST = 16  # outputs and channels of a log
+MAX_CHANNELS = 16  # outputs and channels of a log
 
 
 def look_into_log(path: Path) -> Contents:
@@ -35,7 +35,7 @@ def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
         if name not in log.series:
             continue
         series = log.series[name]
-        value = series.of([field.format(k) for k in range(1, MOST + 1)])
+        value = series.of([field.format(k) for k in range(1, MAX_CHANNELS + 1)])
         channels = np.flatnonzero((~absent(value) & np.isfinite(value)).any(axis=0)) + 1
         if kind == "SERVO" and len(channels):
             columns = tuple(f"SERVO{k}" for k in channels)

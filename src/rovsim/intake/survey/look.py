@@ -17,7 +17,7 @@ from rovsim.measurement.recording.tidying import tidy_export
 
 # Formats whose files may hold commands, or sensors to choose from, and what finds these. For every
 # other format its reader, which is found by itself, lists the bodies.
-WITH_COMMANDS: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
+LOOKS_BY_FORMAT: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
     "csv": look_into_csv,
     "rosbag2": lambda path, scratch, units: look_into_bag(path),
     "ardupilot": lambda path, scratch, units: look_into_log(path),
@@ -37,8 +37,8 @@ def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType
     """
     try:
         name = sniff(path)
-        if name in WITH_COMMANDS:
-            return WITH_COMMANDS[name](path, scratch, units)
+        if name in LOOKS_BY_FORMAT:
+            return LOOKS_BY_FORMAT[name](path, scratch, units)
         return _of_bodies(path, mocap_readers()[name])
     except OSError as error:
         raise BadInput(

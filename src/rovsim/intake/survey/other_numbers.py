@@ -18,18 +18,18 @@ from rovsim.measurement.recording.tables.numbers import numbers
 from rovsim.measurement.recording.tables.times import times
 
 # Columns that count or monitor something, whatever the size of their numbers.
-WATCHED = re.compile(
+MONITORED_NAMES = re.compile(
     r"(frame|index|idx|count|seq|id|line|row|unnamed.*|volt.*|battery.*|bat|current.*|amp.*|temp.*|"
     r"pressure.*|mode|armed|status|quality|residual|sec|nsec|stamp|time.*|)(_.*)?",
     re.IGNORECASE,
 )
-SOME = 0.5  # share of the lines in which a column of commands has a value
-FEWEST = 10  # lines of a series on lines of its own
+MIN_FILLED_SHARE = 0.5  # of the lines in which a column of commands has a value
+MIN_LINES = 10  # of a series on lines of its own
 TimedColumns = tuple[Array, dict[str, Array]]  # times (m,) s, and columns (m,) by their names
 
 
 def read_others(lines: Lines) -> TimedColumns:
-    """Read columns of numbers that are neither channels nor `WATCHED`; none without times."""
+    """Read columns of numbers, neither channels nor `MONITORED_NAMES`; none without times."""
     if TIME_COLUMN not in lines.names:
         return np.empty(0), {}
     names = [
@@ -37,7 +37,7 @@ def read_others(lines: Lines) -> TimedColumns:
         for name in lines.names
         if name not in (*KNOWN_COLUMNS, TIME_COLUMN)
         and lines.names.count(name) == 1
-        and not WATCHED.fullmatch(name)
+        and not MONITORED_NAMES.fullmatch(name)
     ]
     places = column_places(lines.path, lines.names, [TIME_COLUMN, *names])
     table, _ = without_cut_line(lines, places)
@@ -52,7 +52,7 @@ def read_others(lines: Lines) -> TimedColumns:
 def find_numbers(others: TimedColumns) -> TimedColumns:
     """Select the columns that have a value on at least half of the lines."""
     time, columns = others
-    return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= SOME}
+    return time, {n: v for n, v in columns.items() if np.isfinite(v).mean() >= MIN_FILLED_SHARE}
 
 
 def find_sparse(others: TimedColumns) -> TimedColumns:
@@ -65,7 +65,7 @@ def find_sparse(others: TimedColumns) -> TimedColumns:
     series: dict[tuple[str, bytes], list[str]] = defaultdict(list)
     for name, value in columns.items():
         present = np.isfinite(value)
-        if FEWEST <= present.sum() < SOME * len(value):
+        if MIN_LINES <= present.sum() < MIN_FILLED_SHARE * len(value):
             series[_stem(name), present.tobytes()].append(name)
     longest = max(series.values(), key=len, default=[])
     if len(longest) < 2:

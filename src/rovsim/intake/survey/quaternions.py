@@ -10,10 +10,10 @@ from rovsim.measurement.recording.formats.csv import QUATERNION
 from rovsim.measurement.recording.tables.delimited import Lines
 from rovsim.measurement.recording.tables.numbers import numbers
 
-NUMBERED = re.compile(
+NUMBERED_COMPONENT = re.compile(
     r"(q|quat|quaternion|orientation|rot|rotation)[\W_]*(\d)[\W_]*", re.IGNORECASE
 )
-UNIT = 0.01  # off length one
+LENGTH_TOLERANCE = 0.01  # off length one
 
 
 def check_quaternion(lines: Lines) -> None:
@@ -26,7 +26,7 @@ def check_quaternion(lines: Lines) -> None:
         return
     groups: dict[str, list[int]] = defaultdict(list)
     for place, name in enumerate(lines.names):
-        if match := NUMBERED.fullmatch(name):
+        if match := NUMBERED_COMPONENT.fullmatch(name):
             groups[match[1].lower()].append(place)
     for places in groups.values():
         if len(places) == 4 and _of_unit_length(lines, places):
@@ -46,4 +46,4 @@ def _of_unit_length(lines: Lines, places: list[int]) -> bool:
     except BadInput:
         return False
     valid = length[np.isfinite(length) & (length > 0.0)]
-    return bool(len(valid)) and bool(np.mean(np.abs(valid - 1.0) < UNIT) > 0.5)
+    return bool(len(valid)) and bool(np.mean(np.abs(valid - 1.0) < LENGTH_TOLERANCE) > 0.5)

@@ -13,11 +13,11 @@ from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
 from rovsim.measurement.recording.tables.numbers import numbers
 from rovsim.measurement.recording.tables.times import times
 
-MANY = 0.1  # share of the lines whose time another has
-LABELS = 20  # runs or bodies in one file
-GLANCE = 1000  # lines that tell whether a column may hold labels
-MIXED = 0.25  # of the lines are of another body than the line before
-APART = 10.0  # times as far as a body moves from one of its lines to its next
+MIN_REPEATED_SHARE = 0.1  # of the lines whose time another has
+MAX_LABELS = 20  # runs or bodies in one file
+HEAD_LINES = 1000  # that tell whether a column may hold labels
+MIN_CHANGE_SHARE = 0.25  # of the lines are of another body than the line before
+MIN_JUMP_RATIO = 10.0  # times as far as a body moves from one of its lines to its next
 
 
 def check_unmixed(lines: Lines) -> None:
@@ -34,22 +34,24 @@ def check_unmixed(lines: Lines) -> None:
         changes = np.flatnonzero(labels[1:] != labels[:-1]) + 1
         if len(begins) > 1 and set(begins[1:]) <= set(changes) and len(changes) < 2 * len(begins):
             raise _several(lines, "runs", "its times begin anew where", name, labels[begins])
-        if len(changes) > MIXED * len(labels) and _jumps(lines, labels):
+        if len(changes) > MIN_CHANGE_SHARE * len(labels) and _jumps(lines, labels):
             bodies = [label for label in dict.fromkeys(labels) if label]
             raise _several(lines, "bodies", "it jumps from one to another where", name, bodies)
 
 
 def _labels(lines: Lines, count: int) -> Iterator[tuple[str, Array]]:
-    """List columns of at most `LABELS` different words or numbers that are no measurement.
+    """List columns of at most `MAX_LABELS` different words or numbers that are no measurement.
 
     Yields:
         The name of a column, and its first `count` cells.
     """
     places = [k for k, name in enumerate(lines.names) if name not in (*KNOWN_COLUMNS, TIME_COLUMN)]
-    head = _cells(lines, min(count, GLANCE), places)
-    candidates = [k for k, column in zip(places, head, strict=True) if len(set(column)) <= LABELS]
+    head = _cells(lines, min(count, HEAD_LINES), places)
+    candidates = [
+        k for k, column in zip(places, head, strict=True) if len(set(column)) <= MAX_LABELS
+    ]
     for place, column in zip(candidates, _cells(lines, count, candidates), strict=True):
-        if 1 < len(set(column)) <= LABELS:
+        if 1 < len(set(column)) <= MAX_LABELS:
             yield lines.names[place], np.array(column)
 
 
@@ -78,7 +80,7 @@ def _jumps(lines: Lines, labels: Array) -> bool:
     within = np.concatenate(steps)
     if not (np.isfinite(between).any() and np.isfinite(within).any()):
         return False
-    return float(np.nanmedian(between)) > APART * float(np.nanmedian(within))
+    return float(np.nanmedian(between)) > MIN_JUMP_RATIO * float(np.nanmedian(within))
 
 
 def _several(
@@ -97,11 +99,11 @@ def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
     """Warn where many lines that hold a value of one of these columns share their times."""
     places = [lines.names.index(name) for name in columns]
     time = _times(lines, places)
-    if _double(time) < MANY * len(time) or not columns:
+    if _double(time) < MIN_REPEATED_SHARE * len(time) or not columns:
         return ()
     value = numbers(without_cut_line(lines, [lines.names.index(TIME_COLUMN), *places])[0], places)
     repeats = max(_double(time[np.isfinite(column)]) for column in value.T)
-    if repeats < MANY * len(time):
+    if repeats < MIN_REPEATED_SHARE * len(time):
         return ()
     coarse = ". They are whole seconds: export them with decimals"
     advice = coarse if np.array_equal(time, np.round(time)) else ""

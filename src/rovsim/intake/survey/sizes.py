@@ -15,14 +15,14 @@ from rovsim.measurement.recording.tables.delimited import Lines
 from rovsim.measurement.recording.tables.units import DEGREE, split_unit
 
 # Sizes that no vehicle reaches in a tank or a bay.
-FARTHEST = 1000.0  # m
-FASTEST_TURN = 10.0  # rad/s, usual over a recording
-SLOW_ENOUGH = 10.0  # m/s in which a unit of metres is believed
+MAX_DISTANCE_M = 1000.0
+MAX_TURN_RATE = 10.0  # rad/s, usual over a recording
+MAX_METRE_SPEED = 10.0  # m/s in which a unit of metres is believed
 # Usual speeds in mm/s below this may be cm/s as well: a vehicle at 1.2 m/s, or one that creeps.
-CREEPING = 120.0
-MANY_TURNS = 20.0 * np.pi  # rad: a heading that has turned ten times
-WRAPPED = 5.5  # rad from one line to the next: a heading that begins anew after a turn
-ANGLES = "roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg"
+MIN_MM_PER_S = 120.0
+MAX_HEADING = 20.0 * np.pi  # rad: a heading that has turned ten times
+MIN_WRAP_RAD = 5.5  # rad from one line to the next: a heading that begins anew after a turn
+EXPECTED_ANGLES = "roll_rad, pitch_rad, yaw_rad or roll_deg, pitch_deg, yaw_deg"
 
 Key = tuple[str, ...]  # names of columns in a file
 
@@ -150,11 +150,11 @@ def _metres(of: _ColumnGroup) -> Unit:
     """Tell the unit of positions by how far and how fast a vehicle would move in m."""
     low, high = usual_range(of.value)
     extent, speed = float(np.nanmax(high - low)), usual_speed(of.value, of.time)
-    if speed > CREEPING:
+    if speed > MIN_MM_PER_S:
         return Unit(1e-3, f" in mm, by its size ({speed:.0f} m/s if it were m)", True)
     if of.named and speed <= MAX_SPEED:
         return Unit(1.0, "", False)
-    if speed < SLOW_ENOUGH and extent < 0.1 * FARTHEST:
+    if speed < MAX_METRE_SPEED and extent < 0.1 * MAX_DISTANCE_M:
         return Unit(1.0, " in m, by its size", False)
     raise of.asked(
         f"positions ({', '.join(of.key)}) over {extent:.3g}, {speed:.3g} per second, without a "
@@ -180,14 +180,14 @@ def _named_radians(of: _ColumnGroup, tilted: float, degrees: bool) -> Unit:
     Their size alone tells nothing: angles that count full turns may be large.
     """
     fast = usual_speed(unwrapped(of.value), of.time)
-    if fast <= FASTEST_TURN:
+    if fast <= MAX_TURN_RATE:
         return Unit(1.0, "", False)
     if degrees or tilted == 0.0:
         return Unit(DEGREE, f" in degrees, by its size ({fast:.0f} rad/s)", True)
     raise of.asked(
         f"angles ({', '.join(of.key)}) that turn by {fast:.0f} rad/s, but roll and pitch up to "
         f"{tilted:.3g} (rad or degrees, and are all of them of one unit?)",
-        ANGLES,
+        EXPECTED_ANGLES,
         large=True,
     )
 
@@ -202,14 +202,14 @@ def _free_radians(of: _ColumnGroup, size: Array, degrees: bool) -> Unit:
     """
     heading = of.value[:, of.names.index("yaw_rad") if "yaw_rad" in of.names else 0]
     spread = float(np.nanmax(heading) - np.nanmin(heading))
-    fast = usual_speed(of.value, of.time) > FASTEST_TURN and spread > 2.02 * np.pi
-    if degrees or fast or size.max() > MANY_TURNS:
+    fast = usual_speed(of.value, of.time) > MAX_TURN_RATE and spread > 2.02 * np.pi
+    if degrees or fast or size.max() > MAX_HEADING:
         return Unit(DEGREE, " in degrees, by its size", True)
     if 1.0 < spread < 2.02 * np.pi:
-        sure = bool(np.nanmax(np.abs(np.diff(heading)), initial=0.0) > WRAPPED)
+        sure = bool(np.nanmax(np.abs(np.diff(heading)), initial=0.0) > MIN_WRAP_RAD)
         return Unit(1.0, " in rad, by its size", sure)
     raise of.asked(
         f"angles ({', '.join(of.key)}) up to {size.max():.3g} without a unit (rad or degrees?)",
-        ANGLES,
+        EXPECTED_ANGLES,
         large=spread > 1.0,
     )

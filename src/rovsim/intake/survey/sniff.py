@@ -8,14 +8,14 @@ from rovsim.measurement.recording.readers import mocap_readers
 from rovsim.measurement.recording.signature import HEAD_BYTES, FileSignature, decoded, head_lines
 from rovsim.measurement.recording.tables.delimited import is_table
 
-AS_CSV = "docs/formats.md lists the columns"
+CSV_HINT = "docs/formats.md lists the columns"
 # First bytes of files that people take for recordings -> what they are, and what to do about it.
-KNOWN = {
+FILE_MAGIC = {
     b"#ROSBAG V": ("a ROS 1 bag", "Turn it into a ROS 2 bag with `rosbags-convert`."),
-    b"MATLAB 5.0": ("a MATLAB file", f"Save its signals as csv: {AS_CSV}."),
-    b"\x89HDF": ("an HDF5 file", f"Save its signals as csv: {AS_CSV}."),
+    b"MATLAB 5.0": ("a MATLAB file", f"Save its signals as csv: {CSV_HINT}."),
+    b"\x89HDF": ("an HDF5 file", f"Save its signals as csv: {CSV_HINT}."),
     b"\x1f\x8b": ("a gzip archive", "Unpack it."),
-    b"\x93NUMPY": ("a NumPy array", f"Save it as csv: {AS_CSV}."),
+    b"\x93NUMPY": ("a NumPy array", f"Save it as csv: {CSV_HINT}."),
     b"\x89PNG": ("a picture", "Name a recording."),
     b"%PDF": ("a PDF", "Name a recording."),
     b"\xff\xfe": ("text in UTF-16", "Save it as UTF-8."),
@@ -23,27 +23,28 @@ KNOWN = {
     b"ULog": (
         "a log of PX4",
         "Turn it into csv with `ulog2csv` of pyulog, and join what was measured and what was sent "
-        f"to the thrusters under our names of columns: {AS_CSV}. timestamp is time_us, q[0] is qw.",
+        f"to the thrusters under our names of columns: {CSV_HINT}. "
+        "timestamp is time_us, q[0] is qw.",
     ),
     b"LabVIEW Measurement": (
         "a LabVIEW measurement file",
         "Save the table below its last ***End_of_Header*** as csv, with our names of columns "
-        f"(X_Value is time_s): {AS_CSV}.",
+        f"(X_Value is time_s): {CSV_HINT}.",
     ),
 }
-ZIP, MEMBER = b"PK\x03\x04", 30  # where the name of its first member starts
-ZIPPED = {
+ZIP_MAGIC, MEMBER_OFFSET = b"PK\x03\x04", 30  # where the name of its first member starts
+ZIP_KINDS = {
     b".npy": (
         "NumPy arrays (.npz)",
         "Save them as csv: numpy.savetxt(file, table, delimiter=',', header='time_s,x_m,…', "
-        f"comments=''); {AS_CSV}.",
+        f"comments=''); {CSV_HINT}.",
     ),
     b"": ("a zip archive or a spreadsheet", "Unpack it, or save the sheet as csv."),
 }
 # First lines of exports of Vicon, by what follows.
-MARKERS = ("Trajectories", "PathFileType")
-VICON = ("Objects", "Segments", "Devices", "Joints", "Model Outputs")
-TUM = 8  # numbers a line: time, position, quaternion (x, y, z, w)
+VICON_MARKERS = ("Trajectories", "PathFileType")
+VICON_SECTIONS = ("Objects", "Segments", "Devices", "Joints", "Model Outputs")
+TUM_NUMBERS = 8  # a line: time, position, quaternion (x, y, z, w)
 
 
 def sniff(path: Path) -> str:
@@ -84,10 +85,14 @@ def _check_ending(path: Path, signature: FileSignature) -> None:
 
 
 def _refuse_known(path: Path, head: bytes) -> None:
-    matches = [match for magic, match in KNOWN.items() if head.startswith(magic)]
-    if head.startswith(ZIP):
+    matches = [match for magic, match in FILE_MAGIC.items() if head.startswith(magic)]
+    if head.startswith(ZIP_MAGIC):
         size = int.from_bytes(head[26:28], "little")
-        matches = [ZIPPED[b".npy" if head[MEMBER : MEMBER + size].endswith(b".npy") else b""]]
+        matches = [
+            ZIP_KINDS[
+                b".npy" if head[MEMBER_OFFSET : MEMBER_OFFSET + size].endswith(b".npy") else b""
+            ]
+        ]
     if not matches and not is_table(head):
         matches = [text] if (text := _known_text(head_lines(head))) else []
     for match in matches:
@@ -97,12 +102,12 @@ def _refuse_known(path: Path, head: bytes) -> None:
 def _known_text(lines: list[str]) -> tuple[str, str] | None:
     """Tell by its first line what a text is, and what to do about it; None where unknown."""
     line = lines[0].strip() if lines else ""
-    if line.startswith(MARKERS):
+    if line.startswith(VICON_MARKERS):
         return (
             "an export of markers (Vicon or TRC), not of rigid bodies",
             "Export the rigid body (segment): position and attitude, as csv.",
         )
-    if line.rstrip(",;") in VICON:
+    if line.rstrip(",;") in VICON_SECTIONS:
         return (
             f"a csv export of Vicon that starts with {line.rstrip(',;')}",
             "Export the object (segment) and save it as csv with our columns: time_s is (Frame − "
@@ -119,7 +124,7 @@ def _known_text(lines: list[str]) -> tuple[str, str] | None:
 
 def _is_tum(line: str) -> bool:
     try:
-        return len([float(cell) for cell in line.split()]) == TUM
+        return len([float(cell) for cell in line.split()]) == TUM_NUMBERS
     except ValueError:
         return False
 

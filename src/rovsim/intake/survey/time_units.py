@@ -10,10 +10,10 @@ from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN
 from rovsim.measurement.recording.tables.times import MAX_TIME_S, times
 from rovsim.measurement.recording.tables.units import SI_FACTORS
 
-SHORTEST_STEP = 2e-4  # s between two lines of any recording
-SHORTEST = 3.0  # s that a recording lasts, where its lines would come faster than any camera
-FASTEST_CAMERA = 1000.0  # Hz
-EXPECTED = "time_s, or time_ms, time_us, time_ns, time_min; days times 86400 are time_s"
+MIN_STEP_S = 2e-4  # between two lines of any recording
+MIN_RECORDING_S = 3.0  # where its lines would come faster than any camera
+MAX_CAMERA_RATE_HZ = 1000.0
+EXPECTED_TIME_COLUMN = "time_s, or time_ms, time_us, time_ns, time_min; days times 86400 are time_s"
 
 
 def find_time_unit(
@@ -70,16 +70,16 @@ def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:
         f"times ('{key[0]}') in steps of {step:.3g} over {lasts:.3g} ({options}?)",
         lines,
         key,
-        EXPECTED,
+        EXPECTED_TIME_COLUMN,
         large=True,
     )
 
 
 def _is_step(seconds: float) -> bool:
     """Whether two lines of a recording can be so far apart."""
-    return SHORTEST_STEP <= seconds < MAX_STEP_S
+    return MIN_STEP_S <= seconds < MAX_STEP_S
 
 
 def _is_recording(step: float, lasts: float) -> bool:
     """Whether a recording of this step and duration, in s, is long enough for its rate."""
-    return lasts >= SHORTEST or step >= 1.0 / FASTEST_CAMERA
+    return lasts >= MIN_RECORDING_S or step >= 1.0 / MAX_CAMERA_RATE_HZ

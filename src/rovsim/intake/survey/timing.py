@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.robust import LONG_STEP
 
-JITTERY = 0.1  # share of the usual step; clocks of computers stay below
+MAX_JITTER_SHARE = 0.1  # of the usual step; clocks of computers stay below
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class RowTiming:
 
     def __str__(self) -> str:
         text = f"{self.rows} rows, {self.seconds:.1f} s at {self.rate:.4g} Hz"
-        if self.jitter > JITTERY:
+        if self.jitter > MAX_JITTER_SHARE:
             text += f", steps vary by {100 * self.jitter:.0f} %"
         if self.gaps == 1:
             text += f", a gap of {self.longest:.2f} s"
