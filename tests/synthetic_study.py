@@ -17,7 +17,7 @@ from rovsim.evaluation.error_conditions.search import SearchedModel
 from rovsim.evaluation.held_out.published_errors import METRICS, Published, compare_published
 from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
-from rovsim.results.error_conditions import BLOCK, THROUGHOUT, ErrorConditions
+from rovsim.results.error_conditions import BLOCK_S, THROUGHOUT, ErrorConditions
 from rovsim.results.force_budget import ForceBudget
 from rovsim.results.growth import Growth
 from rovsim.results.ladder import Ladder
@@ -92,14 +92,14 @@ def published_errors(comparison: dict[str, Any], runs: list[str], seed: int) -> 
 
 def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
     """Blocks (n,) of two made-up runs with these errors (n, 6), speeds and thrusts that wander."""
-    rng, count = np.random.default_rng(seed), int(seconds / BLOCK)
+    rng, count = np.random.default_rng(seed), int(seconds / BLOCK_S)
     slow = lfilter([1.0], [1.0, -0.8], rng.standard_normal((2 * count, 12)), axis=0)
     kinds = [Condition(THROUGHOUT, "", THROUGHOUT)]
     kinds += [Condition(n, "m/s", "speed", a) for n, a in zip(SPEEDS, AXES, strict=True)]
     kinds += [Condition(f"{a} thrust", "N", "thrust", a) for a in AXES]
     columns = np.column_stack([np.zeros(2 * count), 0.2 * slow[:, :6], 10 * slow[:, 6:]])
     values = dict(zip(kinds, columns.T, strict=True))
-    time = np.tile(BLOCK * (np.arange(count) + 0.5), 2)
+    time = np.tile(BLOCK_S * (np.arange(count) + 0.5), 2)
     run = np.repeat([0, 1], count)
     return Blocks(error, rng.standard_normal((2 * count, 6)), values, time, run, np.ones(6, bool))
 
@@ -108,7 +108,7 @@ def where(models: tuple[str, ...], seconds: float, seed: int) -> ErrorConditions
     """Conditions of models whose surge error grows with the speed."""
     found = []
     for k, name in enumerate(models):
-        empty = driven(seconds, np.zeros((2 * int(seconds / BLOCK), 6)), seed)
+        empty = driven(seconds, np.zeros((2 * int(seconds / BLOCK_S), 6)), seed)
         speed = next(x for c, x in empty.values.items() if c.name == "surge speed")
         noise = np.random.default_rng(k).standard_normal(empty.error.shape)
         error = _level(name) * (0.1 * noise + np.outer(speed * np.abs(speed), [1, 0, 0, 0, 0, 0]))

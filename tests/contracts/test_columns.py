@@ -10,7 +10,7 @@ from rovsim.apps.cli.complaint import complain
 from rovsim.apps.cli.main import COMMANDS, main
 from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, nearest
-from rovsim.core.extras import PACKAGES
+from rovsim.core.extras import EXTRA_PACKAGES
 
 ALL = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
 ROOT = Path(__file__).parents[2]
@@ -66,7 +66,7 @@ def test_an_unknown_key_is_said_in_plain_words(word, said, capsys):
 
 def test_every_extra_is_known():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert set(PACKAGES) == set(project["optional-dependencies"]) - {"all", "dev"}
+    assert set(EXTRA_PACKAGES) == set(project["optional-dependencies"]) - {"all", "dev"}
 
 
 def test_usage_lines_stay_apart_and_paragraphs_are_filled():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rovsim.evaluation.latency import time_calls
-from rovsim.results.timing import RATES
+from rovsim.results.timing import CONTROL_RATES_HZ
 
 QUERIES = np.arange(12.0).reshape(4, 3)
 
@@ -21,7 +21,7 @@ def test_each_call_sees_one_query_and_all_are_used_in_turn():
     stats = time_calls(call, QUERIES, calls=6, warmup=2, points=5)
     assert seen == [((1, 3), q) for q in (0, 3, 0, 3, 6, 9, 0, 3)]
     assert (stats.points, stats.features, stats.outputs, stats.calls) == (5, 3, 6, 6)
-    assert stats.misses == {str(rate): 0 for rate in RATES}
+    assert stats.misses == {str(rate): 0 for rate in CONTROL_RATES_HZ}
 
 
 @pytest.fixture

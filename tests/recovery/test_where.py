@@ -13,20 +13,20 @@ from rovsim.evaluation.error_conditions.conditions import average_blocks
 from rovsim.evaluation.error_conditions.findings import explain_errors
 from rovsim.evaluation.error_conditions.search import ConditionSearch
 from rovsim.evaluation.error_conditions.sentences import say_findings
-from rovsim.results.error_conditions import BLOCK
+from rovsim.results.error_conditions import BLOCK_S
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
 from synthetic_study import driven
 from worlds import at_rest, model, motion, sticks
 
 SECONDS = 60.0
-COUNT = 2 * int(SECONDS / BLOCK)
+COUNT = 2 * int(SECONDS / BLOCK_S)
 
 
 def noise(memory: float, seed: int) -> np.ndarray:
     """Errors (n, 6) of unit variance with that memory in s, new at the start of the second run."""
     rng = np.random.default_rng(1000 + seed)
-    keep, push = np.exp(-BLOCK / memory) if memory else 0.0, rng.standard_normal((COUNT, 6))
+    keep, push = np.exp(-BLOCK_S / memory) if memory else 0.0, rng.standard_normal((COUNT, 6))
     error = push.copy()
     for k in range(1, COUNT):
         if 2 * k != COUNT:

@@ -11,7 +11,7 @@ import numpy as np
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_bytes
 
-SPARE = 1 << 26  # bytes that an archive may unpack to beyond ten times its size
+SPARE_BYTES = 1 << 26  # that an archive may unpack to beyond ten times its size
 
 
 def write_arrays(path: Path, **arrays: np.ndarray) -> None:
@@ -35,7 +35,7 @@ def read_arrays(path: Path) -> dict[str, np.ndarray]:
         with zipfile.ZipFile(path) as archive:
             members = archive.infolist()
             unpacked = sum(member.file_size for member in members)
-            if unpacked <= 10 * path.stat().st_size + SPARE:
+            if unpacked <= 10 * path.stat().st_size + SPARE_BYTES:
                 return {m.filename.removesuffix(".npy"): _array(archive.read(m)) for m in members}
         fault = f"would unpack to {unpacked:.1e} bytes"
     except FileNotFoundError:

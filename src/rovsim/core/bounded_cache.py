@@ -19,7 +19,7 @@ from typing import (
 import numpy as np
 
 T = TypeVar("T")
-MOST = 1 << 27  # bytes: fifteen runs of 5 min at 100 Hz
+MAX_BYTES = 1 << 27  # fifteen runs of 5 min at 100 Hz
 
 
 class Recent(Generic[T]):
@@ -28,7 +28,7 @@ class Recent(Generic[T]):
     The very last value is kept however large it is; with `most` 0 nothing is kept.
     """
 
-    def __init__(self, most: int = MOST) -> None:
+    def __init__(self, most: int = MAX_BYTES) -> None:
         self._most, self._size = most, 0
         self._kept: OrderedDict[Hashable, tuple[T, int]] = OrderedDict()
         self._lock = Lock()  # several threads may ask
@@ -83,7 +83,7 @@ class Remade(Mapping[str, T]):
         self,
         names: Iterable[str],
         make: Callable[[str], T],
-        most: int = MOST,
+        most: int = MAX_BYTES,
         recent: Recent[T] | None = None,
     ) -> None:
         self._names, self._make = dict.fromkeys(names), make

@@ -3,9 +3,9 @@
 import re
 import textwrap
 
-WIDTH = 80  # of a terminal, unless it was made wider
-TYPED = re.compile(r"pip install '[^']*'")
-WHOLE = "\N{NO-BREAK SPACE}"
+TERMINAL_WIDTH = 80  # unless it was made wider
+PIP_COMMAND = re.compile(r"pip install '[^']*'")
+NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 
 
 def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
@@ -17,14 +17,14 @@ def fold(text: str, first: str = "", then: str | None = None) -> list[str]:
         then: put in front of the other lines; by default `first`.
     """
     lines = textwrap.wrap(
-        TYPED.sub(lambda match: match[0].replace(" ", WHOLE), text),
-        WIDTH,
+        PIP_COMMAND.sub(lambda match: match[0].replace(" ", NO_BREAK_SPACE), text),
+        TERMINAL_WIDTH,
         initial_indent=first,
         subsequent_indent=first if then is None else then,
         break_long_words=False,
         break_on_hyphens=False,
     )
-    return [line.replace(WHOLE, " ") for line in lines]
+    return [line.replace(NO_BREAK_SPACE, " ") for line in lines]
 
 
 def fold_page(text: str) -> str:
@@ -40,5 +40,7 @@ def _fold_paragraph(text: str) -> list[str]:
     margin = " " * len(usage[0])
     lines = text.splitlines()
     return [
-        line for row in lines for line in ([row] if len(row) <= WIDTH else fold(row, "", margin))
+        line
+        for row in lines
+        for line in ([row] if len(row) <= TERMINAL_WIDTH else fold(row, "", margin))
     ]

@@ -4,8 +4,8 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Iterable, Iterator, Sequence
 
-LONGEST = 1000  # characters of a text that a message quotes
-MOST = 40  # names that a message lists
+MAX_QUOTED_CHARACTERS = 1000  # of a text that a message quotes
+MAX_LISTED_NAMES = 40  # that a message lists
 
 
 class RovsimError(Exception):
@@ -34,9 +34,9 @@ class BadInput(RovsimError):
 
 
 def shortened(text: str) -> str:
-    """Bring a text, which may come from any file, to one line of at most `LONGEST` characters."""
-    line = one_line(text[: LONGEST + 1])
-    return line if len(line) <= LONGEST else f"{line[:LONGEST]} …"
+    """Bring the text of any file to one line of at most `MAX_QUOTED_CHARACTERS`."""
+    line = one_line(text[: MAX_QUOTED_CHARACTERS + 1])
+    return line if len(line) <= MAX_QUOTED_CHARACTERS else f"{line[:MAX_QUOTED_CHARACTERS]} …"
 
 
 def one_line(text: str) -> str:
@@ -75,8 +75,8 @@ def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> B
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return a remedy for an unknown name: the nearest known one, else all of them."""
     names = [str(k) for k in known]
-    more = f" and {len(names) - MOST} more" if len(names) > MOST else ""
-    return closest(name, names) or f"Known: {', '.join(names[:MOST]) or 'none'}{more}."
+    more = f" and {len(names) - MAX_LISTED_NAMES} more" if len(names) > MAX_LISTED_NAMES else ""
+    return closest(name, names) or f"Known: {', '.join(names[:MAX_LISTED_NAMES]) or 'none'}{more}."
 
 
 def closest(name: str, names: Sequence[str]) -> str:

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from rovsim.core.errors import BadInput
 
 # Packages by which each extra is recognised (pyproject.toml lists what pip installs).
-PACKAGES = {
+EXTRA_PACKAGES = {
     "learn": ("torch", "gpytorch", "sklearn"),
     "tracking": ("mlflow",),
     "workbench": ("nicegui",),
@@ -20,7 +20,7 @@ PACKAGES = {
 
 def installed(extra: str) -> bool:
     """Whether all packages of an extra are installed."""
-    return all(find_spec(name) is not None for name in PACKAGES[extra])
+    return all(find_spec(name) is not None for name in EXTRA_PACKAGES[extra])
 
 
 def require(*extras: str, by: str) -> None:

@@ -17,8 +17,8 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 
-MARKED = 1 << 16  # bytes at the start of a result, in which its mark must be
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors while writing that mean: no room
+MARK_BYTES = 1 << 16  # at the start of a result, in which its mark must be
+NO_ROOM_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # while writing
 
 
 @contextmanager
@@ -34,7 +34,7 @@ def appearing(path: Path) -> Iterator[Path]:
         os.chmod(temporary, 0o644)
         os.replace(temporary, path)
     except OSError as error:
-        if error.errno not in FULL:
+        if error.errno not in NO_ROOM_ERRORS:
             raise
         raise unwritable(path, error) from None
     finally:
@@ -230,7 +230,7 @@ def require_replaceable(path: Path, mark: str) -> None:
     if not path.is_file():
         return
     with path.open("rb") as file:
-        start = file.read(MARKED)
+        start = file.read(MARK_BYTES)
     if start and mark.encode() not in start:
         raise BadInput(
             "another file is there, which rovsim did not write",

@@ -13,7 +13,7 @@ from pathlib import Path
 import rovsim
 
 SOURCES = Path(rovsim.__file__).parents[2]  # top of a clone; unrelated for an installed package
-PATIENCE = 5.0  # s, for git
+GIT_PATIENCE_S = 5.0
 
 
 def tell_making() -> str:
@@ -50,7 +50,7 @@ def _git(folder: Path, *words: str) -> str:
             capture_output=True,
             text=True,
             check=True,
-            timeout=PATIENCE,
+            timeout=GIT_PATIENCE_S,
             env=env,
         )
         return process.stdout.strip()

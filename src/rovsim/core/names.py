@@ -13,18 +13,18 @@ from pydantic import AfterValidator
 from rovsim.core.errors import BadInput
 
 # Unicode's control characters, halves of pairs, and separators of lines and of paragraphs.
-BREAKING = ("Cc", "Cs", "Zl", "Zp")
-EXPECTED = "a name on one line, without control characters"
+BREAKING_CATEGORIES = ("Cc", "Cs", "Zl", "Zp")
+EXPECTED_NAME = "a name on one line, without control characters"
 
 
 def is_name(text: str) -> bool:
     """Whether a text has no characters that break its line."""
-    return not any(category(c) in BREAKING for c in text)
+    return not any(category(c) in BREAKING_CATEGORIES for c in text)
 
 
 def _name(text: str) -> str:
     if not is_name(text):
-        raise ValueError(EXPECTED)
+        raise ValueError(EXPECTED_NAME)
     return text
 
 
@@ -47,6 +47,6 @@ def name_of(path: Path) -> str:
     raise BadInput(
         "the name of this file holds control characters",
         where=path,
-        expected=EXPECTED,
+        expected=EXPECTED_NAME,
         remedy="Rename the file.",
     )

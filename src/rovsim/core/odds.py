@@ -6,7 +6,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-MOST = 1400.0  # of a statistic: beyond, odds are larger than any floating-point number
+MAX_STATISTIC = 1400.0  # beyond, odds are larger than any floating-point number
 
 
 def lr_statistic_of(odds: float) -> float:
@@ -16,7 +16,7 @@ def lr_statistic_of(odds: float) -> float:
 
 def odds_of(lr_statistic: float) -> float:
     """Odds to one of an explanation against another, with this likelihood-ratio statistic."""
-    return exp(0.5 * min(max(lr_statistic, -MOST), MOST))
+    return exp(0.5 * min(max(lr_statistic, -MAX_STATISTIC), MAX_STATISTIC))
 
 
 def probability_of(lr_statistic: float) -> float:

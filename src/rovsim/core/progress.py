@@ -6,8 +6,8 @@ from contextvars import ContextVar
 from typing import Callable, Iterable, Iterator, Mapping, Sequence, TypeVar
 
 T = TypeVar("T")
-HALF = 40  # steps of a stage after which it is shown as half over
-FINEST = 0.002  # share: smaller progress is not reported
+HALFWAY_STEPS = 40  # of a stage, after which it is shown as half over
+MIN_SHARE_STEP = 0.002  # share: smaller progress is not reported
 Tell = Callable[[str, float | None], None]  # takes the task, and the share done (None: unknown)
 
 
@@ -42,8 +42,8 @@ class _Bar:
     def step(self) -> None:
         """Count a step, and report it if the share has changed visibly."""
         self.steps += 1
-        share = self.low + (self.high - self.low) * self.steps / (self.steps + HALF)
-        if share - self.share > FINEST:
+        share = self.low + (self.high - self.low) * self.steps / (self.steps + HALFWAY_STEPS)
+        if share - self.share > MIN_SHARE_STEP:
             self._tell(share)
 
     def _tell(self, share: float) -> None:

@@ -39,7 +39,7 @@ Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 S = TypeVar("S", bound=Section)
 
 # What pydantic expected, by its type of error, in words for a reader who does not know Python.
-WORDS = {
+EXPECTED_WORDS = {
     **dict.fromkeys(("list_type", "tuple_type"), "a list, as [first, second]"),
     **dict.fromkeys(("float_type", "float_parsing"), "a number"),
     **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "a whole number"),
@@ -47,7 +47,7 @@ WORDS = {
     "finite_number": "a finite number",
     "string_type": "text (a number in quotes is one)",
 }
-BOUNDS = ("greater than ", "less than ")
+BOUND_WORDS = ("greater than ", "less than ")
 
 
 def checked(kind: type[S], content: Any, where: Path | str) -> S:
@@ -131,7 +131,9 @@ def _expected(error: Any, kind: type[Section]) -> str:
     if error["type"] == "too_long":
         return _several(limits["max_length"], "at most")
     text = _sentence(error["msg"])
-    return WORDS.get(error["type"], f"a number {text}" if text.startswith(BOUNDS) else text)
+    return EXPECTED_WORDS.get(
+        error["type"], f"a number {text}" if text.startswith(BOUND_WORDS) else text
+    )
 
 
 def _several(count: int, bound: str) -> str:

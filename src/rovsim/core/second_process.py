@@ -17,7 +17,7 @@ from rovsim.core.errors import RovsimError
 from rovsim.core.progress import heard_by
 from rovsim.core.termination import exit_on_termination
 
-TIMES, BETWEEN = 10, 0.5  # s, between signals to a process that must end
+MAX_SIGNALS, SIGNAL_INTERVAL_S = 10, 0.5  # to a process that must end
 
 
 @contextmanager
@@ -103,9 +103,9 @@ def _obey_the_first() -> None:
 
 def _end(process: BaseProcess) -> None:
     """End a process; it may clear away unfinished files, but is killed if that takes long."""
-    for _ in range(TIMES):  # each signal ends one of the calls that the process waits for
+    for _ in range(MAX_SIGNALS):  # each signal ends one of the calls that the process waits for
         process.terminate()
-        process.join(BETWEEN)
+        process.join(SIGNAL_INTERVAL_S)
         if not process.is_alive():
             return
     process.kill()

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Iterator, NoReturn
 
-CODE = 128 + signal.SIGTERM  # exit code that a shell reports for a process that SIGTERM ended
+SIGTERM_EXIT = 128 + signal.SIGTERM  # that a shell reports for a process that SIGTERM ended
 
 
 class Terminated(KeyboardInterrupt):
@@ -38,4 +38,4 @@ def _terminate(*_: int | FrameType | None) -> NoReturn:
 
 
 def _exit(*_: int | FrameType | None) -> NoReturn:
-    sys.exit(CODE)
+    sys.exit(SIGTERM_EXIT)

@@ -16,7 +16,7 @@ import numpy as np
 
 T = TypeVar("T")
 _mapping: ContextVar[bool] = ContextVar("mapping", default=False)
-PIECES = 4  # of the jobs for each core: with more pieces than cores, all end at about the same time
+PIECES_PER_CORE = 4  # of the jobs: with more pieces than cores, all end at about the same time
 
 
 def count_cores() -> int:
@@ -47,7 +47,7 @@ def on_cores(kernel: Callable[[slice], None], lengths: np.ndarray) -> None:
         kernel(slice(0, len(lengths)))
         return
     ends = np.cumsum(lengths)
-    cuts = np.searchsorted(ends, np.linspace(0.0, ends[-1], PIECES * cores + 1)[1:-1])
+    cuts = np.searchsorted(ends, np.linspace(0.0, ends[-1], PIECES_PER_CORE * cores + 1)[1:-1])
     parts = [0, *np.unique(cuts), len(lengths)]
     slices = [slice(a, b) for a, b in pairwise(parts) if b > a]
     list(_threads(cores, "kernels").map(kernel, slices))

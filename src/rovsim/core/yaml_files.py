@@ -14,9 +14,9 @@ from ruamel.yaml.error import YAMLError
 from rovsim.core.errors import BadInput
 from rovsim.core.files import read_text, write_text
 
-LARGEST = 1 << 18  # characters; a campaign of a thousand runs has half, and is read in seconds
-DEEPEST = 100  # brackets inside each other; the parser's time grows with the square
-MOST_NODES = 1_000_000  # with everything written out that aliases repeat
+MAX_CHARACTERS = 1 << 18  # a campaign of a thousand runs has half, and is read in seconds
+MAX_DEPTH = 100  # of brackets inside each other; the parser's time grows with the square
+MAX_NODES = 1_000_000  # with everything written out that aliases repeat
 
 
 def write_yaml(path: Path, content: Any, rows: bool = False) -> None:
@@ -46,14 +46,14 @@ def read_yaml(path: Path) -> Any:
         BadInput: the file is missing or is not YAML, gives a key twice, or is far too large.
     """
     text = read_text(path)
-    if len(text) > LARGEST:
+    if len(text) > MAX_CHARACTERS:
         raise BadInput(
             f"{len(text)} characters, and no file of this kind is that long",
             where=path,
-            expected=f"a plain YAML file of at most {LARGEST} characters",
+            expected=f"a plain YAML file of at most {MAX_CHARACTERS} characters",
             remedy="Is it a recording, or another file than was meant?",
         )
-    if _depth(text) > DEEPEST:
+    if _depth(text) > MAX_DEPTH:
         raise _refused(path, "nested too deeply")
     try:
         content = _parse(text)
@@ -63,7 +63,7 @@ def read_yaml(path: Path) -> Any:
         raise _refused(path, "nested too deeply") from None
     except ValueError as error:  # of a number or a date
         raise _refused(path, f"not YAML ({error})") from None
-    if _count(content, {}) > MOST_NODES:
+    if _count(content, {}) > MAX_NODES:
         raise _refused(path, "aliases that repeat each other without end")
     return copy.deepcopy(content)
 

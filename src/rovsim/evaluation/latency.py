@@ -11,7 +11,7 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.learned.predictor import evaluate_many
 from rovsim.dynamics.learned.residual import Residual
-from rovsim.results.timing import RATES, BothWays, Latency
+from rovsim.results.timing import CONTROL_RATES_HZ, BothWays, Latency
 
 
 def time_calls(
@@ -53,7 +53,7 @@ def time_calls(
         p99_us=float(np.percentile(durations, 99.0)) / 1e3,
         p999_us=float(np.percentile(durations, 99.9)) / 1e3,
         max_us=float(durations.max()) / 1e3,
-        misses={str(rate): int(np.sum(durations > 1e9 / rate)) for rate in RATES},
+        misses={str(rate): int(np.sum(durations > 1e9 / rate)) for rate in CONTROL_RATES_HZ},
     )
 
 

@@ -18,7 +18,7 @@ from rovsim.results.fitted import (
 )
 from rovsim.results.ladder import Ladder
 
-LAW = f"{PROPOSED}.py"  # its file, beside the diagnosis
+LAW_FILE = f"{PROPOSED}.py"  # its file, beside the diagnosis
 Verdict = Literal["missing_effects", "adequate", "unexplained", "insufficient_data"]
 
 
@@ -229,4 +229,6 @@ class Diagnosis(Result):
 
 def law_beside(diagnosis: Path) -> Path:
     """Where the file of the effect lies that a diagnosis proposes."""
-    return diagnosis.with_name(LAW if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{LAW}")
+    return diagnosis.with_name(
+        LAW_FILE if diagnosis.stem == "diagnosis" else f"{diagnosis.stem}_{LAW_FILE}"
+    )

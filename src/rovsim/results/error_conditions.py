@@ -7,7 +7,7 @@ from pydantic import Field
 from rovsim.core.schema import Section
 from rovsim.results.base import Result
 
-BLOCK = 0.5  # s, over which errors are averaged
+BLOCK_S = 0.5  # over which errors are averaged
 THROUGHOUT = "throughout"  # the condition that holds all the time: of an error that is constant
 
 
@@ -85,7 +85,7 @@ class ErrorConditions(Result):
     command: ClassVar[str] = "`rovsim compare`"
 
     schema_: Literal["rovsim.where/1"] = Field(default="rovsim.where/1", alias="schema")
-    block_s: float = BLOCK
+    block_s: float = BLOCK_S
     models: dict[str, ModelConditions]
 
     @staticmethod

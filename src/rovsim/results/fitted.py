@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from rovsim.core.schema import Section
 from rovsim.results.base import Sparse
 
-ROUNDED = 1e-3  # by how much an eigenvalue of a correlation may miss zero
+EIGENVALUE_TOLERANCE = 1e-3  # by how much an eigenvalue of a correlation may miss zero
 
 
 def _six(values: tuple) -> tuple:
@@ -95,7 +95,7 @@ class Correlation(Section):
             raise ValueError("correlations from -1 to 1")
         if len(set(self.between)) < k:
             raise ValueError("names of values, each named once")
-        if k and np.linalg.eigvalsh(self.lower).min() < -ROUNDED:
+        if k and np.linalg.eigvalsh(self.lower).min() < -EIGENVALUE_TOLERANCE:
             raise ValueError("correlations that can hold all at once (no negative eigenvalue)")
         return self
 

@@ -12,7 +12,7 @@ from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 
-MISSING = "missing"
+MISSING_PART = "missing"
 
 
 class RunBudget(Section):
@@ -50,7 +50,7 @@ class ForceBudget:
     def rms(self) -> dict[str, ByAxis]:
         """Root mean square of every part and of what is missing, by axis, at usable instants."""
         usable = np.isfinite(self.missing).any(axis=1)
-        forces = {**self.parts, MISSING: self.missing}
+        forces = {**self.parts, MISSING_PART: self.missing}
         if not usable.any():
             return {name: ByAxis() for name in forces}
         return {

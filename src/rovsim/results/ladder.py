@@ -8,7 +8,7 @@ from rovsim.core.model_names import EFFECTS, NOISE_FLOOR, NOMINAL
 from rovsim.core.schema import Section
 from rovsim.results.base import ByAxis, Result
 
-ADDED = "+"  # begins the name of a step at which a diagnosis added an effect
+ADDED_PREFIX = "+"  # begins the name of a step at which a diagnosis added an effect
 
 
 class LadderStep(Section):
@@ -56,7 +56,7 @@ class Ladder(Result):
         Of that one the steps are its effects, one by one: the last of them has all, and where
         none was selected it is the nominal model.
         """
-        complete = next((s for s in reversed(self.steps) if s.model.startswith(ADDED)), None)
+        complete = next((s for s in reversed(self.steps) if s.model.startswith(ADDED_PREFIX)), None)
         steps = {step.model: step.windows_2s for step in self.models}
         steps[EFFECTS] = complete.windows_2s if complete else steps.get(NOMINAL)
         return {model: error for model, error in steps.items() if error is not None}
@@ -67,7 +67,7 @@ class Ladder(Result):
 
         The effects stand where the model that has all of them would.
         """
-        effects = [s for s in diagnosed if s.model.startswith(ADDED)]
+        effects = [s for s in diagnosed if s.model.startswith(ADDED_PREFIX)]
         floor = [s for s in diagnosed if s.model == NOISE_FLOOR]
         steps = [s for m in models for s in (effects if m.model == EFFECTS else [m])]
         return Ladder(steps=(*steps, *floor))

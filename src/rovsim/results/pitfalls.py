@@ -7,14 +7,17 @@ from pydantic import Field
 from rovsim.core.schema import Section
 from rovsim.results.base import Result
 
-ERROR = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
-SHARE = "share of the residual acceleration that is predicted"
+RELATIVE_RMSE = "velocity RMSE of the open loop, in standard deviations of the measured velocity"
+PREDICTED_SHARE = "share of the residual acceleration that is predicted"
 # For each mistake, what was done, and which number is compared without it and with it.
 PITFALLS = {
-    "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", ERROR),
-    "copied runs": ("a '6-DoF' training set that holds copies of a 3-DoF run (KNN)", SHARE),
-    "lost data": ("a GP loaded with its hyperparameters but not its data", SHARE),
-    "scaled twice": ("features scaled before they reach a GP that scales them", SHARE),
+    "wrong clock": ("bins of about 0.157 s replayed as if each lasted 0.1 s", RELATIVE_RMSE),
+    "copied runs": (
+        "a '6-DoF' training set that holds copies of a 3-DoF run (KNN)",
+        PREDICTED_SHARE,
+    ),
+    "lost data": ("a GP loaded with its hyperparameters but not its data", PREDICTED_SHARE),
+    "scaled twice": ("features scaled before they reach a GP that scales them", PREDICTED_SHARE),
 }
 
 

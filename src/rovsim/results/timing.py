@@ -7,7 +7,7 @@ from pydantic import Field
 from rovsim.core.schema import Section
 from rovsim.results.base import Result, Sparse
 
-RATES = (50, 100, 250, 1000)  # Hz: control loops from a surface pilot's to a motor controller's
+CONTROL_RATES_HZ = (50, 100, 250, 1000)  # from a surface pilot's to a motor controller's
 
 
 class Latency(Sparse):

@@ -13,7 +13,7 @@ from rovsim.core.collector import end_at_once
 from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, RovsimError, unlisted
 from rovsim.core.model_names import BUILT_IN
-from rovsim.core.termination import CODE, Terminated, heeding_termination
+from rovsim.core.termination import SIGTERM_EXIT, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
 PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
@@ -39,7 +39,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
             sys.exit(141)
         complain(describe_os_error(error))
     except KeyboardInterrupt as end:
-        reason, code = ("terminated", CODE) if isinstance(end, Terminated) else ("interrupted", 130)
+        reason, code = (
+            ("terminated", SIGTERM_EXIT) if isinstance(end, Terminated) else ("interrupted", 130)
+        )
         print(f"rovsim: {reason}; what was finished is kept.", file=sys.stderr)
         sys.exit(code)
 

@@ -12,7 +12,7 @@ from rovsim.diagnosis.equations.spectrum import Spectrum
 from rovsim.estimation.observer.hypothesis import Term
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import (
-    LAW,
+    LAW_FILE,
     Disturbance,
     ForceOfRun,
     ForceSpectrum,
@@ -112,7 +112,7 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
     return ProposedEquation(
         axis=law.axis,
         equation=law.form.equation,
-        file=LAW,
+        file=LAW_FILE,
         effect=PROPOSED,
         meaning=law.form.meaning,
         parameters={

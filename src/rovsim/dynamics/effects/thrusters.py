@@ -8,7 +8,7 @@ import scipy
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.pwm import SPAN
+from rovsim.core.pwm import PULSE_SPAN_US
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import (
     STAMP_STEP,
@@ -57,7 +57,14 @@ class ThrusterDeadband(CommandTransform):
     # two steps of a log in whole microseconds: between them no command changes sides
     parameters = (
         Parameter(
-            "width", "1", "w", low=0.0, high=1.0, scale=0.03, resolution=2 / SPAN, tried=DEADBANDS
+            "width",
+            "1",
+            "w",
+            low=0.0,
+            high=1.0,
+            scale=0.03,
+            resolution=2 / PULSE_SPAN_US,
+            tried=DEADBANDS,
         ),
     )
     starts = ({"width": 0.03}, {"width": 0.07})

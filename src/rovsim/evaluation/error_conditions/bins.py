@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
-from rovsim.results.error_conditions import BLOCK
+from rovsim.results.error_conditions import BLOCK_S
 
 BINS = 8  # of equal width between the tails
 VISITS = 4  # stretches that a bin needs to be judged
@@ -80,7 +80,7 @@ def number_stretches(blocks: Blocks, error: Array) -> Array:
     typical = np.clip(
         TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST
     )
-    length = max(float(typical), len(error) * BLOCK / MANY)
+    length = max(float(typical), len(error) * BLOCK_S / MANY)
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)
     return np.unique(key, axis=0, return_inverse=True)[1].ravel()
 
@@ -106,14 +106,14 @@ def correlation_time(error: Array, blocks: Blocks) -> float:
     """
     power = float(np.mean(error**2))
     total = 1.0
-    for lag in range(1, int(LONGEST / BLOCK)):
-        lagged = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK) < NEAR * BLOCK
+    for lag in range(1, int(LONGEST / BLOCK_S)):
+        lagged = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK_S) < NEAR * BLOCK_S
         pairs = lagged & (blocks.run[lag:] == blocks.run[:-lag])
         product = float(np.mean((error[lag:] * error[:-lag])[pairs])) if pairs.any() else 0.0
         if product <= 0 or power == 0:
             break
         total += 2 * product / power
-    return total * BLOCK
+    return total * BLOCK_S
 
 
 def cut(values: Array) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS, VELOCITY_UNI
 from rovsim.core.rotations import to_euler
 from rovsim.measurement.signals.measured import find_measured
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.error_conditions import BLOCK, THROUGHOUT
+from rovsim.results.error_conditions import BLOCK_S, THROUGHOUT
 from rovsim.simulation.samples import Samples
 
 SEEN = 0.5  # share of a block that must have been measured
@@ -82,9 +82,9 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     """
     time = motion.time[samples.index] - motion.time[0]
     step = float(np.median(np.diff(motion.time)))
-    block, count = np.unique(np.floor(time / BLOCK).astype(int), return_counts=True)
-    full = count * step >= SEEN * BLOCK
-    member = np.searchsorted(block, np.floor(time / BLOCK).astype(int))
+    block, count = np.unique(np.floor(time / BLOCK_S).astype(int), return_counts=True)
+    full = count * step >= SEEN * BLOCK_S
+    member = np.searchsorted(block, np.floor(time / BLOCK_S).astype(int))
 
     def mean(x: Array) -> Array:
         total = np.zeros((len(block), *x.shape[1:]))

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
-from rovsim.core.pwm import PILOT, absent
+from rovsim.core.pwm import PILOT_CHANNELS, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind, Track
 from rovsim.intake.survey.csv_commands import within
 from rovsim.measurement.campaign_file import Mocap, Topics
@@ -258,7 +258,9 @@ def _outputs(found: TopicSamples) -> CommandCandidate:
 
 def _pilot(found: TopicSamples) -> CommandCandidate:
     active = _given(found)
-    columns = [c for c in PILOT if (k := _channel_number(c)) <= len(active) and active[k - 1]]
+    columns = [
+        c for c in PILOT_CHANNELS if (k := _channel_number(c)) <= len(active) and active[k - 1]
+    ]
     value = found.value[:, [_channel_number(c) - 1 for c in columns]]
     return CommandCandidate(
         "rosbag2",
@@ -268,7 +270,7 @@ def _pilot(found: TopicSamples) -> CommandCandidate:
         "demand",
         "the pilot's radio by ArduSub's order of channels",
         found.topic,
-        tuple(PILOT[c] for c in columns),
+        tuple(PILOT_CHANNELS[c] for c in columns),
     )
 
 

@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 
 from rovsim.core import pwm
 from rovsim.core.axes import AXES
-from rovsim.core.pwm import PILOT
+from rovsim.core.pwm import PILOT_CHANNELS
 from rovsim.intake.survey.command_names import find_range, find_wrench, has_other_unit
 from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
 from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, find_sparse
@@ -67,7 +67,7 @@ def _pilot(time: Array, columns: dict[str, Array], radio: dict[str, str]) -> Com
         _stacked(columns, radio.values()),
         "demand",
         "the pilot's radio by ArduSub's order of channels",
-        axes=tuple(PILOT[c] for c in radio),
+        axes=tuple(PILOT_CHANNELS[c] for c in radio),
     )
 
 
@@ -113,7 +113,7 @@ def _radio(columns: dict[str, Array]) -> dict[str, str]:
         for name, value in columns.items()
         if (match := RADIO_CHANNEL.fullmatch(name)) and within(value, "pwm")
     }
-    return {c: numbered[c.lstrip("-")] for c in PILOT if c.lstrip("-") in numbered}
+    return {c: numbered[c.lstrip("-")] for c in PILOT_CHANNELS if c.lstrip("-") in numbered}
 
 
 class _LikelyCommands(NamedTuple):

@@ -5,7 +5,7 @@ from typing import Iterator
 
 import numpy as np
 
-from rovsim.core.pwm import PILOT, absent
+from rovsim.core.pwm import PILOT_CHANNELS, absent
 from rovsim.intake.survey.contents import CommandCandidate, Contents, Track
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.formats.ardupilot.commands import LOG_FIELDS
@@ -44,7 +44,7 @@ def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
                 "ardupilot", columns, series.time, value[:, channels - 1], "pwm", meaning
             )
         elif len(channels):
-            pilot = {c: k for c in PILOT if (k := int(c.lstrip("-RC"))) in channels}
+            pilot = {c: k for c in PILOT_CHANNELS if (k := int(c.lstrip("-RC"))) in channels}
             if pilot:
                 sticks = value[:, [k - 1 for k in pilot.values()]]
                 meaning = f"the pilot's radio ({name}) by ArduSub's order of channels"
@@ -55,5 +55,5 @@ def _drives(log: ArduPilotLog) -> Iterator[CommandCandidate]:
                     sticks,
                     "demand",
                     meaning,
-                    axes=tuple(PILOT[c] for c in pilot),
+                    axes=tuple(PILOT_CHANNELS[c] for c in pilot),
                 )

@@ -10,7 +10,7 @@ from rovsim.reporting.figures.legends import add_legend, explain_empty, set_log_
 from rovsim.reporting.figures.palette import BLUE, VERMILION
 from rovsim.reporting.figures.style import sheet, styled
 from rovsim.reporting.wording import title
-from rovsim.results.timing import RATES, BothWays, Latency, Timing
+from rovsim.results.timing import CONTROL_RATES_HZ, BothWays, Latency, Timing
 
 SECTION = "timing"
 CAPTION = (
@@ -58,8 +58,8 @@ def _draw_deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     ]
     low = min([t for t in times if t > 0], default=100.0)
     high = max(times, default=100.0)
-    axes.set_xlim(low / 2, max(high, 1e6 / min(RATES)) * 1.6)
-    for rate in RATES:
+    axes.set_xlim(low / 2, max(high, 1e6 / min(CONTROL_RATES_HZ)) * 1.6)
+    for rate in CONTROL_RATES_HZ:
         axes.axvline(1e6 / rate, color="#444444", linewidth=0.8, linestyle="--", zorder=1)
         axes.annotate(
             f"{rate} Hz",

@@ -11,7 +11,7 @@ from rovsim.reporting.figures.palette import looks
 from rovsim.reporting.figures.panels import plot_all, six_panels
 from rovsim.reporting.figures.series import averaged, excerpt, masked
 from rovsim.reporting.figures.style import styled
-from rovsim.results.error_conditions import BLOCK
+from rovsim.results.error_conditions import BLOCK_S
 
 SECTION = "compare"
 PLACE = 3
@@ -44,13 +44,13 @@ def draw(
     measured = masked(nu_dot, usable)
     part = excerpt(time, measured)
     curves = {
-        name: averaged(time, measured - values, BLOCK)[part]
+        name: averaged(time, measured - values, BLOCK_S)[part]
         for name, values in predicted_nu_dot.items()
     }
     style = looks(curves)
     figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
     remarks = plot_all(axes, time[part], curves, style, True) if curves else ["No model was given."]
-    remarks.append(f"Means over {BLOCK:g} s.")
+    remarks.append(f"Means over {BLOCK_S:g} s.")
     for axis in axes:
         axis.axhline(0.0, color="#444444", linewidth=0.6, zorder=1.5)
     if part.stop - part.start < len(time):

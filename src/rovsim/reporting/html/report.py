@@ -30,7 +30,7 @@ from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import Ladder
 from rovsim.results.published_errors import PublishedErrors
-from rovsim.results.timing import RATES
+from rovsim.results.timing import CONTROL_RATES_HZ
 
 # What the Compare section tabulates: horizon and quantity.
 COMPARED = (
@@ -86,7 +86,7 @@ def render(report: Report) -> str:
             pitfalls=tell_pitfalls(data.pitfalls) if data.pitfalls else [],
             models=_explained(data),
             timing=data.timing.inference if data.timing else {},
-            rates=RATES,
+            rates=CONTROL_RATES_HZ,
             quality=data.quality,
             axes=AXES,
             undrawn=_tell_undrawn(data),

@@ -3,7 +3,7 @@
 from typing import Mapping
 
 from rovsim.reporting.wording import listed, significant, title
-from rovsim.results.timing import RATES, Latency, Timing
+from rovsim.results.timing import CONTROL_RATES_HZ, Latency, Timing
 
 
 def timing_sentences(timing: Timing) -> list[str]:
@@ -20,7 +20,7 @@ def timing_sentences(timing: Timing) -> list[str]:
 
 def fastest_loop(stats: Latency) -> int:
     """Highest rate in Hz whose period no call exceeded, 0 when none."""
-    return max((rate for rate in RATES if stats.misses[str(rate)] == 0), default=0)
+    return max((rate for rate in CONTROL_RATES_HZ if stats.misses[str(rate)] == 0), default=0)
 
 
 def _tell_range(what: str, entries: Mapping[str, Latency]) -> list[str]:
@@ -46,7 +46,7 @@ def _tell_deadlines(what: str, entries: Mapping[str, Latency]) -> list[str]:
 
 def _promise(rate: int) -> str:
     if rate == 0:
-        return f"at least one call was too late even for a {min(RATES)} Hz loop"
+        return f"at least one call was too late even for a {min(CONTROL_RATES_HZ)} Hz loop"
     return f"no call was too late for a {rate} Hz loop"
 
 

@@ -17,7 +17,7 @@ from rovsim import __version__
 from rovsim.application.conf_search import first_folder
 from rovsim.application.settings import CommandSettings, TrackingSettings
 from rovsim.apps.cli.output import say
-from rovsim.core.extras import PACKAGES, installed
+from rovsim.core.extras import EXTRA_PACKAGES, installed
 from rovsim.core.second_process import usable_cores
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.compilation.cache import cache_folder
@@ -53,7 +53,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
 def _environment() -> list[Line]:
     inside = "a virtual environment" if sys.prefix != sys.base_prefix else "no virtual environment"
     return [
-        ("rovsim", True, f"{__version__}, {len(PACKAGES)} extras known"),
+        ("rovsim", True, f"{__version__}, {len(EXTRA_PACKAGES)} extras known"),
         ("python", True, f"{platform.python_version()} in {sys.prefix} ({inside})"),
     ]
 
@@ -80,7 +80,7 @@ def _extras() -> list[Line]:
         (name, True, "installed")
         if installed(name)
         else (name, False, f"pip install 'rovsim[{name}]'")
-        for name in PACKAGES
+        for name in EXTRA_PACKAGES
     ]
 
 
