@@ -31,7 +31,7 @@ from rovsim.learning.learner import (
     train,
 )
 from rovsim.learning.learner import settings_of as stored_settings
-from rovsim.learning.posterior_variance import EXACT, decompose_exact, rbf
+from rovsim.learning.posterior_variance import EXACT_TOLERANCE, decompose_exact, rbf
 from rovsim.learning.scaling import fit_scaling
 from rovsim.reporting.figures.palette import is_learned, looks
 from rovsim.reporting.wording import explain_model, title
@@ -118,7 +118,7 @@ def test_the_exported_variance_is_the_library_s(trained, queries):
     # GPyTorch adds it to what svgp predicts
     jitter = 1e-6 * Y.var(axis=0) if trained.kind == "svgp" else 0.0
     found = trained.posterior(queries)[1]
-    assert (np.abs(found + jitter - theirs(queries)[1]) <= 1.01 * EXACT * prior).all()
+    assert (np.abs(found + jitter - theirs(queries)[1]) <= 1.01 * EXACT_TOLERANCE * prior).all()
 
 
 def far_from(X):

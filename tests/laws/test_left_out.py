@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.signal import lfilter
 
-from rovsim.learning.cross_validation import FACTORS, PARTS, noise_factor, split_rows
+from rovsim.learning.cross_validation import FOLDS, NOISE_FACTORS, noise_factor, split_rows
 from rovsim.learning.posterior_variance import rbf
 
 
@@ -33,7 +33,7 @@ def test_the_factor_is_the_one_a_refit_without_each_stretch_prefers(rows, memory
     disturbance = lfilter([1.0], [1, -memory], rng.normal(size=(2, 300)), axis=1)
     error = np.sin(Z[:, :2].T) + disturbance / disturbance.std()
     K = rbf(Z, Z, np.full(3, 0.5))
-    best = min(FACTORS, key=lambda f: missed(K, error, 1.0, 0.1 * f))
+    best = min(NOISE_FACTORS, key=lambda f: missed(K, error, 1.0, 0.1 * f))
     assert noise_factor(*eigh(K), error, 1.0, 0.1) == best
     assert best > 1.0  # the noise given was a tenth of the truth
 
@@ -43,10 +43,10 @@ def test_what_is_right_is_left_alone(rows):
     K = rbf(Z, Z, np.full(3, 1.0))
     f = np.linalg.cholesky(K + 1e-9 * np.eye(300)) @ rng.normal(size=300)
     error = f[None] + 0.3 * rng.normal(size=300)
-    assert noise_factor(*eigh(K), error, 1.0, 0.09) in FACTORS[:2]
+    assert noise_factor(*eigh(K), error, 1.0, 0.09) in NOISE_FACTORS[:2]
 
 
 def test_every_row_is_left_out_once_however_few():
     for rows in (1, 3, 10, 37):
         assert np.array_equal(np.concatenate(list(split_rows(rows))), np.arange(rows))
-        assert len(list(split_rows(rows))) == min(rows, PARTS)
+        assert len(list(split_rows(rows))) == min(rows, FOLDS)

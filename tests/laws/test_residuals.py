@@ -23,7 +23,12 @@ from rovsim.dynamics.learned.settings import (
 )
 from rovsim.dynamics.learned.simd import exponentials
 from rovsim.learning.export import Kernel, export_expansion, export_neighbours
-from rovsim.learning.posterior_variance import EXACT, ROUGH, decompose_exact, rbf
+from rovsim.learning.posterior_variance import (
+    EXACT_TOLERANCE,
+    ROUGH_TOLERANCE,
+    decompose_exact,
+    rbf,
+)
 from rovsim.learning.scaling import fit_scaling
 
 BLOCK_SETS = st.sets(st.sampled_from(list(COLUMNS)), min_size=1).map(tuple)
@@ -67,8 +72,8 @@ def test_the_variance_is_exact_within_its_bound_for_any_query(seed, noise):
     K, known = rbf(Z, Z, length), decompose_exact(*eigh(rbf(Z, Z, length)), noise)
     k = rbf(np.concatenate([Z[:20], 2.0 * rng.normal(size=(80, 6))]), Z, length)
     exact = 1.0 - (k * np.linalg.solve(K + noise * np.eye(150), k.T).T).sum(1)
-    assert np.abs(known.prior_share(k, len(known.spectrum)) - exact).max() < EXACT + 1e-9
-    assert np.abs(known.prior_share(k, known.fading_rank) - exact).max() < ROUGH + 1e-9
+    assert np.abs(known.prior_share(k, len(known.spectrum)) - exact).max() < EXACT_TOLERANCE + 1e-9
+    assert np.abs(known.prior_share(k, known.fading_rank) - exact).max() < ROUGH_TOLERANCE + 1e-9
 
 
 def grid(seed, n, m):

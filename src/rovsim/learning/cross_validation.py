@@ -9,13 +9,13 @@ from typing import Iterator
 import numpy as np
 from numpy import ndarray as Array
 
-PARTS = 10  # each left out once
-FACTORS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # on the noise
+FOLDS = 10  # each left out once
+NOISE_FACTORS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)  # on the noise
 
 
 def split_rows(rows: int) -> Iterator[Array]:
-    """Yield the row indices of each of `PARTS` stretches of consecutive rows; none is empty."""
-    yield from (s for s in np.array_split(np.arange(rows), PARTS) if len(s))
+    """Yield the row indices of each of `FOLDS` stretches of consecutive rows; none is empty."""
+    yield from (s for s in np.array_split(np.arange(rows), FOLDS) if len(s))
 
 
 def noise_factor(
@@ -35,14 +35,14 @@ def noise_factor(
         noise: variance of the noise that maximises the marginal likelihood.
 
     Returns:
-        One of `FACTORS`.
+        One of `NOISE_FACTORS`.
     """
     projected = vectors.T @ error.T
-    losses = np.zeros(len(FACTORS))
-    for i, factor in enumerate(FACTORS):
+    losses = np.zeros(len(NOISE_FACTORS))
+    for i, factor in enumerate(NOISE_FACTORS):
         inverse = 1.0 / (outputscale * np.maximum(values, 0.0) + factor * noise)
         weights = vectors @ (inverse[:, None] * projected)
         for out in split_rows(len(values)):
             block = (vectors[out] * inverse) @ vectors[out].T
             losses[i] += np.sum(np.linalg.solve(block, weights[out]) ** 2)
-    return FACTORS[int(np.argmin(losses))]
+    return NOISE_FACTORS[int(np.argmin(losses))]

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 # The order of sums depends on the number of threads: fixed here, not taken from the machine. With
 # one, trainings that a workflow runs side by side do not fight over cores (two save a third alone).
-THREADS = 1
+TRAINING_THREADS = 1
 
 
 @contextmanager
@@ -26,7 +26,7 @@ def seeded_torch(seed: int) -> Iterator[None]:
     exact = settings.fast_computations(covar_root_decomposition=False, log_prob=False, solves=False)
     with torch.random.fork_rng(devices=[]), exact, settings.max_cholesky_size(10**6):
         torch.manual_seed(seed)
-        torch.set_num_threads(THREADS)
+        torch.set_num_threads(TRAINING_THREADS)
         torch.set_default_dtype(torch.float64)
         try:
             yield

@@ -18,11 +18,11 @@ from rovsim.core.robust import STD_PER_MAD
 from rovsim.learning.export import Kernel, export_expansion
 from rovsim.learning.learner import Posterior, Predict, Progress, spread_rows
 from rovsim.learning.posterior_variance import PosteriorVariance, rbf
-from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.learning.scaling import MIN_SPREAD, Scaling, fit_scaling
 from rovsim.learning.settings import LearnerSettings
 
-NEARBY = 20  # rows: their median's own noise is a quarter of a row's
-SHOWN = 2000  # training rows that show how sure a process is where it was taught
+NEAREST_ROWS = 20  # their median's own noise is a quarter of a row's
+POSTERIOR_ROWS = 2000  # of training that show how sure a process is where it was taught
 
 
 class GaussianSettings(LearnerSettings):
@@ -48,10 +48,10 @@ def huberize(X: Array, Y: Array, settings: GaussianSettings) -> Array:
         Y: targets (n, 6), m/s2 and rad/s2.
         settings: with the limit, which may be None.
     """
-    if settings.huberized is None or len(X) <= NEARBY:
+    if settings.huberized is None or len(X) <= NEAREST_ROWS:
         return Y
     Z = fit_scaling("standard", X).apply(X)
-    _, neighbours = scipy.spatial.cKDTree(Z).query(Z, NEARBY + 1)
+    _, neighbours = scipy.spatial.cKDTree(Z).query(Z, NEAREST_ROWS + 1)
     medians = np.median(Y[np.asarray(neighbours)[:, 1:]], axis=1)
     reach = settings.huberized * STD_PER_MAD * np.median(np.abs(Y - medians), axis=0)
     return medians + np.clip(Y - medians, -reach, reach)
@@ -75,7 +75,7 @@ def scalings(kind: str, X: Array, Y: Array) -> dict[str, Array]:
         "shift": features.shift,
         "scale": features.scale,
         "target_shift": targets.shift,
-        "target_scale": np.where(np.ptp(Y, axis=0) > CONSTANT, targets.scale, 0.0),
+        "target_scale": np.where(np.ptp(Y, axis=0) > MIN_SPREAD, targets.scale, 0.0),
     }
 
 
@@ -289,7 +289,7 @@ def fade_beyond(
     """
     if settings.extrapolation_quantile is None:
         return list(variances)
-    sample = _features(arrays).apply(X[spread_rows(len(X), SHOWN, seed=0)])
+    sample = _features(arrays).apply(X[spread_rows(len(X), POSTERIOR_ROWS, seed=0)])
     return [
         variance.faded_from(rbf(sample, points, lengthscale), settings.extrapolation_quantile)
         for variance, lengthscale in zip(variances, arrays["lengthscale"], strict=True)

@@ -15,7 +15,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import SimulationSettings
 
-MOST_ROWS = 1 << 18  # 44 min at 100 Hz, some 40 MB; of more, every second, fourth, ... is kept
+MAX_ROWS = 1 << 18  # 44 min at 100 Hz, some 40 MB; of more, every second, fourth, ... is kept
 
 
 def flown_with(control: str, run: Any) -> bool:
@@ -73,7 +73,7 @@ class Gathered:
 
     features: FeatureSettings
     seed: int
-    most: int = MOST_ROWS
+    most: int = MAX_ROWS
     runs: list[str] = field(default_factory=list)
     rows: int = 0
     _every: int = 1

@@ -18,8 +18,10 @@ import numpy as np
 import scipy
 from numpy import ndarray as Array
 
-EXACT = 1e-6  # of the prior variance: what the exported variance may differ from the process' own
-ROUGH = 5e-2  # the same for fading, at a tenth of the cost; 1 - rho stays right within a quarter
+# Of the prior variance: what the exported variance may differ from the process' own.
+EXACT_TOLERANCE = 1e-6
+# The same for fading, at a tenth of the cost; 1 - rho stays right within a quarter.
+ROUGH_TOLERANCE = 5e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +71,11 @@ def decompose_exact(values: Array, vectors: Array, noise: float) -> PosteriorVar
         vectors: the eigenvectors (n, n), one a column.
         noise: variance of the noise, > 0, in units of the prior variance.
     """
-    used = values > _least(noise, EXACT)
+    used = values > _least(noise, EXACT_TOLERANCE)
     used[-1] = True  # even with much noise: rank 0 would mean that there is no variance
     values, vectors = values[used][::-1], vectors[:, used][:, ::-1]
     spectrum = -values / (noise * (values + noise))
-    fading_rank = int(np.sum(values > _least(noise, ROUGH)))
+    fading_rank = int(np.sum(values > _least(noise, ROUGH_TOLERANCE)))
     return PosteriorVariance(
         1.0 / noise, spectrum, np.ascontiguousarray(vectors.T), max(fading_rank, 1)
     )

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 # A column that varies less than this (SI units) is constant: what varies in it is rounding, such
 # as the heave force of a mixer whose vertical thrusters are off.
-CONSTANT = 1e-9
+MIN_SPREAD = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,4 +34,4 @@ def fit_scaling(kind: str, X: Array) -> Scaling:
         return Scaling(np.zeros(d), np.ones(d))
     spread = np.ptp(X, axis=0)
     shift, scale = (X.mean(0), X.std(0)) if kind == "standard" else (X.min(0), spread)
-    return Scaling(shift, np.where(spread > CONSTANT, scale, 1.0))
+    return Scaling(shift, np.where(spread > MIN_SPREAD, scale, 1.0))

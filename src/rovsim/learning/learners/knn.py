@@ -9,7 +9,7 @@ from pydantic import Field
 
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.layout import MAX_NEIGHBOURS
-from rovsim.learning.cross_validation import PARTS, split_rows
+from rovsim.learning.cross_validation import FOLDS, split_rows
 from rovsim.learning.export import export_neighbours
 from rovsim.learning.learner import (
     Learner,
@@ -18,10 +18,10 @@ from rovsim.learning.learner import (
     Trained,
     spread_rows,
 )
-from rovsim.learning.scaling import CONSTANT, Scaling, fit_scaling
+from rovsim.learning.scaling import MIN_SPREAD, Scaling, fit_scaling
 from rovsim.learning.settings import LearnerSettings
 
-TRIED = (3, 5, 10, 20, 30)
+CANDIDATE_K = (3, 5, 10, 20, 30)
 
 
 class KnnSettings(LearnerSettings):
@@ -66,17 +66,17 @@ def best_k(Z: Array, Y: Array, weights: str) -> int:
         Y: targets (n, 6), m/s2 and rad/s2.
         weights: `uniform`, or `distance` for inverse distances.
     """
-    candidates = [k for k in TRIED if k <= len(Z) - -(-len(Z) // PARTS)]
+    candidates = [k for k in CANDIDATE_K if k <= len(Z) - -(-len(Z) // FOLDS)]
     if len(candidates) < 2:
-        return max(1, min(TRIED[0], len(Z)))
-    scale = np.maximum(np.std(Y, axis=0), CONSTANT)
+        return max(1, min(CANDIDATE_K[0], len(Z)))
+    scale = np.maximum(np.std(Y, axis=0), MIN_SPREAD)
     errors = np.zeros(len(candidates))
     for out in split_rows(len(Z)):
         training = np.setdiff1d(np.arange(len(Z)), out)
         distance, nearest = map(
             np.asarray, scipy.spatial.cKDTree(Z[training]).query(Z[out], candidates[-1])
         )
-        share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + CONSTANT)
+        share = np.ones_like(distance) if weights == "uniform" else 1.0 / (distance + MIN_SPREAD)
         sums = np.cumsum(share[..., None] * Y[training][nearest], axis=1)
         for i, k in enumerate(candidates):
             mean = sums[:, k - 1] / share[:, :k].sum(axis=1)[:, None]
