@@ -13,7 +13,7 @@ from rovsim.dynamics.model import Model, nominal
 from rovsim.dynamics.user_effects.effects_file import read_effects
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.signals.motion import Motion
-from rovsim.simulation.synthetic_tank.settings import SUITABLE
+from rovsim.simulation.synthetic_tank.settings import SUITABLE_TANKS
 
 SHARED = Path(os.environ.get("ROVSIM_DATA", Path(__file__).parents[2] / "shared" / "data")).parent
 
@@ -38,7 +38,7 @@ def beside_others(effect: Effect | None, cls: type[Effect] | None = None) -> Mod
 
     They change nothing, and one engine serves all such models; loops need a log of their own.
     """
-    suits = SUITABLE.get((cls or type(effect)).requires, {})
+    suits = SUITABLE_TANKS.get((cls or type(effect)).requires, {})
     if "vehicle" in suits:
         found = nominal(load_vehicle(suits["vehicle"]))
         return found if effect is None else found + effect

@@ -16,7 +16,7 @@ from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.dynamics.uncertainty import Draws, Uncertainty, correlate
 from rovsim.evaluation.coverage import cover
 from rovsim.results.fitted import Correlation, FittedNoise
-from rovsim.simulation.bands import LEVEL, band_ends, predict_band, why_without_bands
+from rovsim.simulation.bands import BAND_LEVEL, band_ends, predict_band, why_without_bands
 from rovsim.simulation.ensemble import Ensemble
 from rovsim.simulation.noise_draws import NoiseDraws
 from rovsim.simulation.replay import ReplayCase, find_spans, predict, predict_all
@@ -73,7 +73,7 @@ def test_a_band_holds_its_share_of_what_happens_to_such_a_vehicle():
         assert found.windows == len(spans)
         shares.append(found.at_end.array())
     # 29 windows of 2 s, 6 axes, 3 runs: half a thousand points that are nearly independent
-    assert np.mean(shares) == pytest.approx(LEVEL, abs=4 * np.sqrt(0.09 / 522))
+    assert np.mean(shares) == pytest.approx(BAND_LEVEL, abs=4 * np.sqrt(0.09 / 522))
 
 
 def test_a_band_that_is_too_narrow_is_found_out():
@@ -82,7 +82,7 @@ def test_a_band_that_is_too_narrow_is_found_out():
     calm = NOISE.model_copy(update={"disturbance": (0.005,) * 3 + (0.0125,) * 3})
     spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
     found = cover(run, predict_band(known(calm), run, spans, SETTINGS), spans)
-    assert np.mean(found.at_end.array()) < LEVEL - 0.1
+    assert np.mean(found.at_end.array()) < BAND_LEVEL - 0.1
 
 
 def test_where_nothing_is_left_to_chance_the_band_is_the_prediction():
@@ -110,7 +110,7 @@ def test_a_long_run_is_done_in_parts_that_do_not_show(monkeypatch):
     run = motion(sticks(), seconds=24.0)
     spans = find_spans(run, SETTINGS.replay.only(2.0), open_loop=False)["2"]
     whole = predict_band(SURE, run, spans, SETTINGS)
-    monkeypatch.setattr("rovsim.simulation.bands.LONGEST", 4.0)
+    monkeypatch.setattr("rovsim.simulation.bands.MAX_GROUP_S", 4.0)
     parts = predict_band(SURE, run, spans, SETTINGS)
     np.testing.assert_allclose(parts.nu, whole.nu, atol=1e-5)
     assert np.isnan(predict_band(SURE, run, [(0, 2400)], SETTINGS).nu).all()

@@ -40,7 +40,7 @@ def test_pushes_in_parts_are_those_of_the_whole():
 
 def test_frames_are_those_of_the_whole_flight(monkeypatch):
     whole = fly(4.0, every_step)
-    monkeypatch.setattr(true_run, "PUSHED", 7)
+    monkeypatch.setattr(true_run, "TICKS_PER_DRAW", 7)
     part = fly(4.0, frames)
     np.testing.assert_array_equal(part.state, whole.state[::10])
     np.testing.assert_array_equal(part.time, whole.time[::10])
@@ -49,7 +49,7 @@ def test_frames_are_those_of_the_whole_flight(monkeypatch):
 
 
 def test_memory_follows_the_frames_and_not_the_steps(monkeypatch):
-    monkeypatch.setattr(true_run, "PUSHED", 10)
+    monkeypatch.setattr(true_run, "TICKS_PER_DRAW", 10)
     fly(1.0, frames)  # whatever is made once
     tracemalloc.start()
     flown = fly(20.0, frames)

@@ -22,7 +22,7 @@ from rovsim.simulation.command_columns import mark_angles
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
-from rovsim.simulation.synthetic_tank.settings import SUITABLE, TankRun, TankSettings
+from rovsim.simulation.synthetic_tank.settings import SUITABLE_TANKS, TankRun, TankSettings
 
 RUN = (TankRun(id="one", control="6dof", split="train"),)
 PODS = {
@@ -61,7 +61,7 @@ def check_replay(data, run):
 
 
 def test_a_torpedo_flies_by_its_fins(tmp_path):
-    campaign, data, run = flown(tmp_path, **SUITABLE["surfaces"])
+    campaign, data, run = flown(tmp_path, **SUITABLE_TANKS["surfaces"])
     assert campaign.commands.columns == ["propeller", "rudder", "stern"]
     angles = run.commands.value[:, 1:]
     assert 0.02 < np.abs(angles).max() <= 0.25
@@ -70,7 +70,7 @@ def test_a_torpedo_flies_by_its_fins(tmp_path):
 
 
 def test_what_floats_stays_at_the_surface(tmp_path):
-    without_waves = {k: SUITABLE["waterplane"][k] for k in ("vehicle", "tank")}
+    without_waves = {k: SUITABLE_TANKS["waterplane"][k] for k in ("vehicle", "tank")}
     _, data, run = flown(tmp_path, **without_waves)
     assert run.site.level == pytest.approx(run.site.tank[2, 0], abs=0.01)
     check_replay(data, run)
@@ -79,7 +79,7 @@ def test_what_floats_stays_at_the_surface(tmp_path):
 @pytest.mark.thorough
 def test_a_wrong_depth_at_rest_is_no_sure_force(tmp_path):
     """A pilot who pushed a floating vehicle down was a wrench of -45 N at a probability of one."""
-    _, data, run = flown(tmp_path, duration=40.0, **SUITABLE["waterplane"])
+    _, data, run = flown(tmp_path, duration=40.0, **SUITABLE_TANKS["waterplane"])
     lower = replace(run, site=replace(run.site, level=run.site.level + 0.02))
     runs = Runs({"one": lower}, data.runs.stages, data.runs.splits)
     settings = select(compose(["command=diagnose"]), DiagnosisSettings)
@@ -101,7 +101,7 @@ def test_pods_turn_as_the_log_says(tmp_path):
 
 
 def test_columns_in_another_order_are_refused(tmp_path):
-    campaign, _, _ = flown(tmp_path, **SUITABLE["surfaces"])
+    campaign, _, _ = flown(tmp_path, **SUITABLE_TANKS["surfaces"])
     columns = ["rudder", "propeller", "stern"]
     log = campaign.commands.model_copy(update={"columns": columns})
     object.__setattr__(campaign, "commands", log)

@@ -21,7 +21,7 @@ from rovsim.measurement.signals.chain import SignalSettings, clean
 from rovsim.simulation.replay import replay
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
-from rovsim.simulation.synthetic_tank.description import SEALED, describe_campaign
+from rovsim.simulation.synthetic_tank.description import TRUTH_FILE, describe_campaign
 from rovsim.simulation.synthetic_tank.settings import Camera, Log, TankRun, TankSettings, Turbulence
 
 RUN = TankRun(id="6dof-1", control="6dof", split="test")
@@ -219,7 +219,7 @@ def test_a_tank_made_again_replaces_its_recordings_and_nothing_else(tmp_path, mo
     (tmp_path / "raw" / "notes.md").write_text("years of work")
     monkeypatch.chdir(tmp_path / "raw")
     make_campaign(TankSettings(runs=(RUN,), duration=2.0), Path("."), built_in())
-    names = {"6dof-1_6D.tsv", "6dof-1_commands.csv", "campaign.yaml", "notes.md", SEALED}
+    names = {"6dof-1_6D.tsv", "6dof-1_commands.csv", "campaign.yaml", "notes.md", TRUTH_FILE}
     assert {path.name for path in (tmp_path / "raw").iterdir()} == names
     assert list(tmp_path.iterdir()) == [tmp_path / "raw"]
     assert load_campaign(tmp_path / "raw").runs[0].id == "6dof-1"
@@ -260,5 +260,5 @@ def test_the_truth_is_sealed(tmp_path):
     make_campaign(
         TankSettings(runs=(RUN,), duration=4.0, effects=(LAG,)), tmp_path / "raw", built_in()
     )
-    (tmp_path / "raw" / SEALED).unlink()
+    (tmp_path / "raw" / TRUTH_FILE).unlink()
     read_run(load_campaign(tmp_path / "raw"), RUN.id)

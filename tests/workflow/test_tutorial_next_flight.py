@@ -28,7 +28,7 @@ from rovsim.estimation.observer.train_runs import prepare_train
 from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands, as_logged
 from rovsim.results.experiment import Experiment
-from rovsim.simulation.rest import PLACED
+from rovsim.simulation.rest import PLACEMENT_STD_M
 from rovsim.simulation.synthetic_tank.sent_log import read_sent_log
 from said import unfolded
 from sketches import draw_few
@@ -226,4 +226,4 @@ def test_a_flight_without_a_file_beside_it_starts_in_the_middle(designed, tmp_pa
     placed = np.array([start["x_m"], -start["y_m"], -start["z_m"]])
     for path, expected in ((plan, placed), (alone, walls.mean(axis=1))):
         begin = read_sent_log(path, log, up=True).start(walls, draws(0))
-        np.testing.assert_allclose(begin[:3], expected, atol=4 * PLACED)
+        np.testing.assert_allclose(begin[:3], expected, atol=4 * PLACEMENT_STD_M)

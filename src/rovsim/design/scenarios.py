@@ -14,7 +14,7 @@ from rovsim.design.recording_setup import RecordingSetup
 from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drives
-from rovsim.simulation.rest import PLACED, TURNED
+from rovsim.simulation.rest import PLACEMENT_STD_M, PLACEMENT_STD_RAD
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +123,9 @@ def _draw_of(
             for _ in models
         ]
     )
-    shift, turn = PLACED * random.normal(size=(count, 3)), TURNED * random.normal(size=count)
+    shift, turn = (
+        PLACEMENT_STD_M * random.normal(size=(count, 3)),
+        PLACEMENT_STD_RAD * random.normal(size=count),
+    )
     disturbances[0], shift[0], turn[0] = slow.mean, 0.0, 0.0
     return Scenarios(models, disturbances, shift, turn, setup)

@@ -17,7 +17,7 @@ from rovsim.dynamics.effects.base import StochasticCurrent
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.noise_draws import NoiseDraws
-from rovsim.simulation.prediction import LEVEL, Band, Prediction
+from rovsim.simulation.prediction import BAND_LEVEL, Band, Prediction
 from rovsim.simulation.replay import ReplayCase, Spans, predict_all
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.step_grid import StepGrid
@@ -26,8 +26,8 @@ from rovsim.simulation.windows import predicted
 # A draw falls below the i-th of n others with probability i / (n + 1): with 39 the ends of the band
 # are the second and the last but one.
 DRAWS = 39
-LEAD_IN = 5.0  # s before a part of a run: by then thrusters and filters have settled
-LONGEST = 300.0  # s at once: draws of longer ones would not fit into memory
+LEAD_IN_S = 5.0  # before a part of a run: by then thrusters and filters have settled
+MAX_GROUP_S = 300.0  # at once: draws of longer ones would not fit into memory
 
 
 def why_without_bands(model: Model, motion: Motion) -> str | None:
@@ -61,7 +61,7 @@ def predict_band(
 
     Returns:
         The band at all times of the run, NaN outside the windows and in windows longer than
-        `LONGEST`; None where the model has no band, see `why_without_bands`.
+        `MAX_GROUP_S`; None where the model has no band, see `why_without_bands`.
 
     Raises:
         BadInput: the run lacks what an effect of the model needs.
@@ -72,8 +72,8 @@ def predict_band(
     noise = NoiseDraws.of(model.uncertainty.noise, random)
     assert noise is not None
     band, period = Band.empty(len(motion.time)), float(np.mean(np.diff(motion.time)))
-    for group in _divide(spans, round(LONGEST / period)):
-        first = max(group[0][0] - round(LEAD_IN / period), 0)
+    for group in _divide(spans, round(MAX_GROUP_S / period)):
+        first = max(group[0][0] - round(LEAD_IN_S / period), 0)
         part = slice(first, group[-1][1] + round(settings.signals.reach / period) + 1)
         windows = [(a - first, b - first) for a, b in group]
         group_band = _draw_band(model, motion.part(part), windows, noise, settings)
@@ -144,6 +144,6 @@ def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
 
 def band_ends(drawn: Array) -> Array:
     """Lower and upper end (2, ...) of the band that s draws (s, ...) give."""
-    tail = 0.5 * (1.0 - LEVEL)
+    tail = 0.5 * (1.0 - BAND_LEVEL)
     with np.errstate(invalid="ignore"):  # of draws that diverged
         return np.quantile(drawn, [tail, 1.0 - tail], axis=0, method="weibull")

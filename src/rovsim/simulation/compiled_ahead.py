@@ -12,23 +12,23 @@ from rovsim.simulation.correction import Correction
 from rovsim.simulation.drive import Drive
 from rovsim.simulation.rest import rest_state
 
-DONE = "compiled_ahead"  # in the folder of what is kept, once it was done
-VEHICLE = "bluerov2"  # types are those of any
+MARKER_FILE = "compiled_ahead"  # in the folder of what is kept, once it was done
+EXAMPLE_VEHICLE = "bluerov2"  # types are those of any
 
 
 def is_compiled() -> bool:
     """Whether `compile_ahead` was done before."""
-    return (cache_folder() / DONE).exists()
+    return (cache_folder() / MARKER_FILE).exists()
 
 
 def compile_ahead() -> None:
     """Compile the engines in the order in which a diagnosis needs them, by calls of one step."""
-    model = nominal(load_vehicle(VEHICLE))
+    model = nominal(load_vehicle(EXAMPLE_VEHICLE))
     with_effects = Batch([model], Site.unknown(), candidates=built_in().wrenches, learned=False)
     with_effects.innovations([_drive(model)], _starts(), _correction())
     for batch in (with_effects, Batch([model], Site.unknown(), learned=False)):
         batch.trajectories([_drive(model)], _starts(), np.array([0.0, 0.01]))
-    (cache_folder() / DONE).touch()
+    (cache_folder() / MARKER_FILE).touch()
 
 
 def _starts() -> Starts:

@@ -15,7 +15,7 @@ from rovsim.dynamics.step_cuts import StepCuts
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.step_grid import StepGrid
 
-KEPT = 1 << 26  # bytes: fifty drives of a minute each, as many as one step of a fit needs
+MAX_KEPT_BYTES = 1 << 26  # fifty drives of a minute each, as many as one step of a fit needs
 
 
 class Reads(NamedTuple):
@@ -207,7 +207,7 @@ class Drives:
         self._given = commands, edges, between
         self._cuts = StepCuts()
         self._joined = None if parts is None else JoinedSteps.of(parts)
-        self._kept = Recent(KEPT) if kept is None else kept
+        self._kept = Recent(MAX_KEPT_BYTES) if kept is None else kept
         self._own = object()  # part of its keys, which no other run has
 
     def of(self, models: Sequence[Model]) -> list[Drive]:

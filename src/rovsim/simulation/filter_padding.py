@@ -17,7 +17,7 @@ from rovsim.measurement.signals.chain import SignalSettings, filter_and_differen
 from rovsim.measurement.signals.clock import find_stretches, time_step
 from rovsim.measurement.signals.motion import Motion
 
-AT_ONCE = 1 << 16  # samples in a stack: filters take some twenty times its room
+MAX_STACK_SAMPLES = 1 << 16  # filters take some twenty times its room
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def differentiate_windows(
     for (before, count), members in by_length.items():
         if not count:
             continue
-        batch_size = max(1, AT_ONCE // (before + count))
+        batch_size = max(1, MAX_STACK_SAMPLES // (before + count))
         for batch in (members[k : k + batch_size] for k in range(0, len(members), batch_size)):
             measured = [motions[k].eta[windows[k].first - before : windows[k].first] for k in batch]
             padded = np.stack(

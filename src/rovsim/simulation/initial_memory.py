@@ -14,7 +14,7 @@ from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 
-STEP = 0.01  # s; the velocity is taken as straight between two samples, for which this is exact
+STEP_S = 0.01  # the velocity is taken as straight between two samples, for which this is exact
 
 
 def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
@@ -39,8 +39,8 @@ def measured_memory(model: Model, motion: Motion, times: Array) -> Array:
         return np.zeros((len(times), 6))
     nu_r = motion.state_nu[rows].copy()
     nu_r[:, :3] -= unrotate(motion.eta[rows, 3:], body.current)
-    end = np.max(times, initial=motion.time[0] + STEP)
-    count = int(np.ceil((end - motion.time[0]) / STEP - 1e-9))
+    end = np.max(times, initial=motion.time[0] + STEP_S)
+    count = int(np.ceil((end - motion.time[0]) / STEP_S - 1e-9))
     grid = np.linspace(motion.time[0], end, count + 1)
     h = float(grid[1] - grid[0])
     on_grid = np.stack([np.interp(grid, motion.time[rows], column) for column in nu_r.T], axis=1)

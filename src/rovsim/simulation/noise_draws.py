@@ -14,8 +14,8 @@ from rovsim.measurement.signals.filter import filter_eta
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.fitted import FittedNoise
 
-PAD = 1.0  # s before and after, so that the filter has settled
-AT_ONCE = 1 << 16  # samples: filters take some twenty times their room
+PAD_S = 1.0  # before and after, so that the filter has settled
+MAX_STACK_SAMPLES = 1 << 16  # filters take some twenty times their room
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ class NoiseDraws:
         if motion.binned:
             return [self._read_bins_again(motion) for _ in range(draws)]
         period, signals = time_step(motion.time), signals.suited(motion)
-        batch_size = max(1, AT_ONCE // len(motion.time))
+        batch_size = max(1, MAX_STACK_SAMPLES // len(motion.time))
         motions = []
         for first in range(0, draws, batch_size):
             count = min(batch_size, draws - first)
@@ -108,7 +108,7 @@ class NoiseDraws:
             Poses (draws, count, 7), velocities (draws, count, 6) and accelerations of that shape,
             relative to the body at rest, m, m/s, m/s2 and rad, rad/s, rad/s2.
         """
-        pad = round(PAD / period)
+        pad = round(PAD_S / period)
         kicks = np.stack([self._err(count + 2 * pad, period) for _ in range(draws)])
         poses = np.concatenate([kicks[..., :3], rotations.exp(kicks[..., 3:])], axis=-1)
         smooth = filter_eta(view.smooth(poses, period), period, signals.filter)

@@ -10,7 +10,7 @@ from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.horizons import OPEN_LOOP
 from rovsim.core.run import RunInfo
 
-LEVEL = 0.9  # share of the measurement that a band should contain
+BAND_LEVEL = 0.9  # share of the measurement that a band should contain
 
 
 @dataclass(frozen=True, eq=False)

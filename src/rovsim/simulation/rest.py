@@ -3,8 +3,8 @@
 import numpy as np
 from numpy import ndarray as Array
 
-# How exactly people put a vehicle where a flight is to begin: standard deviations, m and rad.
-PLACED, TURNED = 0.05, 0.05
+# How exactly people put a vehicle where a flight is to begin.
+PLACEMENT_STD_M, PLACEMENT_STD_RAD = 0.05, 0.05
 
 
 def rest_state(place: Array, heading: Array | float) -> Array:

@@ -20,7 +20,7 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drive, Drives
 
-LONGEST = 0.01  # s, an integration step; see `rovsim.simulation.settings.ReplaySettings`
+MAX_STEP_S = 0.01  # an integration step; see `rovsim.simulation.settings.ReplaySettings`
 
 
 class Stepper:
@@ -83,7 +83,7 @@ class Stepper:
         state, command = np.array(state, dtype=np.float64), np.asarray(command, dtype=np.float64)
         self._refuse(state, command, dt)
         self._give(command)
-        count = max(1, ceil(dt / LONGEST - 1e-9))
+        count = max(1, ceil(dt / MAX_STEP_S - 1e-9))
         h = dt / count
         edges = self.time + h * np.arange(count + 1)
         thrust = self.model.thrust_path.arrived(
@@ -167,11 +167,11 @@ def rollouts(
     """
     for model in models:
         _refuse_unknown_duration(model, inf)
-    if not 0.0 < dt <= LONGEST:
+    if not 0.0 < dt <= MAX_STEP_S:
         raise BadInput(
             f"dt {dt}",
             where="rollouts",
-            expected=f"dt of at most {LONGEST} s",
+            expected=f"dt of at most {MAX_STEP_S} s",
             remedy="Give a command several times in a row.",
         )
     count, edges = len(commands), dt * np.arange(len(commands) + 1)

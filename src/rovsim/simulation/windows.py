@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion
 
-LAST_SHARE = 0.75  # of a window's length, that what is left of an uneven run must last
+MIN_LAST_SHARE = 0.75  # of a window's length, that what is left of an uneven run must last
 
 
 def find_windows(motion: Motion, seconds: float) -> Iterator[tuple[int, int]]:
@@ -37,7 +37,7 @@ def _find_bins(motion: Motion, first: int, last: int, seconds: float) -> Iterato
     """Find the windows among the bins `first` to `last` - 1 of a binned run."""
     starts = np.append(motion.time, motion.end)[: last + 1]
     anchor = first
-    while starts[last] - starts[anchor] >= LAST_SHARE * seconds:
+    while starts[last] - starts[anchor] >= MIN_LAST_SHARE * seconds:
         end = anchor + 1 + int(np.argmin(np.abs(starts[anchor + 1 :] - starts[anchor] - seconds)))
         yield anchor, end
         if end >= last:

@@ -25,7 +25,13 @@ from rovsim.dynamics.vehicle import Vehicle
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.measured_states import accelerate_as_logged, undo_mocap_view
 from rovsim.simulation.settings import ReplaySettings
-from rovsim.simulation.synthetic_tank.settings import SUITABLE, Box, Log, TankSettings, Turbulence
+from rovsim.simulation.synthetic_tank.settings import (
+    SUITABLE_TANKS,
+    Box,
+    Log,
+    TankSettings,
+    Turbulence,
+)
 from rovsim.simulation.synthetic_tank.true_run import Flight, LeftTank, fly_run
 
 SEED = 20260101  # of the typical flight; any will do
@@ -91,8 +97,8 @@ def typical_flight(model: Model) -> Motion:
 
 def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
     """Return a tank that suits a vehicle, without turbulence, which no model describes."""
-    suitable = SUITABLE["surfaces"] if vehicle.surfaces else {}
-    suitable = SUITABLE["waterplane"] if vehicle.floats else suitable
+    suitable = SUITABLE_TANKS["surfaces"] if vehicle.surfaces else {}
+    suitable = SUITABLE_TANKS["waterplane"] if vehicle.floats else suitable
     box = Box(**suitable["tank"]) if suitable else Box()
     still_water = Turbulence(force=0.0, moment=0.0)
     return TankSettings(

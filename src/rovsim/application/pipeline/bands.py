@@ -12,7 +12,7 @@ from rovsim.evaluation.coverage import cover
 from rovsim.measurement.signals.motion import Motion
 from rovsim.results.bands import Bands, Coverage, ModelBands, RunBands
 from rovsim.simulation.bands import predict_band, why_without_bands
-from rovsim.simulation.prediction import LEVEL, Band
+from rovsim.simulation.prediction import BAND_LEVEL, Band
 from rovsim.simulation.replay import find_spans
 from rovsim.simulation.settings import SimulationSettings
 
@@ -62,7 +62,7 @@ def cover_test_runs(
     if not by_model:
         return None
     models_of = {name: ModelBands(runs=runs) for name, runs in by_model.items()}
-    return Bands(level=LEVEL, models=models_of)
+    return Bands(level=BAND_LEVEL, models=models_of)
 
 
 def _cover_run(model: Model, motion: Motion, settings: SimulationSettings) -> dict[str, Coverage]:

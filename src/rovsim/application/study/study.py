@@ -16,8 +16,8 @@ from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.measurement.loading import load_campaign
 from rovsim.reporting.report_data import list_run_figures
 from rovsim.simulation.synthetic_tank.description import (
-    SEALED,
-    VEHICLE,
+    TRUTH_FILE,
+    VEHICLE_FILE,
     describe_campaign,
     own_vehicle,
 )
@@ -97,7 +97,7 @@ class Study:
     @property
     def tank_files(self) -> list[str]:
         """All files of a synthetic campaign: its description, and the raw files of its runs."""
-        beside = [VEHICLE, SEALED] if own_vehicle(self.settings.tank) else [SEALED]
+        beside = [VEHICLE_FILE, TRUTH_FILE] if own_vehicle(self.settings.tank) else [TRUTH_FILE]
         description = [self.campaign_file, *(f"{self.folder}/raw/{name}" for name in beside)]
         return [*description, *(path for run in self.runs() for path in self.raw(run))]
 

@@ -36,7 +36,7 @@ from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.wording import title
-from rovsim.simulation.bands import LEVEL, Band, why_without_bands
+from rovsim.simulation.bands import BAND_LEVEL, Band, why_without_bands
 from rovsim.simulation.prediction import Prediction
 
 Predicted = dict[str, dict[str, Prediction]]  # by run and model
@@ -102,7 +102,7 @@ class Compare:
             names = {key: name for key, (name, _) in QUANTITIES.items()}
             bind("quantity", ui.select(names, label="Quantity"))
             if any(m.uncertainty is not None for m in self.bench.models.values()):
-                bind("bands", ui.switch(f"{LEVEL:.0%} bands"), optional=True)
+                bind("bands", ui.switch(f"{BAND_LEVEL:.0%} bands"), optional=True)
             horizon_slider(self.chosen["horizon"], self._horizon)
 
     async def _horizon(self, horizon: float | None) -> None:

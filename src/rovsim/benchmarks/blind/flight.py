@@ -9,7 +9,7 @@ from rovsim.benchmarks.blind.independent.campaign import STATED, OutOfTank, reco
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
-from rovsim.simulation.synthetic_tank.description import SEALED
+from rovsim.simulation.synthetic_tank.description import TRUTH_FILE
 from rovsim.simulation.synthetic_tank.true_run import LeftTank
 
 TRIES = 12  # 0.8^12 = 0.07 of the size
@@ -78,7 +78,7 @@ def _held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case |
 def _in_tank(case: Case, out: Path) -> None:
     unlisted = [physics.build() for physics in case.outside]
     make_campaign(case.settings(), out, built_in(), unlisted=unlisted)
-    (out / SEALED).unlink()
+    (out / TRUTH_FILE).unlink()
 
 
 def _independently(case: Case, out: Path) -> None:

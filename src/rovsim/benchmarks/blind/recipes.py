@@ -14,7 +14,7 @@ import numpy as np
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.base import Parameter
-from rovsim.simulation.synthetic_tank.settings import SUITABLE
+from rovsim.simulation.synthetic_tank.settings import SUITABLE_TANKS
 
 Range = tuple[float, float]
 
@@ -91,16 +91,16 @@ RECIPES: Mapping[str, Recipe] = {
     "propeller_torque": Recipe(_each("ratio"), (1.0, 3.0)),
     "thruster_order": Recipe((("first", "second"),), (1.0, 1.0), weak=False),  # drawn by `_swapped`
     "pilot_gain": Recipe(
-        _each("surge", "sway", "heave", "yaw"), (2.0, 5.0), tank=SUITABLE["demands"]
+        _each("surge", "sway", "heave", "yaw"), (2.0, 5.0), tank=SUITABLE_TANKS["demands"]
     ),
-    "fin_effectiveness": Recipe(_each("all"), (2.0, 5.0), -1, tank=SUITABLE["surfaces"]),
-    "waterplane_stiffness": Recipe(_each("roll"), (40.0, 80.0), tank=SUITABLE["waterplane"]),
+    "fin_effectiveness": Recipe(_each("all"), (2.0, 5.0), -1, tank=SUITABLE_TANKS["surfaces"]),
+    "waterplane_stiffness": Recipe(_each("roll"), (40.0, 80.0), tank=SUITABLE_TANKS["waterplane"]),
     "onboard_control": Recipe(
         (("bandwidth_yaw",), ("bandwidth_roll", "bandwidth_pitch", "bandwidth_yaw")),
         (1.5, 3.0),
         1,
         {"gain_yaw": (1.0, 1.8), "gain_roll": (0.5, 0.8), "gain_pitch": (0.5, 0.8)},
-        SUITABLE["demands"],
+        SUITABLE_TANKS["demands"],
         weak=False,
     ),
     "pose_filter": Recipe(_each("cutoff"), (994.0, 997.0), -1),  # from 1000 Hz down to 3 to 6 Hz

@@ -29,7 +29,7 @@ from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
 from rovsim.simulation.synthetic_tank.campaign import make_campaign, true_model
 from rovsim.simulation.synthetic_tank.settings import (
-    SUITABLE,
+    SUITABLE_TANKS,
     Box,
     Camera,
     Log,
@@ -59,7 +59,7 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
         turbulence=Turbulence(force=0.1, moment=0.004),
         effects=(describe_effect(cls(**signature.values)),),
     )
-    suitable = SUITABLE.get(cls.requires, {})
+    suitable = SUITABLE_TANKS.get(cls.requires, {})
     changes = {k: suitable[k] for k in ("vehicle", "tank") if k in suitable}
     log = calm.log.model_copy(update=suitable.get("log", {}))
     return TankSettings.model_validate({**dict(calm), **changes, "log": log})

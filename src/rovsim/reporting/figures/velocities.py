@@ -13,7 +13,7 @@ from rovsim.reporting.figures.panels import plot_all, shade, six_panels
 from rovsim.reporting.figures.series import excerpt, masked
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.wording import title
-from rovsim.simulation.prediction import LEVEL
+from rovsim.simulation.prediction import BAND_LEVEL
 
 SECTION = "compare"
 PLACE = 2
@@ -56,7 +56,7 @@ def draw(
         shade(axes, time[part], band[:, part], style[name])
     if part.stop - part.start < len(time):
         remarks.append(f"Excerpt of a run of {time[-1] - time[0]:.0f} s.")
-    shades = {f"{LEVEL:.0%} band of {title(name)}": style[name] for name in bands}
+    shades = {f"{BAND_LEVEL:.0%} band of {title(name)}": style[name] for name in bands}
     add_legend(figure, [*lines(style), *areas(shades)])
     note(figure, remarks)
     return figure

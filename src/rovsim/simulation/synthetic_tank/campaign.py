@@ -18,8 +18,8 @@ from rovsim.dynamics.model import Model
 from rovsim.dynamics.vehicle import load_vehicle
 from rovsim.measurement.loading import check_ids
 from rovsim.simulation.synthetic_tank.description import (
-    SEALED,
-    VEHICLE,
+    TRUTH_FILE,
+    VEHICLE_FILE,
     SealedTruth,
     commands_file,
     describe_campaign,
@@ -90,7 +90,7 @@ def make_campaign(
         _move(folder, out)
 
 
-CAMPAIGN = "campaign.yaml"
+CAMPAIGN_FILE = "campaign.yaml"
 
 
 def _move(new: Path, out: Path) -> None:
@@ -104,9 +104,9 @@ def _move(new: Path, out: Path) -> None:
         os.replace(new, out)
         return
     stale = _list_written(out) - {path.name for path in new.iterdir()}
-    for name in (CAMPAIGN, *sorted(stale)):
+    for name in (CAMPAIGN_FILE, *sorted(stale)):
         (out / name).unlink(missing_ok=True)
-    order = {SEALED: 0, CAMPAIGN: 2}
+    order = {TRUTH_FILE: 0, CAMPAIGN_FILE: 2}
     for path in sorted(new.iterdir(), key=lambda path: (order.get(path.name, 1), path.name)):
         os.replace(path, out / path.name)
 
@@ -114,19 +114,21 @@ def _move(new: Path, out: Path) -> None:
 def _list_written(out: Path) -> set[str]:
     """Names of the files that a tank wrote into a folder, according to its `truth.yaml`."""
     try:
-        settings = checked(SealedTruth, read_yaml(out / SEALED), out / SEALED).settings
+        settings = checked(SealedTruth, read_yaml(out / TRUTH_FILE), out / TRUTH_FILE).settings
         describe_campaign(settings)  # no run leaves the folder
     except (RovsimError, OSError):
         return set()
     recordings = (
         name for run in settings.runs for name in (motion_file(settings, run), commands_file(run))
     )
-    return {CAMPAIGN, SEALED, VEHICLE, *recordings}
+    return {CAMPAIGN_FILE, TRUTH_FILE, VEHICLE_FILE, *recordings}
 
 
 def _refuse_other_files(out: Path) -> None:
     """Refuse a folder with files, unless a tank wrote them."""
-    if out.exists() and not (out.is_dir() and (not any(out.iterdir()) or (out / SEALED).exists())):
+    if out.exists() and not (
+        out.is_dir() and (not any(out.iterdir()) or (out / TRUTH_FILE).exists())
+    ):
         raise BadInput(
             "holds files that no tank wrote",
             where=out,
@@ -150,11 +152,11 @@ def _record_all(
         _record(model, settings, run, folder, np.random.default_rng(seed))
     progress(len(runs), len(runs))
     campaign, truth = describe_campaign(settings), seal(settings, model.added[:count], unlisted)
-    write_yaml(folder / CAMPAIGN, campaign.model_dump(mode="json", exclude_unset=True))
+    write_yaml(folder / CAMPAIGN_FILE, campaign.model_dump(mode="json", exclude_unset=True))
     if vehicle := own_vehicle(settings):
-        copy_file(Path(vehicle), folder / VEHICLE)
+        copy_file(Path(vehicle), folder / VEHICLE_FILE)
     exclude = None if truth.outside else {"outside"}
-    write_yaml(folder / SEALED, truth.model_dump(mode="json", exclude=exclude))
+    write_yaml(folder / TRUTH_FILE, truth.model_dump(mode="json", exclude=exclude))
 
 
 def _record(

@@ -9,17 +9,17 @@ from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.vehicle import known_vehicle, load_vehicle, vehicle_file
 from rovsim.measurement.campaign_file import CampaignFile
 from rovsim.simulation.synthetic_tank.settings import (
-    PLACES,
+    PLACE_KEYS,
     Sensor,
     SensorKind,
     TankRun,
     TankSettings,
 )
 
-BODY = "vehicle"
-CAMERAS = {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"}
-SEALED = "truth.yaml"  # nothing that reads a campaign may open it
-VEHICLE = "vehicle.yaml"  # a copy of the user's, so that the folder can be moved
+BODY_NAME = "vehicle"
+CAMERA_SECTION = {"format": "qtm_tsv", "body": BODY_NAME, "world_axes": "z_up", "body_axes": "flu"}
+TRUTH_FILE = "truth.yaml"  # nothing that reads a campaign may open it
+VEHICLE_FILE = "vehicle.yaml"  # a copy of the user's, so that the folder can be moved
 
 
 class HiddenEffect(Section):
@@ -72,9 +72,9 @@ def describe_campaign(settings: TankSettings) -> CampaignFile:
     kind = settings.log.kind
     content = {
         "name": settings.name,
-        "vehicle": VEHICLE if own_vehicle(settings) else settings.vehicle,
+        "vehicle": VEHICLE_FILE if own_vehicle(settings) else settings.vehicle,
         "tank": _describe_walls(settings),
-        "mocap": _describe_sensors(settings.sensors) if settings.sensors else CAMERAS,
+        "mocap": _describe_sensors(settings.sensors) if settings.sensors else CAMERA_SECTION,
         "commands": {
             "format": "csv",
             "kind": kind,
@@ -115,7 +115,7 @@ def _describe_walls(settings: TankSettings) -> dict[str, list[float]]:
 def _describe_sensors(sensors: Mapping[SensorKind, Sensor]) -> dict[str, Any]:
     """Section `mocap` of `campaign.yaml` for recordings of other sensors than cameras."""
     delays = {kind: sensor.delay for kind, sensor in sensors.items() if sensor.delay}
-    positions = {PLACES[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
+    positions = {PLACE_KEYS[kind]: sensor.at for kind, sensor in sensors.items() if any(sensor.at)}
     extra = positions | ({"delay_s": delays} if delays else {})
     axes = {"world_axes": "ned", "body_axes": "frd"}
     return {"format": "csv", **axes, "velocity": "instant"} | ({"sensors": extra} if extra else {})

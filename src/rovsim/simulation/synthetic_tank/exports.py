@@ -11,7 +11,7 @@ from rovsim.core.pwm import to_pulses
 from rovsim.core.rotations import HALF_TURN_X, exp, matrix, multiply, to_euler
 from rovsim.dynamics.mocap_view import MocapView
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.simulation.synthetic_tank.description import BODY
+from rovsim.simulation.synthetic_tank.description import BODY_NAME
 from rovsim.simulation.synthetic_tank.settings import Camera, Log
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
 
@@ -114,10 +114,10 @@ def _header(frames: int, rate: float) -> str:
         "DESCRIPTION": "--",
         "TIME_STAMP": "2026-01-01, 12:00:00.000\t0.0",
         "DATA_INCLUDED": "6D",
-        "BODY_NAMES": BODY,
+        "BODY_NAMES": BODY_NAME,
     }
     names = COLUMNS.split()
-    column_line = "\t".join(["Frame", "Time", f"{BODY} {names[0]}", *names[1:]])
+    column_line = "\t".join(["Frame", "Time", f"{BODY_NAME} {names[0]}", *names[1:]])
     return "".join(f"{key}\t{value}\n" for key, value in lines.items()) + column_line + "\n"
 
 

@@ -10,7 +10,7 @@ from rovsim.core.rotations import exp, multiply, rotate, to_euler, unrotate
 from rovsim.simulation.synthetic_tank.settings import Sensor, SensorKind
 from rovsim.simulation.synthetic_tank.true_run import TrueRun
 
-COLUMNS: Mapping[SensorKind, Sequence[str]] = {
+CHANNEL_COLUMNS: Mapping[SensorKind, Sequence[str]] = {
     "position": ("x_m", "y_m", "z_m"),
     "attitude": ("roll_rad", "pitch_rad", "yaw_rad"),
     "depth": ("depth_m",),
@@ -44,7 +44,7 @@ def draw_readings(
     readings = []
     for kind, sensor in sensors.items():
         steps = _draw_steps(sensor, total, step, random)
-        shape = (len(steps), len(COLUMNS[kind]))
+        shape = (len(steps), len(CHANNEL_COLUMNS[kind]))
         readings.append(Reading(kind, sensor, steps, sensor.noise * random.normal(size=shape)))
     return readings
 
@@ -77,8 +77,8 @@ def export_channels(
         gravity: m/s2.
         file: what is written to.
     """
-    names = [name for reading in readings for name in COLUMNS[reading.kind]]
-    columns = [names.index(COLUMNS[reading.kind][0]) for reading in readings]
+    names = [name for reading in readings for name in CHANNEL_COLUMNS[reading.kind]]
+    columns = [names.index(CHANNEL_COLUMNS[reading.kind][0]) for reading in readings]
     values = [_measure(reading, truth, surface, gravity) for reading in readings]
     time = [reading.steps * truth.step + reading.sensor.delay for reading in readings]
     sensors = np.repeat(np.arange(len(readings)), [len(times) for times in time])

@@ -14,10 +14,10 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.formats.commands_csv import read_commands
 from rovsim.measurement.recording.tidying import tidy_commands
 from rovsim.results.experiment import Experiment
-from rovsim.simulation.rest import PLACED, TURNED, rest_state
+from rovsim.simulation.rest import PLACEMENT_STD_M, PLACEMENT_STD_RAD, rest_state
 
 # s: less shows nothing; more is no flight that nobody steers, and would fill the memory with states
-SHORTEST, LONGEST = 2.0, 1800.0
+MIN_LOG_S, MAX_LOG_S = 2.0, 1800.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +48,8 @@ class SentLog:
             random: generator.
         """
         position = tank.mean(axis=1) if self.place is None else self.place
-        heading = self.heading + TURNED * random.normal()
-        return rest_state(position + PLACED * random.normal(size=3), heading)
+        heading = self.heading + PLACEMENT_STD_RAD * random.normal()
+        return rest_state(position + PLACEMENT_STD_M * random.normal(size=3), heading)
 
 
 def described_by(path: Path) -> Path | None:
@@ -74,11 +74,11 @@ def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
     commands = replace(log_lines, time=log_lines.time - log_lines.time[0])
     step = float(np.median(np.diff(commands.time))) if len(commands.time) > 1 else 0.0
     duration = float(commands.time[-1]) + step
-    if not SHORTEST <= duration <= LONGEST:
+    if not MIN_LOG_S <= duration <= MAX_LOG_S:
         raise BadInput(
             f"{len(log_lines.time)} lines of commands, which last {duration:.4g} s",
             where=path,
-            expected=f"a log of {SHORTEST:g} to {LONGEST:g} s",
+            expected=f"a log of {MIN_LOG_S:g} to {MAX_LOG_S:g} s",
             remedy="Give the experiment.csv that `rovsim design` wrote.",
         )
     plan = described_by(path)

@@ -20,7 +20,7 @@ Interval = tuple[float, float]
 
 SensorKind = Literal["position", "attitude", "depth", "velocity", "rates", "specific_force"]
 # Of sensors that sit somewhere in the body, by the key of campaign.yaml that says where.
-PLACES: Mapping[SensorKind, str] = {
+PLACE_KEYS: Mapping[SensorKind, str] = {
     "velocity": "velocity_at",
     "specific_force": "imu_at",
     "depth": "depth_at",
@@ -145,18 +145,18 @@ class TankSettings(Section):
     def _sit_at_the_origin(cls, sensors: dict[SensorKind, Sensor]) -> dict[SensorKind, Sensor]:
         """Refuse a place for kinds of sensors whose readings do not depend on it."""
         for kind, sensor in sensors.items():
-            if kind not in PLACES and any(sensor.at):
+            if kind not in PLACE_KEYS and any(sensor.at):
                 raise ValueError(f"a sensor of {kind} has no place: leave `at` out")
         return sensors
 
     @model_validator(mode="after")
     def _has_a_step(self) -> "TankSettings":
-        if self.steps_per_second > MOST_STEPS:
+        if self.steps_per_second > MAX_STEPS_PER_S:
             rates = " and ".join(f"{rate:g}" for rate in self._rates)
             raise ValueError(
                 f"rates and a step that fit each other: {rates} Hz and at most {self.step:g} s ask "
-                f"for more than {MOST_STEPS} steps a second; whole numbers with a small common "
-                "multiple ask for few"
+                f"for more than {MAX_STEPS_PER_S} steps a second; whole numbers with a small "
+                "common multiple ask for few"
             )
         return self
 
@@ -182,12 +182,12 @@ class TankSettings(Section):
         return float(math.ceil(1.0 / (self.step * float(shared)) - 1e-9) * shared)
 
 
-MOST_STEPS = 10_000  # a second: a run of a minute then takes 60 MB
+MAX_STEPS_PER_S = 10_000  # a run of a minute then takes 60 MB
 
 
 # Settings of a tank for effects that the default vehicle cannot show: one with room to go ahead for
 # a vehicle with control surfaces, and one whose waves heave, list and trim a floating vehicle.
-SUITABLE: Mapping[Requirement, Mapping[str, Any]] = {
+SUITABLE_TANKS: Mapping[Requirement, Mapping[str, Any]] = {
     "demands": {"log": {"kind": "demand"}},
     "surfaces": {
         "vehicle": "remus100",

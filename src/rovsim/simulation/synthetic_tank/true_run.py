@@ -24,8 +24,8 @@ from rovsim.simulation.synthetic_tank.sent_log import SentLog
 from rovsim.simulation.synthetic_tank.settings import Release, TankSettings
 from rovsim.simulation.synthetic_tank.turbulence import draw_currents, draw_turbulence
 
-PUSHED = 500  # ticks for which pushes are drawn at once
-FIXED_POINT = 5  # a clock's rate is within some per cent of 1, so this is exact to a nanosecond
+TICKS_PER_DRAW = 500  # of turbulence
+FIXED_POINT_ITERATIONS = 5  # exact to a nanosecond: a clock's rate is within some per cent of 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,15 +107,15 @@ def fly_run(
     vehicle = _TrueVehicle(model, settings, tick, h, duration)
     # Drawn for every flight: what is drawn later does not depend on who commands.
     pilot = vehicle.pilot(flight.control, settings.tank.ned, ticks, tick, random)
-    turbulence = draw_turbulence(settings.turbulence, total, h, random, PUSHED * per_tick)
+    turbulence = draw_turbulence(settings.turbulence, total, h, random, TICKS_PER_DRAW * per_tick)
     currents = draw_currents(model, ticks, tick, random)
     state = _begin(flight, vehicle, pilot, random)
     steps = choose(total, h)
     record = _Kept(steps, state)
     for k in range(ticks):
-        if k % PUSHED == 0:
+        if k % TICKS_PER_DRAW == 0:
             pushes = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
-        rows = slice(k % PUSHED * per_tick, (k % PUSHED + 1) * per_tick)
+        rows = slice(k % TICKS_PER_DRAW * per_tick, (k % TICKS_PER_DRAW + 1) * per_tick)
         vehicle.set_current(currents[k])
         command = _command(flight, vehicle, pilot, k, state)
         path = vehicle.advance(k, command, state, pushes[rows])
@@ -228,7 +228,7 @@ class _TrueVehicle:
         stamp, effective = t, self.model.thrust_path.effective_time
         if not self.model.thrust_path.timings:
             return t
-        for _ in range(FIXED_POINT):
+        for _ in range(FIXED_POINT_ITERATIONS):
             stamp += max(0.0, t - float(effective(np.array([stamp]))[0]))
         return stamp
 
