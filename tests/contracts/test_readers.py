@@ -58,7 +58,7 @@ MOCAP_READER = MocapReader(
     "a plain file",
     read,
     (FileSignature(starts_with(b"PLAIN")),),
-    axes=FileAxes(("ned",), ("frd",), said="so"),
+    axes=FileAxes(("ned",), ("frd",), reason="so"),
 )
 '''
 

@@ -64,17 +64,17 @@ def located(file: object) -> Iterator[None]:
         ) from None
 
 
-def unlisted(name: str, known: Iterable[str], *, found: str, where: object) -> BadInput:
+def unlisted(name: str, known_names: Iterable[str], *, found: str, where: object) -> BadInput:
     """Make the error for an unknown name: it lists the known ones and suggests the nearest."""
-    names = [str(k) for k in known]
+    names = [str(k) for k in known_names]
     return BadInput(
         found, where=where, expected=f"one of {', '.join(names)}", remedy=closest(name, names)
     )
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def nearest(name: str, known_names: Iterable[str]) -> str:
     """Return a remedy for an unknown name: the nearest known one, else all of them."""
-    names = [str(k) for k in known]
+    names = [str(k) for k in known_names]
     more = f" and {len(names) - MAX_LISTED_NAMES} more" if len(names) > MAX_LISTED_NAMES else ""
     return closest(name, names) or f"Known: {', '.join(names[:MAX_LISTED_NAMES]) or 'none'}{more}."
 

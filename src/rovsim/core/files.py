@@ -42,12 +42,12 @@ def appearing(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
+def folder_beside(path: Path, named: Path | None = None) -> Iterator[Path]:
     """Yield a new temporary folder beside `path`, for files that are then moved; delete it after.
 
     Args:
         path: the place to which the files will be moved.
-        told: what errors name instead of the temporary folder, which the user does not know; by
+        named: what errors name instead of the temporary folder, which the user does not know; by
             default `path`.
 
     Raises:
@@ -59,7 +59,7 @@ def folder_beside(path: Path, told: Path | None = None) -> Iterator[Path]:
     except BadInput as error:
         if str(folder) not in error.where:
             raise
-        where = error.where.replace(str(folder), str(told or path), 1)
+        where = error.where.replace(str(folder), str(named or path), 1)
         raise BadInput(
             error.found, where=where, expected=error.expected, remedy=error.remedy
         ) from None
@@ -77,7 +77,7 @@ def appearing_together(folder: Path, last: str) -> Iterator[Path]:
     Raises:
         BadInput: no file can be written there.
     """
-    with folder_beside(folder / last, told=folder) as temporary:
+    with folder_beside(folder / last, named=folder) as temporary:
         yield temporary
         files = [path.relative_to(temporary) for path in temporary.rglob("*") if path.is_file()]
         files.sort(key=lambda path: (path == Path(last), path))

@@ -103,10 +103,10 @@ def _explained(error: ValidationError, kind: type[Section], where: Any) -> BadIn
     )
 
 
-def _too_few(found: list[Any], first: Any, place: str, where: Any) -> BadInput:
+def _too_few(errors: list[Any], first: Any, place: str, where: Any) -> BadInput:
     """Make the error for a row of numbers that is too short."""
     row = first["loc"][:-1]
-    missing = [e for e in found if e["type"] == "missing" and e["loc"][:-1] == row]
+    missing = [e for e in errors if e["type"] == "missing" and e["loc"][:-1] == row]
     return BadInput(
         f"'{place.rpartition('.')[0]}' is {reprlib.repr(first.get('input'))}",
         where=where,

@@ -85,20 +85,20 @@ def _parse(text: str) -> Any:
     return YAML(typ="safe", pure=True).load(text)
 
 
-def _count(node: Any, known: dict[int, float]) -> float:
+def _count(node: Any, counts: dict[int, float]) -> float:
     """Number of values in a tree with its aliases expanded; infinite where it contains itself.
 
     Args:
         node: the tree.
-        known: numbers of inner lists and mappings by `id`, filled in here.
+        counts: numbers of inner lists and mappings by `id`, filled in here.
     """
     if not isinstance(node, (dict, list)):
         return 1
-    if id(node) not in known:
-        known[id(node)] = inf  # until it is counted: if it is met before, it contains itself
+    if id(node) not in counts:
+        counts[id(node)] = inf  # until it is counted: if it is met before, it contains itself
         children = node.values() if isinstance(node, dict) else node
-        known[id(node)] = 1 + sum(_count(child, known) for child in children)
-    return known[id(node)]
+        counts[id(node)] = 1 + sum(_count(child, counts) for child in children)
+    return counts[id(node)]
 
 
 def _problem(error: YAMLError) -> str:

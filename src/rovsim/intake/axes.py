@@ -36,14 +36,14 @@ class Axes:
     Attributes:
         world: key of `DOWN_VECTORS`, empty where the files do not tell.
         body: key of `BODY_ROTATIONS`, empty where the files do not tell.
-        said: how they are known, or why they are not.
+        reason: how they are known, or why they are not.
         likely: pairs of world and body axes in which the vehicle is upright on average, where the
             body axes have to be asked for.
     """
 
     world: str
     body: str
-    said: str
+    reason: str
     likely: tuple[tuple[str, str], ...] = ()
 
 
@@ -60,7 +60,7 @@ def find_axes(
     """
     worlds, bodies = own.world, own.body
     if own.fixed:
-        return Axes(worlds[0], bodies[0], own.said)
+        return Axes(worlds[0], bodies[0], own.reason)
     body, reason = _body(_upright(turned, tracks, worlds), bodies)
     if not body:
         body, by_force = _by_force(tracks, bodies)
@@ -79,7 +79,7 @@ def find_axes(
             world, match[0][1], f"{LETTERS[-1]} goes with the depth, and the vehicle is upright"
         )
     if own.usual in pairs:
-        return Axes(*own.usual, own.said)
+        return Axes(*own.usual, own.reason)
     return Axes(world, "", reason, tuple(pairs))
 
 

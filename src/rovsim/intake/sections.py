@@ -76,11 +76,11 @@ def _axes(facts: Facts, draft: CampaignDraft, section: dict[str, Any]) -> None:
     file_axes = mocap_readers()[section["format"]].axes
     if axes.body and axes.world:
         section |= {"world_axes": axes.world, "body_axes": axes.body}
-        draft.say("mocap.world_axes", axes.said)
+        draft.say("mocap.world_axes", axes.reason)
         return
     pairs = " or ".join(f"{world} with {body}" for world, body in axes.likely)
     level = f" The vehicle is upright on average in {pairs}." if pairs else ""
-    reason = f" ({axes.said})" if axes.said else ""
+    reason = f" ({axes.reason})" if axes.reason else ""
     for key, answer, choices, owner in (
         ("world_axes", axes.world, file_axes.world, "world"),
         ("body_axes", axes.body, file_axes.body, "rigid body"),

@@ -14,7 +14,11 @@ from rovsim.intake.survey.contents import CommandCandidate, Contents, LoggedKind
 from rovsim.intake.survey.csv_commands import within
 from rovsim.measurement.campaign_file import Mocap, Topics
 from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
-from rovsim.measurement.recording.formats.rosbag2.commands import MANUAL_FIELDS, PULSE_TYPES, pushed
+from rovsim.measurement.recording.formats.rosbag2.commands import (
+    MANUAL_FIELDS,
+    PULSE_TYPES,
+    read_stick,
+)
 from rovsim.measurement.recording.formats.rosbag2.motion import POSE_TYPES, read_bag
 from rovsim.measurement.recording.tidying import tidy_export
 
@@ -193,7 +197,9 @@ def _drive(bag: Bag, topic: str) -> CommandCandidate:
             topic,
         )
     if name == "ManualControl":
-        time, value = _numbers(bag, topic, lambda m: [pushed(m, axis) for axis in MANUAL_FIELDS])
+        time, value = _numbers(
+            bag, topic, lambda m: [read_stick(m, axis) for axis in MANUAL_FIELDS]
+        )
         return CommandCandidate(
             "rosbag2",
             tuple(MANUAL_FIELDS),

@@ -48,13 +48,13 @@ class FileAxes:
         world: possible axes of the world.
         body: possible axes of the body.
         usual: the axes to assume where the file does not tell; None for no assumption.
-        said: why the usual or the only possible axes are assumed.
+        reason: why the usual or the only possible axes are assumed.
     """
 
     world: tuple[WorldAxes, ...] = ("z_up", "ned")
     body: tuple[BodyAxes, ...] = ("flu", "frd")
     usual: tuple[WorldAxes, BodyAxes] | None = None
-    said: str = ""
+    reason: str = ""
 
     @property
     def every(self) -> tuple[str, ...]:

@@ -64,42 +64,44 @@ def doubt_delays(recording: Recording) -> Iterator[str]:
         )
 
 
-def _choose_turning(known: Mapping[str, Channel]) -> dict[str, Channel]:
+def _choose_turning(channels: Mapping[str, Channel]) -> dict[str, Channel]:
     """Channels of the attitude: rates first if attitudes are infrequent, noisier or lack yaw."""
-    direct = [kind for kind in ("attitude", "euler") if kind in known][:1]
-    rates = ["rates"] if "rates" in known else []
-    if rates and direct and _heads(direct[0], known) and _suffices(known, direct[0], "rates"):
+    direct = [kind for kind in ("attitude", "euler") if kind in channels][:1]
+    rates = ["rates"] if "rates" in channels else []
+    if rates and direct and _heads(direct[0], channels) and _suffices(channels, direct[0], "rates"):
         rates = []
-    return {kind: known[kind] for kind in (*rates, *direct)}
+    return {kind: channels[kind] for kind in (*rates, *direct)}
 
 
-def _choose_moving(known: Mapping[str, Channel]) -> dict[str, Channel]:
+def _choose_moving(channels: Mapping[str, Channel]) -> dict[str, Channel]:
     """Channels of the position: velocities first if positions are infrequent or noisier.
 
     The depth is left out where positions with a z are the main source and are less noisy.
     """
     position, velocity, depth = (
-        [k] if k in known else [] for k in ("position", "velocity", "depth")
+        [k] if k in channels else [] for k in ("position", "velocity", "depth")
     )
-    if velocity and position and _suffices(known, "position", "velocity"):
+    if velocity and position and _suffices(channels, "position", "velocity"):
         velocity = []
-    if depth and position and not velocity and np.isfinite(known["position"].value[:, 2]).any():
-        depth = depth if noise_density(known["depth"]) < noise_density(known["position"]) else []
-    return {kind: known[kind] for kind in (*velocity, *position, *depth)}
+    if depth and position and not velocity and np.isfinite(channels["position"].value[:, 2]).any():
+        depth = (
+            depth if noise_density(channels["depth"]) < noise_density(channels["position"]) else []
+        )
+    return {kind: channels[kind] for kind in (*velocity, *position, *depth)}
 
 
-def _heads(kind: str, known: Mapping[str, Channel]) -> bool:
+def _heads(kind: str, channels: Mapping[str, Channel]) -> bool:
     """Whether a channel of attitudes contains the yaw."""
-    return kind == "attitude" or bool(np.isfinite(known[kind].value[:, 2]).any())
+    return kind == "attitude" or bool(np.isfinite(channels[kind].value[:, 2]).any())
 
 
-def _suffices(known: Mapping[str, Channel], direct: str, rate: str) -> bool:
+def _suffices(channels: Mapping[str, Channel], direct: str, rate: str) -> bool:
     """Whether a directly measured channel is as good a source as an integrated one.
 
     It must come often enough, and its noise over a second must not exceed that of the integral.
     """
-    often = (known[direct].rate or 0.0) >= MIN_MOTION_RATE_HZ
-    return often and noise_density(known[direct]) <= noise_density(known[rate])
+    often = (channels[direct].rate or 0.0) >= MIN_MOTION_RATE_HZ
+    return often and noise_density(channels[direct]) <= noise_density(channels[rate])
 
 
 def noise_density(channel: Channel) -> float:

@@ -89,7 +89,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     values[np.ix_(zeros, poses)] = np.nan
     columns = CsvColumns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
     check_plausible(path, columns.time, columns.values)
-    notes = _near_misses(lines.names) + filled + _said(int(zeros.sum()))
+    notes = _near_misses(lines.names) + filled + _note_zeros(int(zeros.sum()))
     if "qw" in names:
         notes += check_unit_length(columns.of(QUATERNION), partial(_quaternion_at, table))
     return _export(columns, mocap, MotionRepairs(cut_lines=cut_lines), notes)
@@ -116,7 +116,7 @@ def _zeros(names: list[str], values: Array) -> Array:
     return zeros
 
 
-def _said(count: int) -> tuple[str, ...]:
+def _note_zeros(count: int) -> tuple[str, ...]:
     return (f"{count} lines with a pose of zeros count as not found.",) if count else ()
 
 

@@ -121,7 +121,7 @@ def _adapt(log: ArduPilotLog, channels: dict[str, Channel]) -> tuple[str, ...]:
 def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[str]:
     """Keep positions of the Kalman filter that it says are known; z only if there is no depth."""
     position = channels.pop("position")
-    valid = _known(log, position.time)
+    valid = _find_known(log, position.time)
     if not valid.any():
         return ["The filter never knew where the vehicle was: its position is not measured."]
     value = position.value[valid]
@@ -132,7 +132,7 @@ def _believed_position(log: ArduPilotLog, channels: dict[str, Channel]) -> list[
     return [f"{left_out} positions that the filter did not know were left out."] if left_out else []
 
 
-def _known(log: ArduPilotLog, time: Array) -> Array:
+def _find_known(log: ArduPilotLog, time: Array) -> Array:
     """Mask (n,) of times at which the filter's last status said that it knows the position."""
     source = next(((s, f) for s, f in STATUS_FIELDS[log.kind] if s in log.series), None)
     if source is None:
@@ -167,5 +167,5 @@ MOCAP_READER = MocapReader(
     "an ArduPilot log",
     read_log,
     SIGNATURES,
-    axes=FileAxes(("ned",), ("frd",), said="ArduPilot logs in these axes"),
+    axes=FileAxes(("ned",), ("frd",), reason="ArduPilot logs in these axes"),
 )

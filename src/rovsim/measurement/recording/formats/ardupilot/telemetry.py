@@ -90,18 +90,18 @@ def _number(packet: bytes) -> int:
     return int.from_bytes(packet[7:10], "little") if packet[0] == 0xFD else packet[5]
 
 
-def _of_vehicle(found: list[Received]) -> tuple[list[Received], bool | None]:
+def _of_vehicle(messages: list[Received]) -> tuple[list[Received], bool | None]:
     """Keep messages of the first autopilot (not of ground stations or cameras).
 
     Returns:
         The messages, and whether the vehicle is a submarine; None if there was no heartbeat.
     """
-    beats = [m for _, m in found if m.get_type() == "HEARTBEAT" and m.autopilot != NO_AUTOPILOT]
+    beats = [m for _, m in messages if m.get_type() == "HEARTBEAT" and m.autopilot != NO_AUTOPILOT]
     if not beats:
-        return found, None
+        return messages, None
     heartbeat = beats[0]
     source = (heartbeat.get_srcSystem(), heartbeat.get_srcComponent())
-    packets = [(t, m) for t, m in found if (m.get_srcSystem(), m.get_srcComponent()) == source]
+    packets = [(t, m) for t, m in messages if (m.get_srcSystem(), m.get_srcComponent()) == source]
     return packets, heartbeat.type == SUBMARINE
 
 
@@ -113,7 +113,7 @@ def _since_boot(message: Any) -> float:
     return message.time_usec * 1e-6 if "time_usec" in fields else float("nan")
 
 
-def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
+def _boot(messages: list[Received]) -> tuple[float, tuple[str, ...]]:
     """Find when the vehicle was booted, s since 1970; NaN where its clock cannot be used.
 
     It is the median of reception time less time since boot, so the usual delay of the radio link
@@ -122,8 +122,8 @@ def _boot(found: list[Received]) -> tuple[float, tuple[str, ...]]:
     Returns:
         The time, and sentences about the clock.
     """
-    received = np.array([t for t, _ in found])
-    boot = np.array([_since_boot(m) for _, m in found])
+    received = np.array([t for t, _ in messages])
+    boot = np.array([_since_boot(m) for _, m in messages])
     valid = np.isfinite(boot)
     if not valid.any():
         return float("nan"), ()

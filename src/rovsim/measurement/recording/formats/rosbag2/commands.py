@@ -61,7 +61,7 @@ def read_commands(path: Path, log: CommandLog) -> CommandExport:
     return as_commands(samples.time, value, log, place, pulses=pulses, notes=notes)
 
 
-def pushed(message: Any, axis: str) -> float:
+def read_stick(message: Any, axis: str) -> float:
     """Deflection of a stick, in [-1, 1], from a ManualControl message."""
     field, center, span = MANUAL_FIELDS[axis]
     return float((getattr(message, field) - center) / span)
@@ -79,15 +79,15 @@ def _only_topic(bag: Bag) -> str:
     )
 
 
-def _without_pulse(found: TopicSamples) -> tuple[Array, tuple[str, ...]]:
+def _without_pulse(samples: TopicSamples) -> tuple[Array, tuple[str, ...]]:
     """Replace values (m, c) of 0 and 65535, which mean "no pulse"; with sentences about them.
 
     An output without pulses is a thruster at rest; an input without pulses is missing.
     """
-    if not found.kind.endswith("RCOut"):
-        return pwm.of_inputs(found.value), ()
-    value, notes = pwm.of_outputs(found.value)
-    return value, tuple(f"{found.topic}: {note}" for note in notes)
+    if not samples.kind.endswith("RCOut"):
+        return pwm.of_inputs(samples.value), ()
+    value, notes = pwm.of_outputs(samples.value)
+    return value, tuple(f"{samples.topic}: {note}" for note in notes)
 
 
 def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
@@ -103,7 +103,7 @@ def _getter(kind: str, first: Any, log: CommandLog, k: int, where: str) -> Get:
     name = log.names[k]
     axis = log.axes[k] if log.axes else name
     if kind.endswith("ManualControl") and axis in MANUAL_FIELDS:
-        return lambda message: pushed(message, axis)
+        return lambda message: read_stick(message, axis)
     inner = getattr(first, "wrench", first)
     if hasattr(inner, "force") and axis in WRENCH_FIELDS:
         return _walk(("wrench." if inner is not first else "") + WRENCH_FIELDS[axis])

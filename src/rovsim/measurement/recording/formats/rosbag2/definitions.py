@@ -21,7 +21,7 @@ FIELD_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 @cache
-def _known() -> Any:
+def _known_types() -> Any:
     """Types of ROS 2 Humble (with the same layouts as in later versions) and of mavros."""
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
@@ -40,7 +40,7 @@ def store_for(connection: Any, where: str) -> Any:
     defined = connection.msgdef.data
     if defined:
         return _defined(connection.msgtype, connection.msgdef.format.name, defined, where)
-    if connection.msgtype not in _known().fielddefs:
+    if connection.msgtype not in _known_types().fielddefs:
         raise BadInput(
             f"messages of the type {connection.msgtype}, which the bag does not define",
             where=where,
@@ -48,7 +48,7 @@ def store_for(connection: Any, where: str) -> Any:
             remedy="Record with MCAP or ROS 2 Iron or later, which store definitions, or republish "
             "it as a standard type.",
         )
-    return _known()
+    return _known_types()
 
 
 @cache

@@ -73,12 +73,12 @@ def _poses(bag: Bag, topic: str, channels: dict[str, Channel], notes: tuple[str,
     return Export(samples.time, position, attitude, valid, channels=channels, notes=notes)
 
 
-def _channels(found: TopicSamples, reader: TopicReader) -> dict[str, Channel]:
-    values = {kind: found.value[:, columns] for kind, columns in reader.channels.items()}
+def _channels(samples: TopicSamples, reader: TopicReader) -> dict[str, Channel]:
+    values = {kind: samples.value[:, columns] for kind, columns in reader.channels.items()}
     if "attitude" in values:
         attitude, valid = unit_quaternions(values["attitude"])
         values["attitude"] = np.where(valid[:, None], attitude, np.nan)
-    return {kind: measured(found.time, value) for kind, value in values.items()}
+    return {kind: measured(samples.time, value) for kind, value in values.items()}
 
 
 MOCAP_READER = MocapReader(
@@ -89,6 +89,6 @@ MOCAP_READER = MocapReader(
         FileSignature(starts_with(b"SQLite format 3\0"), "a ROS 2 bag (sqlite3)", (".db3",)),
         FileSignature(starts_with(b"\x89MCAP"), "a ROS 2 bag (MCAP)", (".mcap",)),
     ),
-    axes=FileAxes(usual=("z_up", "flu"), said="guess: what ROS means by default (REP 103)"),
+    axes=FileAxes(usual=("z_up", "flu"), reason="guess: what ROS means by default (REP 103)"),
     folder=True,
 )
