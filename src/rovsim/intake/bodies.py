@@ -18,12 +18,12 @@ class FoundBody:
 
     Attributes:
         name: of the body, empty where a person has to say it.
-        said: how it is known; empty where there was no choice.
+        reason: how it is known; empty where there was no choice.
         choices: bodies that it may be.
     """
 
     name: str
-    said: str
+    reason: str
     choices: tuple[str, ...]
 
 

@@ -41,15 +41,15 @@ def unusable(motion: MotionFile) -> str | None:
     return usable_reason(recording)
 
 
-def check_clocks(facts: Facts, axes: Array, told: Container[int] = ()) -> Iterator[str]:
+def check_clocks(facts: Facts, axes: Array, reported: Container[int] = ()) -> Iterator[str]:
     """Tell of runs whose motion does not follow its commands, or comes too early or too late.
 
     Args:
         facts: of the campaign.
         axes: rotation (3, 3) from FRD into the file's body axes.
-        told: positions of runs that a message exists for already; they are skipped.
+        reported: positions of runs that a message exists for already; they are skipped.
     """
-    runs = {k: correlation for k, correlation in facts.choice.runs.items() if k not in told}
+    runs = {k: correlation for k, correlation in facts.choice.runs.items() if k not in reported}
     starts = {k: find_start(facts.pairs[k].motion.path) for k in runs}
     if remark := tell_together([*runs.values()], axes, next(iter(starts.values()), None)):
         yield f"all runs: {remark}"

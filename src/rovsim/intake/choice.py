@@ -25,7 +25,7 @@ class Choice:
 
     Attributes:
         fit: the vehicle, None where the files do not tell.
-        said: how it is known, or why it is not.
+        reason: how it is known, or why it is not.
         fits: all vehicles that the columns of the commands fit, the likeliest first.
         turned: mean correlation of the runs along each of 24 body axes, and these axes, a rotation
             (3, 3) from FRD into the file's; the best first.
@@ -34,7 +34,7 @@ class Choice:
     """
 
     fit: VehicleMatch | None
-    said: str
+    reason: str
     fits: tuple[VehicleMatch, ...]
     turned: tuple[tuple[float, Array], ...]
     runs: dict[int, CrossCorrelation]
@@ -57,7 +57,7 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     best = _first(ordered, scores)
     undecided = Choice(
         None,
-        _told(ordered, scores),
+        _explain_fits(ordered, scores),
         tuple(ordered),
         tuple(by_axes.get(best.name, [])),
         compared[best.name],
@@ -70,13 +70,15 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     return replace(undecided, fit=best) if by_name or (likely and ahead) else undecided
 
 
-def _score(found: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]) -> float:
+def _score(
+    correlations: dict[int, CrossCorrelation], turns: Sequence[tuple[float, Array]]
+) -> float:
     """Score a vehicle: correlation along the best axes, less for wrong speeds (Lin 1989).
 
     The concordance of two series is their correlation times 2 r / (1 + r^2), r the ratio of their
     standard deviations.
     """
-    ratios = np.array([correlation.strength for correlation in found.values()])
+    ratios = np.array([correlation.strength for correlation in correlations.values()])
     return turns[0][0] * float(np.mean(2.0 * ratios / (1.0 + ratios**2)))
 
 
@@ -102,7 +104,7 @@ def _one_hull(a: VehicleMatch, b: VehicleMatch) -> bool:
     return a.vehicle.hydrodynamics == b.vehicle.hydrodynamics
 
 
-def _told(fits: Sequence[VehicleMatch], scores: dict[str, float]) -> str:
+def _explain_fits(fits: Sequence[VehicleMatch], scores: dict[str, float]) -> str:
     if not scores:
         return f"the columns fit {', '.join(fit.name for fit in fits)}"
     vehicles = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]

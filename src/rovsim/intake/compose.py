@@ -39,7 +39,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
     sections.vehicle(facts, draft)
     if places.folder:
         draft.content["folder"] = places.folder
-        draft.say("folder", "where the recordings lie: they stay there, nothing was copied")
+        draft.comment("folder", "where the recordings lie: they stay there, nothing was copied")
     sections.mocap(facts, draft)
     sections.commands(facts, draft)
     runs(facts, places, draft)

@@ -23,7 +23,7 @@ class CampaignDraft:
     comments: dict[str, list[str]] = field(default_factory=dict)
     questions: list[OpenQuestion] = field(default_factory=list)
 
-    def say(self, place: str, *lines: str) -> None:
+    def comment(self, place: str, *lines: str) -> None:
         """Add comment lines above the key of a place; empty ones are dropped."""
         if any(lines):
             self.comments.setdefault(place, []).extend(line for line in lines if line)

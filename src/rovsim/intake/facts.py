@@ -66,60 +66,60 @@ class Facts:
         return any(log.drive.asked for log in self.logs)
 
 
-def find_facts(found: CollectedFiles) -> Facts:
+def find_facts(collected: CollectedFiles) -> Facts:
     """Find out all that the files tell.
 
     Raises:
         BadInput: they are not runs of one vehicle, or not logged alike.
     """
-    logs = _logs(found)
+    logs = _logs(collected)
     fits = _fits(logs)
 
     def score(motion: MotionFile, log: CommandFile) -> float:
         return max((highest(correlate(motion, log, fit)) for fit in fits), default=0.0)
 
-    body = find_body(found.motions, lambda name: _of_body(found, name, logs, score))
+    body = find_body(collected.motions, lambda name: _of_body(collected, name, logs, score))
     motions = [
         MotionFile(
             contents.named,
             track_of(contents, body.name),
             tuple(file.named for file in contents.beside),
         )
-        for contents in found.motions
+        for contents in collected.motions
     ]
     pairs = pair(motions, logs, score)
     choice = _supposing(logs, choose(fits, pairs) if fits else _no_choice(logs))
     body_known = body.name or body.choices == ("",)
-    file_axes = mocap_readers()[found.motions[0].format].axes
+    file_axes = mocap_readers()[collected.motions[0].format].axes
     axes = find_axes(file_axes, [m.track for m in motions], choice.turned if body_known else ())
-    ids = run_ids(list_stems(found.motions))
-    return Facts(found, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
+    ids = run_ids(list_stems(collected.motions))
+    return Facts(collected, tuple(logs), body, tuple(pairs), choice, axes, tuple(ids))
 
 
-def _of_body(found: CollectedFiles, name: str, logs: Sequence[CommandFile], score) -> float:
+def _of_body(collected: CollectedFiles, name: str, logs: Sequence[CommandFile], score) -> float:
     """Score a body: mean over files of its motion's correlation with the commands.
 
     These are the commands in the same file, else those of the log that correlates best.
     """
     scores = []
-    for contents in found.motions:
+    for contents in collected.motions:
         motion = MotionFile(contents.named, track_of(contents, name))
         candidates = [log for log in logs if log.path == contents.named] or logs
         scores.append(max((score(motion, log) for log in candidates), default=0.0))
     return float(np.mean(scores))
 
 
-def _logs(found: CollectedFiles) -> list[CommandFile]:
+def _logs(collected: CollectedFiles) -> list[CommandFile]:
     """List the logs of commands: files of their own, else those in the files of the motions."""
     separate = [
         CommandFile(contents.named, contents.drives[0])
-        for contents in found.logs
+        for contents in collected.logs
         if contents.drives
     ]
     if separate:
         return separate
     inside = []
-    for contents in (file for motion in found.motions for file in motion.files):
+    for contents in (file for motion in collected.motions for file in motion.files):
         moving = [drive for drive in contents.drives if drive.moves]
         for drive in (moving or list(contents.drives))[:1]:
             inside.append(CommandFile(contents.named, drive))
@@ -152,7 +152,7 @@ def _supposing(logs: Sequence[CommandFile], choice: Choice) -> Choice:
     """Withdraw the choice of a vehicle where the kind of the commands has to be asked first."""
     if not any(log.drive.asked for log in logs):
         return choice
-    return replace(choice, fit=None, said=f"if the commands are N and N m, {choice.said}")
+    return replace(choice, fit=None, reason=f"if the commands are N and N m, {choice.reason}")
 
 
 def _no_choice(logs: Sequence[CommandFile]) -> Choice:

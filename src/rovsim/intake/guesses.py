@@ -17,17 +17,17 @@ def list_taken(proposal: CampaignProposal) -> list[str]:
 
 def _taken(content: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     mocap, commands = content.get("mocap", {}), content.get("commands", {})
-    yield "vehicle", _known(content, "vehicle")
-    yield "axes of the world", _meant(_known(mocap, "world_axes"), AXES_MEANINGS)
-    yield "axes of the body", _meant(_known(mocap, "body_axes"), AXES_MEANINGS)
-    yield "commands", _meant(_known(commands, "kind"), KIND_MEANINGS)
+    yield "vehicle", _answered(content, "vehicle")
+    yield "axes of the world", _meant(_answered(mocap, "world_axes"), AXES_MEANINGS)
+    yield "axes of the body", _meant(_answered(mocap, "body_axes"), AXES_MEANINGS)
+    yield "commands", _meant(_answered(commands, "kind"), KIND_MEANINGS)
     columns, axes = commands.get("columns", []), commands.get("axes", [])
     if isinstance(columns, list) and columns:
         pairs = [f"{c} ({a})" for c, a in zip(columns, axes, strict=False)] or columns
         yield "columns of commands", ", ".join(pairs)
 
 
-def _known(section: Mapping[str, Any], key: str) -> str:
+def _answered(section: Mapping[str, Any], key: str) -> str:
     value = section.get(key, ANSWER)
     return "" if value == ANSWER else str(value)
 

@@ -104,23 +104,23 @@ def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossC
     return cross_correlate(motion.measured, time, nu, shift, min(reach, MAX_COMPARED_S))
 
 
-def turned(found: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
+def turned(correlations: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
     """Average the best correlation of each run along each of the 24 axes.
 
     Args:
-        found: correlations, by the position of their run.
+        correlations: correlations, by the position of their run.
 
     Returns:
         Pairs of mean correlation and rotation (3, 3) from FRD into the file's body axes, the best
         first.
     """
     scored = [
-        (float(np.mean([correlation.best(axes)[0] for correlation in found.values()])), axes)
+        (float(np.mean([correlation.best(axes)[0] for correlation in correlations.values()])), axes)
         for axes in rotations()
     ]
     return sorted(scored, key=lambda pair: -pair[0])
 
 
-def highest(found: CrossCorrelation | None) -> float:
+def highest(correlation: CrossCorrelation | None) -> float:
     """Return the highest correlation along any of the 24 axes; 0 without a comparison."""
-    return 0.0 if found is None else max(found.best(axes)[0] for axes in rotations())
+    return 0.0 if correlation is None else max(correlation.best(axes)[0] for axes in rotations())

@@ -79,7 +79,7 @@ def campaign_name(folder: str) -> str:
     return _safe(folder) or "campaign"
 
 
-def said_control(name: str) -> str | None:
+def find_control(name: str) -> str | None:
     """Return `3dof` or `6dof` where a name holds one of them; None where it holds none or both."""
     controls = {word.lower() for word in re.findall(r"[36]dof", name, re.IGNORECASE)}
     return controls.pop() if len(controls) == 1 else None

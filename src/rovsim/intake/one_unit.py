@@ -14,12 +14,12 @@ from rovsim.intake.survey.sizes import Key, Unit, UnknownUnit
 
 
 def list_others(
-    found: Mapping[Path, Contents], refused: Mapping[Path, BadInput]
+    contents_by_path: Mapping[Path, Contents], refused: Mapping[Path, BadInput]
 ) -> dict[Path, dict[Key, Unit]]:
     """List files that have to be read again with a unit that other files tell.
 
     Args:
-        found: what each readable file holds.
+        contents_by_path: what each readable file holds.
         refused: the errors of the others.
 
     Returns:
@@ -29,7 +29,7 @@ def list_others(
         BadInput: two files tell two units for columns of the same names.
     """
     by_key: dict[Key, list[tuple[Path, Unit]]] = defaultdict(list)
-    for path, contents in found.items():
+    for path, contents in contents_by_path.items():
         for key, unit in contents.units.items():
             by_key[key].append((path, unit))
     units_by_path: dict[Path, dict[Key, Unit]] = defaultdict(dict)
@@ -73,8 +73,8 @@ def _first(key: Key, units: list[tuple[Path, Unit]]) -> tuple[Path, Unit]:
 
 
 def _as_in(path: Path, unit: Unit) -> Unit:
-    return replace(unit, said=f"{_short(unit)}, as in {path.name}" if unit.said else "")
+    return replace(unit, note=f"{_short(unit)}, as in {path.name}" if unit.note else "")
 
 
 def _short(unit: Unit) -> str:
-    return unit.said.partition(",")[0]
+    return unit.note.partition(",")[0]

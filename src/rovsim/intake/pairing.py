@@ -25,14 +25,14 @@ class Pair:
     Attributes:
         motion: of the run.
         log: its commands; None where there are none, or where a person has to choose.
-        said: how the log is known, or why it is not.
+        reason: how the log is known, or why it is not.
         options: logs to choose from, where it is not known.
         likely: where the name speaks for another log, the log that the motion follows.
     """
 
     motion: MotionFile
     log: CommandFile | None
-    said: str
+    reason: str
     options: tuple[CommandFile, ...] = ()
     likely: CommandFile | None = None
 
@@ -109,7 +109,7 @@ def _add_by(
     key: Callable[[Path], str],
     motions: Sequence[MotionFile],
     logs: Sequence[CommandFile],
-    found: list[int | None],
+    matches: list[int | None],
 ) -> None:
     """Pair a motion without a log with the log of the same key, if no other file has that key.
 
@@ -117,12 +117,12 @@ def _add_by(
         key: what of a path is compared.
         motions: of the runs.
         logs: of commands.
-        found: position of each motion's log; changed in place.
+        matches: position of each motion's log; changed in place.
     """
     motion_keys, log_keys = ([key(x.path) for x in group] for group in (motions, logs))
     for k, label in enumerate(motion_keys):
-        if found[k] is None and label and motion_keys.count(label) == log_keys.count(label) == 1:
-            found[k] = log_keys.index(label)
+        if matches[k] is None and label and motion_keys.count(label) == log_keys.count(label) == 1:
+            matches[k] = log_keys.index(label)
 
 
 def _by_first_words(

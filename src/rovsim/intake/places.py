@@ -33,10 +33,12 @@ class Places:
     names: dict[Path, str] = field(default_factory=dict)
 
     @staticmethod
-    def beside(found: CollectedFiles, out: Path) -> "Places":
+    def beside(collected: CollectedFiles, out: Path) -> "Places":
         """Refer to collected files where they lie, and to copies where these will be written."""
         out = out.absolute()
-        sources = [file for source in (*found.motions, *found.logs) for file in source.files]
+        sources = [
+            file for source in (*collected.motions, *collected.logs) for file in source.files
+        ]
         files = [source.path.absolute() for source in sources if source.original is None]
         inside = all(file.is_relative_to(out) for file in files)
         base = out if inside else Path(os.path.commonpath([file.parent for file in files]))

@@ -33,7 +33,7 @@ class CampaignProposal:
         content: by key, with `ANSWER` where something is asked.
         comments: lines above a key, by its place (`mocap.body`, `runs.0`).
         questions: that are still open.
-        found: lines about the files.
+        findings: lines about the files.
         checks: lines about what looks wrong in the files.
         copies: files to be copied, and the path of each copy beside campaign.yaml.
     """
@@ -41,7 +41,7 @@ class CampaignProposal:
     content: Mapping[str, Any]
     comments: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     questions: tuple[OpenQuestion, ...] = ()
-    found: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
     copies: Mapping[Path, str] = field(default_factory=dict)
 

@@ -7,7 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts
-from rovsim.intake.names import said_control
+from rovsim.intake.names import find_control
 from rovsim.intake.pairing import Pair
 from rovsim.intake.places import Places
 from rovsim.intake.spans import RunEntry, list_run_entries
@@ -35,7 +35,7 @@ def runs(facts: Facts, places: Places, draft: CampaignDraft) -> None:
     splits = split([control for control, _ in controls])
     draft.content["runs"] = []
     for n, entry in enumerate(entries):
-        draft.say(f"runs.{n}", *_remarks(facts, entry))
+        draft.comment(f"runs.{n}", *_remarks(facts, entry))
         content = {
             "id": entry.id,
             "control": controls[n][0],
@@ -44,9 +44,9 @@ def runs(facts: Facts, places: Places, draft: CampaignDraft) -> None:
             "commands": _log(facts, entry, f"runs.{n}", places, draft),
         }
         draft.content["runs"].append(content | ({"use": [[*entry.use]]} if entry.use else {}))
-        draft.say(f"runs.{n}", controls[n][1])
+        draft.comment(f"runs.{n}", controls[n][1])
     reason = "the last run of each control is a test run: nothing is ever fitted to it"
-    draft.say(
+    draft.comment(
         "runs", f"guess: {reason if 'test' in splits else 'no test run, for there is one run'}"
     )
 
@@ -69,7 +69,7 @@ def described(one: Pair) -> list[str]:
     same_file = one.log.path == one.motion.path
     return [
         *lines,
-        f"commands {one.said}" if same_file else f"{one.log.path.name}: {timing}{one.said}",
+        f"commands {one.reason}" if same_file else f"{one.log.path.name}: {timing}{one.reason}",
     ]
 
 
@@ -95,17 +95,17 @@ def _log(facts: Facts, run: RunEntry, place: str, places: Places, draft: Campaig
     if pair.log is not None:
         return places.of(pair.log.path)
     if not pair.options:
-        draft.say(place, NO_LOG_COMMENT)
+        draft.comment(place, NO_LOG_COMMENT)
         return "none"
     answers = {places.of(log.path): "" for log in pair.options} | {"none": "nothing was commanded"}
-    asks = f"Which file holds the commands of {run.id} ({pair.said})?"
+    asks = f"Which file holds the commands of {run.id} ({pair.reason})?"
     return draft.ask(f"{place}.commands", asks, answers)
 
 
 def _control(facts: Facts, run: RunEntry) -> tuple[str, str]:
     """Tell the control of a run, `3dof` or `6dof`, and why if it is a guess (else nothing)."""
     pair, fit = facts.pairs[run.file], facts.choice.fit
-    if control := said_control(pair.motion.path.stem):
+    if control := find_control(pair.motion.path.stem):
         return control, ""
     caused = pair.shown.caused(fit) if pair.shown and fit else None
     if caused is None:

@@ -36,10 +36,12 @@ def vehicle(facts: Facts, draft: CampaignDraft) -> None:
     choice = facts.choice
     if choice.fit is not None:
         draft.content["vehicle"] = choice.fit.name
-        draft.say("vehicle", f"guess: {choice.said}")
+        draft.comment("vehicle", f"guess: {choice.reason}")
         return
     names = [fit.name for fit in choice.fits] or conf_names("vehicle")
-    asks = f"Which vehicle was it ({choice.said})? Its name, or the path of your own vehicle file:"
+    asks = (
+        f"Which vehicle was it ({choice.reason})? Its name, or the path of your own vehicle file:"
+    )
     draft.content["vehicle"] = draft.ask("vehicle", asks, names, free=True)
 
 
@@ -51,19 +53,21 @@ def mocap(facts: Facts, draft: CampaignDraft) -> None:
     if facts.body.choices != ("",):
         asks = "Which one is the vehicle?"
         section["body"] = facts.body.name or draft.ask("mocap.body", asks, facts.body.choices)
-        draft.say("mocap.body", facts.body.said)
+        draft.comment("mocap.body", facts.body.reason)
     if track.topics:
         section["topics"] = dict(track.topics)
     _axes(facts, draft, section)
     if track.export.nu is not None:
         section["velocity"] = "mean"
-        draft.say(
+        draft.comment(
             "mocap.velocity",
             "guess: a line's velocity is the mean up to the next line; 'instant' where it holds at "
             "its time",
         )
     if track.posed:
-        draft.say("mocap", WALLS_COMMENT.format(_extent(track.export.position[track.export.found])))
+        draft.comment(
+            "mocap", WALLS_COMMENT.format(_extent(track.export.position[track.export.found]))
+        )
 
 
 def _extent(position: Array) -> str:
@@ -76,7 +80,7 @@ def _axes(facts: Facts, draft: CampaignDraft, section: dict[str, Any]) -> None:
     file_axes = mocap_readers()[section["format"]].axes
     if axes.body and axes.world:
         section |= {"world_axes": axes.world, "body_axes": axes.body}
-        draft.say("mocap.world_axes", axes.reason)
+        draft.comment("mocap.world_axes", axes.reason)
         return
     pairs = " or ".join(f"{world} with {body}" for world, body in axes.likely)
     level = f" The vehicle is upright on average in {pairs}." if pairs else ""
@@ -98,17 +102,19 @@ def commands(facts: Facts, draft: CampaignDraft) -> None:
     section: dict[str, Any] = {"format": drive.format}
     section |= {"topic": drive.topic} if drive.topic else {}
     kind = None if facts.kind_asked else fit.kind if fit else drive.kind
-    asks = f"What are these ({_first_asked(facts).said})?"
+    asks = f"What are these ({_first_asked(facts).reason})?"
     section["kind"] = kind or draft.ask("commands.kind", asks, _kinds(facts))
-    draft.say("commands.kind", drive.said if kind else "")
+    draft.comment("commands.kind", drive.reason if kind else "")
     section["columns"] = list(fit.columns) if fit else _columns(facts, draft)
     section |= {"axes": list(drive.axes)} if drive.axes else {}
     section |= {"auxiliary": list(drive.auxiliary)} if drive.auxiliary else {}
     if fit and kind in ("pwm", "normalized") and not fit.by_name:
-        draft.say("commands.columns", "guess: in the order of the vehicle's thrusters")
+        draft.comment("commands.columns", "guess: in the order of the vehicle's thrusters")
     topics = {d.topic for motion in facts.motions for d in motion.drives if d.topic} - {drive.topic}
     if topics:
-        draft.say("commands.topic", f"other commands there: {', '.join(sorted(map(str, topics)))}")
+        draft.comment(
+            "commands.topic", f"other commands there: {', '.join(sorted(map(str, topics)))}"
+        )
     draft.content["commands"] = section
 
 

@@ -123,12 +123,12 @@ def _all_different(files: Sequence[Contents]) -> bool:
     return len(kinds) == len(set(kinds))
 
 
-def _joined(files: Sequence[Contents], said: str) -> Contents:
+def _joined(files: Sequence[Contents], reason: str) -> Contents:
     """Join files to one run; one that holds commands stands for it.
 
     Args:
         files: of the run.
-        said: why they are one run.
+        reason: why they are one run.
 
     Raises:
         BadInput: two of them hold the same, or have no time in common.
@@ -136,7 +136,7 @@ def _joined(files: Sequence[Contents], said: str) -> Contents:
     main, *rest = sorted(files, key=lambda contents: not contents.drives)
     export = join({contents.named: contents.tracks[0].export for contents in (main, *rest)})
     track = Track("", tidy_export(export, main.named))
-    notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {said}",)
+    notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {reason}",)
     notes += tuple(note for contents in files for note in contents.notes)
     return replace(main, tracks=(track,), notes=notes, beside=tuple(rest))
 

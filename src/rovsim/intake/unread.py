@@ -30,7 +30,9 @@ def tell_unread(facts: Facts, draft: CampaignDraft) -> None:
         paths = dict.fromkeys([*(file.named for file in motion.files), *_log(pair)])
         for item in (by_path[path] for path in paths):
             if columns := _left(item, facts, draft):
-                draft.say(f"runs.{first_run[k]}", f"{item.named.name}: not used: {_named(columns)}")
+                draft.comment(
+                    f"runs.{first_run[k]}", f"{item.named.name}: not used: {_named(columns)}"
+                )
 
 
 def _every(facts: Facts) -> list[Contents]:

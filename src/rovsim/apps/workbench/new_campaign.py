@@ -42,7 +42,7 @@ def show(
     heading(TITLE, QUESTION)
     text(f"{shown(folder)} holds no campaign.yaml. This is what stands in its files.")
     with ui.column().classes("effects found"):
-        for line in proposal.found:
+        for line in proposal.findings:
             text(line)
     for check in proposal.checks:
         text(check, "warning")

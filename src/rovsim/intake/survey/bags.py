@@ -92,21 +92,21 @@ def look_into_bag(path: Path) -> Contents:
     )
 
 
-def _unread(topics: dict[str, str], named: str, kind: str, said: str) -> tuple[str, ...]:
+def _unread(topics: dict[str, str], named: str, kind: str, sentence: str) -> tuple[str, ...]:
     """Make a sentence on topics that rovsim does not read, if there are any.
 
     Args:
         topics: message type by topic.
         named: regex that is searched for in a topic's name.
         kind: regex of the whole short message type.
-        said: the sentence, with {} for the topics.
+        sentence: the sentence, with {} for the topics.
     """
     matches = [
         topic
         for topic, name in topics.items()
         if re.search(named, topic, re.I) and re.fullmatch(kind, _short(name))
     ]
-    return (said.format(", ".join(matches)),) if matches else ()
+    return (sentence.format(", ".join(matches)),) if matches else ()
 
 
 def _pose_topics(topics: dict[str, str]) -> list[str]:
@@ -243,39 +243,39 @@ def _kind(value: Array) -> tuple[LoggedKind | None, str]:
     return None, f"numbers from {np.nanmin(value):.4g} to {np.nanmax(value):.4g}"
 
 
-def _given(found: TopicSamples) -> Array:
+def _given(samples: TopicSamples) -> Array:
     """Mark the channels (c,) that ever carried a pulse."""
-    return (~absent(found.value) & np.isfinite(found.value)).any(axis=0)
+    return (~absent(samples.value) & np.isfinite(samples.value)).any(axis=0)
 
 
-def _outputs(found: TopicSamples) -> CommandCandidate:
-    numbers = np.flatnonzero(_given(found)) + 1
+def _outputs(samples: TopicSamples) -> CommandCandidate:
+    numbers = np.flatnonzero(_given(samples)) + 1
     columns = tuple(f"SERVO{k}" for k in numbers)
     return CommandCandidate(
         "rosbag2",
         columns,
-        found.time,
-        found.value[:, numbers - 1],
+        samples.time,
+        samples.value[:, numbers - 1],
         "pwm",
         "outputs to thrusters (RCOut), in their order",
-        found.topic,
+        samples.topic,
     )
 
 
-def _pilot(found: TopicSamples) -> CommandCandidate:
-    active = _given(found)
+def _pilot(samples: TopicSamples) -> CommandCandidate:
+    active = _given(samples)
     columns = [
         c for c in PILOT_CHANNELS if (k := _channel_number(c)) <= len(active) and active[k - 1]
     ]
-    value = found.value[:, [_channel_number(c) - 1 for c in columns]]
+    value = samples.value[:, [_channel_number(c) - 1 for c in columns]]
     return CommandCandidate(
         "rosbag2",
         tuple(columns),
-        found.time,
+        samples.time,
         value,
         "demand",
         "the pilot's radio by ArduSub's order of channels",
-        found.topic,
+        samples.topic,
         tuple(PILOT_CHANNELS[c] for c in columns),
     )
 

@@ -54,7 +54,7 @@ class CommandCandidate:
         time: (m,) s.
         value: (m, c) as logged.
         kind: None where the size of the numbers does not tell it.
-        said: how the kind is known.
+        reason: how the kind is known.
         topic: of a bag, as in the section `commands`.
         axes: of demands or a wrench, as in the section `commands`.
         auxiliary: other columns that are kept, such as the voltage.
@@ -67,7 +67,7 @@ class CommandCandidate:
     time: Array
     value: Array
     kind: LoggedKind | None
-    said: str
+    reason: str
     topic: str | None = None
     axes: tuple[str, ...] = ()
     auxiliary: tuple[str, ...] = ()

@@ -122,12 +122,12 @@ class _LikelyCommands(NamedTuple):
     Attributes:
         kind: of the commands; None where the numbers do not tell it.
         columns: their names; none where there are no commands.
-        said: how both are known, for a person to read.
+        reason: how both are known, for a person to read.
     """
 
     kind: LoggedKind | None
     columns: list[str]
-    said: str
+    reason: str
 
 
 def _likely_commands(columns: dict[str, Array]) -> _LikelyCommands:

@@ -28,21 +28,23 @@ class UnknownColumns(BadInput):
     """Columns of numbers that are neither a measured channel nor commands of a known kind."""
 
 
-def look_into_csv(path: Path, scratch: Path, known: Mapping[Key, Unit] | None = None) -> Contents:
+def look_into_csv(
+    path: Path, scratch: Path, other_units: Mapping[Key, Unit] | None = None
+) -> Contents:
     """Find out what a csv file holds.
 
     Args:
         path: of the file.
         scratch: folder for a copy under our names of columns, where the file has others.
-        known: units that other files tell for columns of the same names.
+        other_units: units that other files tell for columns of the same names.
 
     Raises:
         BadInput: the file holds neither a measured channel nor what looks like commands.
     """
-    units = Units(known or {})
+    units = Units(other_units or {})
     place, notes = rewritten(path, scratch, units)
     try:
-        return replace(_look(path, place, notes), units=units.found)
+        return replace(_look(path, place, notes), units=units.settled)
     except BadInput as error:  # it names the copy, which is gone when the user reads it
         if place == path:
             raise

@@ -39,13 +39,13 @@ class ChannelColumn:
         ours: our name of the channel.
         place: position of the column in the file.
         factor: from the file's unit to ours.
-        said: the unit and how it is known, to append to a sentence; may be empty.
+        note: the unit and how it is known, to append to a sentence; may be empty.
     """
 
     ours: str
     place: int
     factor: float
-    said: str
+    note: str
 
 
 def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str, ...]]:
@@ -70,7 +70,7 @@ def rewritten(path: Path, scratch: Path, units: Units) -> tuple[Path, tuple[str,
         return path, ()
     copy = scratch / f"{path.stem}.csv"
     write_text(copy, _text(lines, {c.place: c for c in columns}))
-    changes = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.said}" for c in changed]
+    changes = [f"'{lines.names[c.place]}' is {_without_unit(c.ours)}{c.note}" for c in changed]
     return copy, (f"{path.name} is read as a copy with other columns: {'; '.join(changes)}",)
 
 
@@ -181,7 +181,7 @@ def _raw(lines: Lines, place: int) -> Array:
 
 
 def _group(
-    lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, told: Units
+    lines: Lines, here: dict[str, int], units: dict[int, str], time: Array, shared_units: Units
 ) -> list[ChannelColumn]:
     """Make the columns of one group of channels; a unit that is not named is found by size.
 
@@ -190,7 +190,7 @@ def _group(
         here: positions of these columns, by our names.
         units: that names state, by position; empty where a name states none.
         time: (n,) s.
-        told: units that other files tell.
+        shared_units: units that other files tell.
     """
     if not here:
         return []
@@ -201,8 +201,8 @@ def _group(
     if names[0] in QUATERNION:
         return [ChannelColumn(n, p, 1.0, "") for n, p in here.items()]
     if names[0] == "depth_m":
-        return [_depth(lines, here, units, value[:, 0], told)]
-    factor, reason = find_by_size(lines, here, value, time, told)
+        return [_depth(lines, here, units, value[:, 0], shared_units)]
+    factor, reason = find_by_size(lines, here, value, time, shared_units)
     return [
         ChannelColumn(
             n,
@@ -215,7 +215,7 @@ def _group(
 
 
 def _depth(
-    lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, told: Units
+    lines: Lines, here: dict[str, int], units: dict[int, str], value: Array, shared_units: Units
 ) -> ChannelColumn:
     """Make the column of a depth; its sign is turned where it is a height, here or elsewhere."""
     ((ours, place),) = here.items()
@@ -225,9 +225,9 @@ def _depth(
             return Unit(-1.0, " with its sign turned, for it is negative", True)
         return Unit(1.0, "", is_height(-value))
 
-    sign = told.settle((lines.names[place],), decide)
+    sign = shared_units.settle((lines.names[place],), decide)
     factor = sign.factor * SI_FACTORS.get(units[place], 1.0)
-    return ChannelColumn(ours, place, factor, f"{_of(units[place])}{sign.said}")
+    return ChannelColumn(ours, place, factor, f"{_of(units[place])}{sign.note}")
 
 
 def _of(unit: str) -> str:

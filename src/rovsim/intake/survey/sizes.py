@@ -33,14 +33,14 @@ class Unit:
 
     Attributes:
         factor: from the file's unit to ours.
-        said: the unit and how it is known, to append to a sentence; may be empty.
+        note: the unit and how it is known, to append to a sentence; may be empty.
         sure: whether numbers of another unit could not look like these; small ones could.
         shared: whether columns of these names have this unit in all files. Times need not: those of
             cameras may be in s and those of a microcontroller in ms.
     """
 
     factor: float
-    said: str
+    note: str
     sure: bool
     shared: bool = True
 
@@ -50,18 +50,18 @@ class Units:
     """Units of columns without a unit in their names.
 
     Attributes:
-        known: units that other files tell, by names of columns.
-        found: units that this file's numbers tell; filled by `settle`.
+        other_files: units that other files tell, by names of columns.
+        settled: units that this file's numbers tell; filled by `settle`.
     """
 
-    known: Mapping[Key, Unit] = field(default_factory=dict)
-    found: dict[Key, Unit] = field(default_factory=dict)
+    other_files: Mapping[Key, Unit] = field(default_factory=dict)
+    settled: dict[Key, Unit] = field(default_factory=dict)
 
     def settle(self, key: Key, decide: Callable[[], Unit]) -> Unit:
         """Return the unit of columns: that of other files, else what `decide` returns."""
-        if key not in self.known:
-            self.found[key] = decide()
-        return self.known.get(key) or self.found[key]
+        if key not in self.other_files:
+            self.settled[key] = decide()
+        return self.other_files.get(key) or self.settled[key]
 
 
 class UnknownUnit(BadInput):
@@ -118,7 +118,7 @@ def find_by_size(
         return judge(_ColumnGroup(lines, key, names, value, time, stated))
 
     unit = units.settle(key, decide)
-    return unit.factor, unit.said
+    return unit.factor, unit.note
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,7 +51,7 @@ def find_time_unit(
         return 1.0, " in s, by its steps"
     key, duration = (lines.names[place],), float(np.nanmax(value) - np.nanmin(value))
     settled = units.settle(key, lambda: _by_steps(lines, key, step, duration))
-    return settled.factor, settled.said
+    return settled.factor, settled.note
 
 
 def _by_steps(lines: Lines, key: tuple[str], step: float, lasts: float) -> Unit:

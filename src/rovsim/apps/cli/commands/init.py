@@ -64,7 +64,7 @@ def _bag(path: Path) -> bool:
 
 
 def _told(proposal: CampaignProposal, file: Path) -> str:
-    parts = ["\n".join(f"  {line}" for line in proposal.found)]
+    parts = ["\n".join(f"  {line}" for line in proposal.findings)]
     assumptions = [*list_taken(proposal), *(f"guess: {line}" for line in list_guesses(proposal))]
     parts.append("\n".join(f"  {line}" for line in assumptions))
     if proposal.checks:
@@ -82,7 +82,7 @@ def _told(proposal: CampaignProposal, file: Path) -> str:
 def _content(proposal: CampaignProposal, file: Path) -> dict:
     return {
         "campaign": str(file),
-        "found": proposal.found,
+        "found": proposal.findings,
         "taken": list_taken(proposal),
         "guesses": list_guesses(proposal),
         "checks": proposal.checks,
