@@ -116,7 +116,7 @@ def _draw_band(
     return Band(band_ends(np.array([p.nu for p in as_measured])), band_ends(places))
 
 
-def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
+def _misread(prediction: Prediction, motion: Motion, again: Motion) -> Prediction:
     """Give a prediction the measurement errors of `motion` in place of those of `again`.
 
     The replay started from `again`, which has other errors than the measured `motion`. The
@@ -124,22 +124,22 @@ def _misread(found: Prediction, motion: Motion, again: Motion) -> Prediction:
     """
     rotation = multiply(conjugate(again.eta[:, 3:]), motion.eta[:, 3:])
     shift = rotate(conjugate(again.eta[:, 3:]), motion.eta[:, :3] - again.eta[:, :3])
-    position = found.eta[:, :3] + rotate(found.eta[:, 3:], shift)
-    eta = np.hstack([position, multiply(found.eta[:, 3:], rotation)])
-    return replace(found, eta=eta, nu=found.nu + motion.nu - again.nu)
+    position = prediction.eta[:, :3] + rotate(prediction.eta[:, 3:], shift)
+    eta = np.hstack([position, multiply(prediction.eta[:, 3:], rotation)])
+    return replace(prediction, eta=eta, nu=prediction.nu + motion.nu - again.nu)
 
 
-def _place(found: Prediction, motion: Motion, spans: Spans) -> Array:
+def _place(prediction: Prediction, motion: Motion, spans: Spans) -> Array:
     """Position m NED and angles rad (n, 6), without jumps of 2 pi within a window.
 
     The angles are continued from the measured ones where each window begins.
     """
     measured = to_euler(motion.eta[:, 3:])
-    angles = short_way(to_euler(found.eta[:, 3:]) - measured)
+    angles = short_way(to_euler(prediction.eta[:, 3:]) - measured)
     for window in spans:
         at = predicted(motion, window)
         angles[at] = np.unwrap(angles[at], axis=0)
-    return np.hstack([found.eta[:, :3], measured + angles])
+    return np.hstack([prediction.eta[:, :3], measured + angles])
 
 
 def band_ends(drawn: Array) -> Array:

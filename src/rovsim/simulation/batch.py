@@ -169,15 +169,15 @@ class Batch:
         self.engine.advance(state, memory, t, h, self._world([drive]))
 
     def advance_by_heun(
-        self, drive: Drive, pushes: Array, state: Array, memory: Array, t: float, h: float
+        self, drive: Drive, accelerations: Array, state: Array, memory: Array, t: float, h: float
     ) -> Array:
         """Integrate the first model with Heun's method; returns the states (k, 13) after each step.
 
-        For the synthetic tank alone, whose truth must not share a replay's integrator. `pushes`
-        (k, 6) is an unlogged acceleration, m/s2 and rad/s2. `memory` (6,) is updated in place.
+        For the synthetic tank alone, whose truth must not share a replay's integrator. The
+        `accelerations` (k, 6), m/s2 and rad/s2, are not logged. `memory` (6,) is updated in place.
         """
-        out = np.empty((len(pushes), 13))
-        self.engine.heun(state, memory, t, h, pushes, self._world([drive]), out)
+        out = np.empty((len(accelerations), 13))
+        self.engine.heun(state, memory, t, h, accelerations, self._world([drive]), out)
         return out
 
     def _world(self, drives: Sequence[Drive]) -> World:

@@ -61,14 +61,14 @@ class Actuation(NamedTuple):
             readings = np.hstack([thrust.force, thrust.read])
         return Actuation(thrust.wrench, force, thrust.demand, angle, readings)
 
-    def push(self, model: Model) -> Array:
+    def wrench_on(self, model: Model) -> Array:
         """Wrench (k, 6) on a model, autopilots included, N and N m; linear in the actuation."""
         return np.asarray(self.wrench + model.actuated(self.force, self.demand))
 
     def drive(self, model: Model, duration: float) -> "Drive":
         """The drive of a model in a run of `duration` s."""
         return Drive(
-            self.push(model),
+            self.wrench_on(model),
             self.force,
             self.demand,
             duration,
@@ -173,7 +173,7 @@ class Drive:
         """The drive at some of its steps or instants: their indices (j,)."""
         return self.each(lambda x: x[steps])
 
-    def pushed(self, wrench: Array) -> "Drive":
+    def with_wrench(self, wrench: Array) -> "Drive":
         """Add a further wrench (k, 6), N and N m, in body axes FRD at CO."""
         return replace(self, wrench=self.wrench + wrench)
 
@@ -228,7 +228,7 @@ class Drives:
         mean, *growth = self._kept.get((key,), lambda: self._actuate(model))
         commands, edges, _ = self._given
         drive = mean.drive(model, commands.recording(edges)[1])
-        return replace(drive, ramp=growth[0].push(model)) if growth else drive
+        return replace(drive, ramp=growth[0].wrench_on(model)) if growth else drive
 
     def _actuate(self, model: Model) -> tuple[Actuation, ...]:
         """Actuation over the steps; where these are joined, also its rise over each of them."""

@@ -83,13 +83,13 @@ class Ensemble:
         Raises:
             BadInput: a command or states of another shape, or dt that is not positive.
         """
-        pushes = self.noise.disturbance_std * self._drawn
+        accelerations = self.noise.disturbance_std * self._drawn
         next_states = [
-            member.step(state, command, dt, member.model.M @ push)
-            for member, state, push in zip(self.members, states, pushes, strict=True)
+            member.step(state, command, dt, member.model.M @ acceleration)
+            for member, state, acceleration in zip(self.members, states, accelerations, strict=True)
         ]
         fade = gauss_markov.decay(dt / self.noise.correlation_time)
-        normal = self.noise.random.normal(size=(1, *pushes.shape))
+        normal = self.noise.random.normal(size=(1, *accelerations.shape))
         self._drawn = gauss_markov.propagate(fade[None, None], normal, self._drawn)[0]
         return np.array(next_states)
 

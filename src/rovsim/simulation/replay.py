@@ -170,7 +170,7 @@ def simulate(
     memory = remembered_at([model], lambda m: motion, grid.edges, first)
     drive = drive_by_log(model, motion, grid, settings.commands)
     if disturbed is not None:
-        drive = drive.pushed(disturbed @ model.M.T)
+        drive = drive.with_wrench(disturbed @ model.M.T)
     batch, measured = Batch([model], motion.site), find_measured(motion.measured)
     full_starts = propagate_unmeasured_velocities(
         batch, [drive], Starts(state, first, steps, memory), grid.time, measured

@@ -64,14 +64,14 @@ class Stepper:
         self._response: list | None = None
         self._memory = np.zeros(6)
 
-    def step(self, state: Array, command: Array, dt: float, pushed: Array | None = None) -> Array:
+    def step(self, state: Array, command: Array, dt: float, wrench: Array | None = None) -> Array:
         """Step the model by dt s under a command that is given now and held.
 
         Args:
             state: at the beginning of the step (13,).
             command: (c,) in the unit of its kind.
             dt: length of the step, s; longer ones than 10 ms are divided.
-            pushed: a further wrench (6,) that acts during the step, N and N m, in body axes FRD at
+            wrench: a further wrench (6,) that acts during the step, N and N m, in body axes FRD at
                 CO.
 
         Returns:
@@ -93,8 +93,8 @@ class Stepper:
             thrust.force, h, self._response
         )
         drive = Drive.by(self.model, thrust, self.duration)
-        if pushed is not None:
-            drive = drive.pushed(np.asarray(pushed, dtype=np.float64))
+        if wrench is not None:
+            drive = drive.with_wrench(np.asarray(wrench, dtype=np.float64))
         self._batch.advance(drive, state, self._memory, self.time, h)
         self.time += dt
         return state

@@ -52,7 +52,7 @@ def observe(
     drives = run.drives.of(models)
     if pushed is not None:
         drives = [
-            drive.pushed(_between(run, a) @ model.M.T)
+            drive.with_wrench(_between(run, a) @ model.M.T)
             for drive, a, model in zip(drives, pushed, models, strict=True)
         ]
     e = batch_of(models, run).innovations(drives, starts, correction)

@@ -129,7 +129,7 @@ class Windows:
         run = self.run
         drives = run.replay_drives.of(models)
         if pushes is not None:
-            drives = [drive.pushed(push) for drive, push in zip(drives, pushes, strict=True)]
+            drives = [drive.with_wrench(push) for drive, push in zip(drives, pushes, strict=True)]
         begin_steps = self._steps
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - begin_steps
         begins = Starts(

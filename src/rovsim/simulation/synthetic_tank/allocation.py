@@ -16,7 +16,7 @@ class Allocation:
 
     Attributes:
         arms: places (n, 3) of the n thrusters in body axes FRD, scaled so that the largest is 1.
-        pushes: force and moment (n, 6) of each thruster per unit of thrust; moments are scaled so
+        wrenches: force and moment (n, 6) of each thruster per unit of thrust; moments are scaled so
             that the largest is 1. These allocate demands where the vehicle has no mixer.
         levers: moment (s, 3) of each control surface per unit of force along its normal, scaled so
             that the largest is 1.
@@ -28,7 +28,7 @@ class Allocation:
         position = np.array([u.position for u in self.units]).reshape(-1, 3)
         direction = np.array([u.direction for u in self.units]).reshape(-1, 3)
         self.arms = position / max(np.abs(position).max(initial=0.0), 1e-9)
-        self.pushes = np.hstack([direction, _largest_one(np.cross(position, direction))])
+        self.wrenches = np.hstack([direction, _largest_one(np.cross(position, direction))])
         levers = [np.cross(surface.position, surface.normal) for surface in vehicle.surfaces]
         self.levers = _largest_one(np.array(levers).reshape(-1, 3))
 
@@ -36,7 +36,7 @@ class Allocation:
     def sideways(self) -> bool:
         """Whether a thruster can push sideways."""
         has_azimuth = any(unit.azimuth for unit in self.units)
-        return has_azimuth or bool(np.abs(self.pushes[:, 1]).max(initial=0.0) > 0.1)
+        return has_azimuth or bool(np.abs(self.wrenches[:, 1]).max(initial=0.0) > 0.1)
 
     def command(self, demand: Array) -> Array:
         """Allocate a demand (6,) from surge to yaw, each axis in [-1, 1].
@@ -55,7 +55,7 @@ class Allocation:
     @cached_property
     def _shares(self) -> Array:
         """Command (n, 6) of each of n thrusters per unit of demand of each axis."""
-        return self.thrusters.mixing() if self.thrusters.mixer else self.pushes
+        return self.thrusters.mixing() if self.thrusters.mixer else self.wrenches
 
     def _turned(self, k: int, demand: Array) -> list[float]:
         """Command and angle, rad, of azimuth thruster k, along the force demanded at its place."""

@@ -84,9 +84,9 @@ class Pilot:
         goal = self.set_points[int(tick * self.dt / SET_POINT_TIME_S)]
         drift = self.drift + INTEGRAL_GAIN * self.dt * (goal - delayed[:3])
         self.drift = np.minimum(np.maximum(drift, -0.3), 0.3)  # np.clip takes longer
-        push = POSITION_GAIN * (goal - delayed[:3]) + self.drift
+        world_demand = POSITION_GAIN * (goal - delayed[:3]) + self.drift
         demand = self.wander[tick].copy()
-        demand[:3] += unrotate(delayed[3:7], push) - SPEED_GAIN * delayed[7:10]
+        demand[:3] += unrotate(delayed[3:7], world_demand) - SPEED_GAIN * delayed[7:10]
         demand[3:5] = ANGLE_GAIN * (demand[3:5] - to_euler(state[3:7])[:2])
         demand[3:5] -= RATE_GAIN * state[10:12]
         return np.minimum(np.maximum(demand, -MAX_DEMAND), MAX_DEMAND)

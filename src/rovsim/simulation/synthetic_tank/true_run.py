@@ -114,11 +114,11 @@ def fly_run(
     record = _Kept(steps, state)
     for k in range(ticks):
         if k % TICKS_PER_DRAW == 0:
-            pushes = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
+            accelerations = np.ascontiguousarray(next(turbulence) @ model.constants.M_inv[0].T)
         rows = slice(k % TICKS_PER_DRAW * per_tick, (k % TICKS_PER_DRAW + 1) * per_tick)
         vehicle.set_current(currents[k])
         command = _command(flight, vehicle, pilot, k, state)
-        path = vehicle.advance(k, command, state, pushes[rows])
+        path = vehicle.advance(k, command, state, accelerations[rows])
         record.take(path)
         state = path[-1]
         _stay_inside(state, vehicle.room, (k + 1) * tick)
@@ -232,21 +232,21 @@ class _TrueVehicle:
             stamp += max(0.0, t - float(effective(np.array([stamp]))[0]))
         return stamp
 
-    def advance(self, k: int, command: Array, state: Array, pushes: Array) -> Array:
+    def advance(self, k: int, command: Array, state: Array, accelerations: Array) -> Array:
         """Take the command of tick k, and simulate up to the next tick.
 
         Args:
             k: number of the tick.
             command: (c,) as it is logged.
             state: at this tick (13,).
-            pushes: acceleration (n, 6) by turbulence in each of n steps, m/s2 and rad/s2.
+            accelerations: acceleration (n, 6) by turbulence in each of n steps, m/s2 and rad/s2.
 
         Returns:
             The states (n, 13) after each step.
         """
         self.times[k], self.commands[k] = self._stamp(k * self.tick), command
         path, t = self.model.thrust_path, k * self.tick
-        middle = t + self.h * (0.5 + np.arange(len(pushes)))
+        middle = t + self.h * (0.5 + np.arange(len(accelerations)))
         arrival = path.effective_time(self.times[self.begin : k + 1])
         line = latest(arrival, middle)
         lines = self.commands[self.begin + line]
@@ -254,7 +254,7 @@ class _TrueVehicle:
         static = path.at(Commands(middle, lines, self.kind), 0.0, self.duration)
         force, self.lag = path.respond(static.force, self.h, self.lag)
         drive = Drive.by(self.model, replace(static, force=force), self.duration)
-        return self.batch.advance_by_heun(drive, pushes, state, self.memory, t, self.h)
+        return self.batch.advance_by_heun(drive, accelerations, state, self.memory, t, self.h)
 
 
 class LeftTank(BadInput):

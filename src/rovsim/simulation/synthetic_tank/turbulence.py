@@ -35,17 +35,17 @@ def draw_turbulence(
     for length in lengths:  # how each run begins is drawn last
         random.normal(size=(length, 6))
     a = gauss_markov.decay(h / settings.time_constant)
-    return _pushes(lengths, a, level, replayed, random.normal(size=6))
+    return _draw_wrenches(lengths, a, level, replayed, random.normal(size=6))
 
 
-def _pushes(
+def _draw_wrenches(
     lengths: list[int], a: Array, level: Array, random: np.random.Generator, begin: Array
 ) -> Iterator[Array]:
     """Yield wrenches (length, 6), each continuing the process where the last one ended."""
     for length in lengths:
-        pushes = gauss_markov.propagate(a, random.normal(size=(length, 6)), begin)
-        begin = pushes[-1]
-        yield pushes * level
+        wrenches = gauss_markov.propagate(a, random.normal(size=(length, 6)), begin)
+        begin = wrenches[-1]
+        yield wrenches * level
 
 
 def draw_currents(model: Model, ticks: int, dt: float, random: np.random.Generator) -> Array:
