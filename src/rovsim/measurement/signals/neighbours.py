@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy import ndarray as Array
 
-NEIGHBOUR_FRAMES, OUTLIER_MEDIANS = 7, 6.0  # to either side; times their median that is far
+NEIGHBOUR_FRAMES, OUTLIER_MEDIANS = 7, 6.0  # to either side; times their median count as far
 MAX_NEIGHBOUR_STEPS = 3.5  # neighbours may be as far apart: two frames are lost between them
 
 
