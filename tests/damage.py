@@ -42,8 +42,8 @@ def damaged(raw: bytes, random: np.random.Generator) -> bytes:
 def check_sound(recording) -> None:
     assert np.isfinite(recording.time).all()
     assert (np.diff(recording.time) > 0).all()
-    assert np.isfinite(recording.position[recording.found]).all()
-    turns = np.linalg.norm(recording.attitude[recording.found], axis=1)
+    assert np.isfinite(recording.position[recording.tracked]).all()
+    turns = np.linalg.norm(recording.attitude[recording.tracked], axis=1)
     np.testing.assert_allclose(turns, 1.0, atol=1e-6)
     for channel in recording.channels.values():
         assert np.isfinite(channel.time).all()

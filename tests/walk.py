@@ -140,7 +140,7 @@ def write_own(folder: Path, raw: Path) -> None:
     folder.mkdir()
     for run in campaign.runs:
         recording = read_run(campaign, run.id)[0]
-        seen = recording.found
+        seen = recording.tracked
         roll, pitch, yaw = np.degrees(to_euler(recording.attitude[seen])).T
         x, y, z = recording.position[seen].T
         columns = {

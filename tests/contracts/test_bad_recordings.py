@@ -209,7 +209,7 @@ def test_the_builders_write_good_files(tmp_path):
     # otherwise every refusal above could have another cause
     for name in ("qtm_tsv", "csv"):
         recording, _ = read_run(load_campaign(write_run(tmp_path / name, name)), "one")
-        assert recording.found.all()
+        assert recording.tracked.all()
 
 
 def test_the_column_line_is_where_the_cases_say():

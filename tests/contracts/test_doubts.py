@@ -120,7 +120,7 @@ CONVENTIONS = {
 def spoiled(recording, change, turn=KEPT):
     """A recording with attitudes and positions of another convention."""
     attitude = recording.attitude.copy()
-    attitude[recording.found] = change(attitude[recording.found])
+    attitude[recording.tracked] = change(attitude[recording.tracked])
     return replace(recording, attitude=attitude, position=recording.position @ turn)
 
 
@@ -140,7 +140,7 @@ def test_init_tells_of_inverse_quaternions(sound, tmp_path, capsys):
         table = np.column_stack([recording.time, recording.position, recording.attitude])
         head = "time_s,x_m,y_m,z_m,qw,qx,qy,qz"
         path = tmp_path / f"{run.id}_poses.csv"
-        np.savetxt(path, table[recording.found], delimiter=",", header=head, comments="")
+        np.savetxt(path, table[recording.tracked], delimiter=",", header=head, comments="")
         shutil.copy(sound / run.commands, tmp_path / f"{run.id}_commands.csv")
     main(["init", str(tmp_path)])
     said = unfolded(capsys.readouterr().out)
@@ -271,7 +271,7 @@ def parted(recording):
 def test_nothing_is_said_of_a_span_that_begins_late_in_a_long_file(sound):
     campaign = load_campaign(sound)
     recording, begin = parted(read_recording(campaign, campaign.runs[0].id)[0])
-    used = replace(recording, found=recording.found & (recording.time > begin))
+    used = replace(recording, tracked=recording.tracked & (recording.time > begin))
     assert find_doubts(used, load_campaign_vehicle(campaign)) == ()
 
 

@@ -124,7 +124,7 @@ def test_every_format_gives_the_swim_in_ned_and_frd(tmp_path, name, world, body)
     np.testing.assert_allclose(recording.time, swim.time, atol=1e-6)
     np.testing.assert_allclose(position, swim.position, atol=1e-6)
     np.testing.assert_allclose(matrix(attitude), swim.rotation, atol=3e-6)
-    assert recording.found.all() == recording.posed
+    assert recording.tracked.all() == recording.posed
     assert recording.rate == pytest.approx(100.0)
     assert not any(anomalies.counts.values())
     assert usable_reason(recording) is None

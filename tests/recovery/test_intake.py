@@ -42,7 +42,7 @@ def flown(tmp_path_factory):
     swims, commands = {}, {}
     for run in RUNS:
         found = read_qtm(folder / f"{run}_6D.tsv", mocap)
-        seen = found.found
+        seen = found.tracked
         swim = Swim(found.time[seen], found.position[seen], matrix(found.attitude[seen]))
         swims[run] = swim.along("z_up", "flu")
         commands[run] = (folder / f"{run}_commands.csv").read_text().splitlines()

@@ -149,8 +149,8 @@ def test_a_drifting_current_is_a_random_walk_of_the_water_alone(tmp_path):
         recorded(tmp_path / str(len(effects)), seed=3, effects=effects)[1]
         for effects in ((), hidden)
     )
-    assert np.array_equal(still.found, drifting.found)  # what else is drawn stays the same
-    apart = np.linalg.norm(drifting.position - still.position, axis=1)[still.found]
+    assert np.array_equal(still.tracked, drifting.tracked)  # what else is drawn stays the same
+    apart = np.linalg.norm(drifting.position - still.position, axis=1)[still.tracked]
     assert apart[:50].max() < 0.01
     assert apart.max() > 0.05
 
@@ -161,8 +161,8 @@ def test_coloured_errors_last_and_leave_the_white_ones_alone(tmp_path):
         recorded(tmp_path / name, seed=3, camera=camera)[1]
         for name, camera in (("plain", Camera()), ("coloured", colour))
     )
-    seen = plain.found & coloured.found
-    assert np.array_equal(plain.found, coloured.found)  # the same frames are lost
+    seen = plain.tracked & coloured.tracked
+    assert np.array_equal(plain.tracked, coloured.tracked)  # the same frames are lost
     shift = (coloured.position - plain.position)[seen]
     turn = log(multiply(plain.attitude * [1, -1, -1, -1], coloured.attitude))[seen]
     for error, size in ((shift, colour.colour_noise), (turn, colour.colour_attitude)):

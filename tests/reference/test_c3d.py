@@ -43,7 +43,7 @@ def test_frames_without_the_body_are_marked(tmp_path):
     raw[start + 68 * 7 + 64 : start + 68 * 8] = np.float32(-1.0).tobytes()  # its reliability
     raw[start + 68 * 9 : start + 68 * 10] = bytes(68)
     export = read(tmp_path, bytes(raw))
-    assert np.flatnonzero(~export.found).tolist() == [7, 9]
+    assert np.flatnonzero(~export.tracked).tolist() == [7, 9]
     assert export.repairs.bad_rotations == 1
 
 

@@ -71,7 +71,7 @@ def test_depth_at_3_hz_and_attitude_at_10_hz_share_a_file(tmp_path):
     np.testing.assert_allclose(matrix(attitude.value), matrix(expected), atol=1e-7)
     assert attitude.rate == pytest.approx(10.0)
     assert not recording.posed
-    assert not recording.found.any()
+    assert not recording.tracked.any()
     assert np.isnan(recording.position).all()
     assert not any(anomalies.counts.values())
     report = report_quality(recording, anomalies, SignalSettings().outliers)
@@ -149,14 +149,14 @@ def test_velocities_are_means_or_instants_as_the_campaign_says(tmp_path):
     assert mean.channels == {}
     instant, _ = read(tmp_path / "instant", lines, {"velocity": "instant"})
     assert instant.nu is None
-    assert instant.found.all()
+    assert instant.tracked.all()
     np.testing.assert_array_equal(instant.channels["rates"].value[0], [4, 5, 6])
 
 
 def test_velocities_that_few_poses_have_are_no_bin_means_and_that_is_said(tmp_path):
     recording, anomalies = read(tmp_path, with_velocities(csv_lines(Swim.ned()), every=10))
     assert recording.nu is None
-    assert recording.found.all()
+    assert recording.tracked.all()
     assert len(recording.channels["velocity"].time) == 40
     assert any("mocap.velocity: instant" in note for note in anomalies.notes)
 
@@ -307,7 +307,7 @@ def test_what_lies_outside_of_the_used_spans_is_left_out_and_counted(tmp_path, p
     assert nothing.left_out == 0
     assert counts.left_out > 0
     if posed:
-        times = recording.time[recording.found]
+        times = recording.time[recording.tracked]
         assert len(times) == whole.found.sum() - counts.left_out
         assert (recording.time == whole.time).all()
     else:

@@ -46,7 +46,7 @@ def test_an_empty_pose_and_a_zero_quaternion_are_not_found(tmp_path):
         "0.3,0,0,0,0,0,0,0",
     ]
     export = read_csv(write_lines(tmp_path / "a.csv", lines), MOCAP)
-    assert export.found.tolist() == [True, False, False, False]
+    assert export.tracked.tolist() == [True, False, False, False]
 
 
 def test_euler_order_is_yaw_then_pitch_then_roll(tmp_path):
@@ -124,7 +124,7 @@ def test_poses_and_commands_may_share_a_file_with_words_in_it(tmp_path):
 def test_the_kth_runs_are_ned_and_frd(run):
     campaign = load_campaign(ROOT / "campaigns" / "kth_tank_2025")
     recording, anomalies = read_run(campaign, run)
-    assert recording.found.all()
+    assert recording.tracked.all()
     assert np.isnan(recording.site.tank).all()
     # Displacement over about 2 s against the exported body velocity turned into the world: same
     # sign on every axis. (Slope 0.98 to 1.03 where the published attitude is reliable.)

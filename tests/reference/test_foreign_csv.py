@@ -119,7 +119,7 @@ WRITTEN = {
 def test_what_other_tools_write_is_read_right(tmp_path, name):
     path = write_lines(tmp_path / "run.csv", WRITTEN[name])
     export = look_into_csv(path, tmp_path).tracks[0].export
-    seen = np.flatnonzero(export.found)
+    seen = np.flatnonzero(export.tracked)
     lost = np.arange(1, 400, 50) if name.startswith("no pose") else []
     np.testing.assert_array_equal(np.delete(np.arange(400), lost), seen)
     np.testing.assert_allclose(export.time - export.time[0], POSE[:, 0], atol=1e-6)

@@ -26,7 +26,7 @@ Y_UP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
 
 def test_without_a_name_the_only_body_is_read(tmp_path):
     path = write_lines(tmp_path / "take.csv", motive_lines(SWIM))
-    assert read_motive(path, MOCAP.model_copy(update={"body": ""})).found.all()
+    assert read_motive(path, MOCAP.model_copy(update={"body": ""})).tracked.all()
 
 
 @pytest.mark.parametrize("order", ["XYZ", "ZYX", "YZX"])
@@ -76,7 +76,7 @@ def test_frames_without_the_body_have_empty_cells(tmp_path):
     lines = motive_lines(SWIM)
     lines[20] = ",".join([*lines[20].split(",")[:2], *[""] * 8])
     export = read_motive(write_lines(tmp_path / "take.csv", lines), MOCAP)
-    assert np.flatnonzero(~export.found).tolist() == [12]
+    assert np.flatnonzero(~export.tracked).tolist() == [12]
 
 
 def test_versions_with_other_lines_of_names_are_read(tmp_path):
@@ -87,7 +87,7 @@ def test_versions_with_other_lines_of_names_are_read(tmp_path):
         for k, line in enumerate(lines)
         if k != 5
     ]
-    assert read_motive(write_lines(tmp_path / "old.csv", old), MOCAP).found.all()
+    assert read_motive(write_lines(tmp_path / "old.csv", old), MOCAP).tracked.all()
     new = lines[:2]
     for k, line in enumerate(lines[2:]):
         first, second, rest = line.split(",", 2)
@@ -100,7 +100,7 @@ def test_versions_with_other_lines_of_names_are_read(tmp_path):
 def test_a_real_take():
     export = read_motive(TAKE, MOCAP.model_copy(update={"body": "Rigid Body 1"}))
     assert len(export.time) == 250
-    assert export.found.all()
+    assert export.tracked.all()
     assert export.rate == 120.0
     np.testing.assert_allclose(np.diff(export.time), 1 / 120.0, atol=2e-6)
     np.testing.assert_allclose(export.position[-1], [0.060349, 0.019146, 0.076408])

@@ -60,7 +60,7 @@ def test_a_body_that_was_not_found(tmp_path, residual, zeros):
     cells[8] = residual
     lines[-5] = "\t".join(cells)
     export = read(tmp_path, lines)
-    assert np.flatnonzero(~export.found).tolist() == [15]
+    assert np.flatnonzero(~export.tracked).tolist() == [15]
 
 
 def test_a_damaged_matrix_counts_as_not_found(tmp_path):
@@ -69,7 +69,7 @@ def test_a_damaged_matrix_counts_as_not_found(tmp_path):
     cells[9] = "5.0"
     lines[-5] = "\t".join(cells)
     export = read(tmp_path, lines)
-    assert np.flatnonzero(~export.found).tolist() == [15]
+    assert np.flatnonzero(~export.tracked).tolist() == [15]
     assert export.repairs.bad_rotations == 1
 
 
@@ -157,8 +157,8 @@ def test_practice_campaigns_read_whole(campaign):
         rows = loaded.mocap_paths(run)[0].read_text().splitlines()[11:]
         lost = sum(row.split("\t")[8] in ("-1", "-1.000") for row in rows)
         assert (report.frames, report.not_found) == (len(rows), lost)
-        assert np.isnan(recording.position[~recording.found]).all()
-        seen = recording.position[recording.found]
+        assert np.isnan(recording.position[~recording.tracked]).all()
+        seen = recording.position[recording.tracked]
         inside = ((seen > low) & (seen < high)).all(axis=1)
         assert inside.mean() > 0.99  # the rest are outlier frames
         assert recording.site.tank[2].tolist() == [-3.0, 0.0]  # NED: the surface is zero, z down

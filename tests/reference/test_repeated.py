@@ -35,7 +35,7 @@ def test_a_vehicle_at_rest_is_seen_whatever_the_digits(tmp_path, rate, digits, n
     found = tidied(tmp_path, *swim(rate, noise=noise), digits)
     assert len(found.time) == 40 * rate
     # coarse digits with a noise of a few of them may repeat a single frame and then jump
-    assert np.mean(~found.found) <= (0.001 if noise and digits < 4 else 0.0)
+    assert np.mean(~found.tracked) <= (0.001 if noise and digits < 4 else 0.0)
     assert not found.notes or noise
 
 
@@ -47,14 +47,14 @@ def test_a_pose_that_is_sent_on_while_the_vehicle_moves_was_not_seen(tmp_path, n
         pose[first : first + frames] = pose[first - 1]
         lost[first : first + frames] = True
     found = tidied(tmp_path, t, pose)
-    np.testing.assert_array_equal(~found.found, lost)
+    np.testing.assert_array_equal(~found.tracked, lost)
     assert found.notes[0].startswith("118 frames repeat the pose before them to the last digit")
 
 
 def test_a_recording_that_ends_with_a_lost_body(tmp_path):
     t, pose = swim(100, noise=5e-4)
     pose[2700:] = pose[2699]
-    np.testing.assert_array_equal(tidied(tmp_path, t, pose).found, np.arange(len(t)) < 2700)
+    np.testing.assert_array_equal(tidied(tmp_path, t, pose).tracked, np.arange(len(t)) < 2700)
 
 
 @pytest.mark.parametrize(("rate", "camera"), [(100, 50), (100, 10), (100, 40), (50, 15)])
@@ -64,7 +64,7 @@ def test_a_camera_slower_than_its_log(tmp_path, rate, camera):
     taken = np.floor(t * camera + 1e-6).astype(int)
     first = np.searchsorted(taken, taken)
     found = tidied(tmp_path, t, pose[first])
-    assert found.found.all()
+    assert found.tracked.all()
     moving = (t > 9.0) & (t < 19.0)  # beyond, poses may repeat by themselves
     own = np.unique(first[moving & (t[first] > 9.0)])
     np.testing.assert_allclose(found.time[(found.time > 9.0) & (found.time < 19.0)], t[own])
@@ -78,7 +78,7 @@ def test_a_fast_log_of_a_slow_camera_loses_frozen_poses_as_well(tmp_path):
     held = pose[np.arange(len(t)) // 4 * 4]
     held[1600:1640] = held[1599]
     found = tidied(tmp_path, t, held)
-    assert (~found.found).sum() == 10
+    assert (~found.tracked).sum() == 10
     assert len(found.time) == 1000
 
 
@@ -89,5 +89,5 @@ def test_a_depth_with_few_digits_beside_the_poses_stays(tmp_path):
     lines = [f"{NAMES},depth_m", *(",".join(f"{x:.6f}" for x in row) for row in rows)]
     path = write_lines(tmp_path / "a.csv", lines)
     found = tidy_export(read_csv(path, MOCAP), path)
-    assert found.found.all()
+    assert found.tracked.all()
     assert len(found.channels["depth"].time) == len(t)

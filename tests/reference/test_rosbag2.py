@@ -66,7 +66,7 @@ def test_the_only_topic_of_poses_is_read(tmp_path, storage, kind):
         np.testing.assert_allclose(export.time - START, SWIM.time, atol=1e-6)
         np.testing.assert_allclose(export.position, SWIM.position)
         np.testing.assert_allclose(matrix(export.attitude), SWIM.rotation, atol=1e-9)
-        assert export.found.all()
+        assert export.tracked.all()
         assert export.notes == ()
 
 
@@ -87,7 +87,7 @@ def test_a_transform_is_a_pose_and_a_quaternion_of_zeros_is_none(tmp_path):
 
     export = read_bag(write_bag(tmp_path / "bag", {BODY: series(kind, fields)}), mocap())
     np.testing.assert_array_equal(export.position[:, 0], np.arange(20))
-    assert np.flatnonzero(~export.found).tolist() == [3]
+    assert np.flatnonzero(~export.tracked).tolist() == [3]
 
 
 def test_the_campaign_chooses_among_topics(tmp_path):
@@ -192,7 +192,7 @@ def test_pressures_take_the_density_of_the_water(tmp_path):
 def test_channels_stand_beside_poses(tmp_path):
     bag = write_bag(tmp_path / "bag", {BODY: poses(SWIM), **sensors()})
     export = read_bag(bag, mocap(body=BODY, topics={"imu": "/imu"}))
-    assert export.found.all()
+    assert export.tracked.all()
     assert set(export.channels) == {"rates", "specific_force"}
     with pytest.raises(BadInput, match=r"/pressure.*FluidPressure.*a velocity"):
         read_bag(bag, mocap(topics={"velocity": "/pressure"}))
@@ -358,7 +358,7 @@ def test_a_damaged_mcap_of_many_topics_is_read_or_refused(tmp_path):
 def test_the_bag_of_the_tank():
     export = read_bag(TANK, mocap(body="/mocap/bluerov_saab/odom"))
     assert len(export.time) == 113
-    assert export.found.all()
+    assert export.tracked.all()
     assert 1.0 / np.median(np.diff(export.time)) == pytest.approx(125.0, rel=0.05)
     commands = read_commands(TANK, log(columns=[f"RC{k + 1}" for k in range(6)]))
     assert commands.value.shape == (19, 6)

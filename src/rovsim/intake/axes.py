@@ -176,7 +176,7 @@ def _level(
 def _attitudes(track: Track) -> Array | None:
     """Return measured attitudes as rotation matrices (n, 3, 3) from body to world, file's axes."""
     if track.posed:
-        return matrix(track.export.attitude[track.export.found])
+        return matrix(track.export.attitude[track.export.tracked])
     channel = track.export.channels.get("attitude")
     return (
         None if channel is None else matrix(channel.value[np.isfinite(channel.value).all(axis=1)])
@@ -190,7 +190,7 @@ def _by_depth(tracks: Sequence[Track], worlds: Sequence[str]) -> str:
         depth = track.export.channels.get("depth")
         if depth is None or not track.posed:
             continue
-        tracked = track.export.found
+        tracked = track.export.tracked
         z = np.interp(depth.time, track.export.time[tracked], track.export.position[tracked, 2])
         if min(np.std(z), np.std(depth.value)) > 0:
             signs.append(float(np.corrcoef(z, depth.value[:, 0])[0, 1]))

@@ -67,7 +67,7 @@ def _moves(contents: Contents, body: str) -> bool:
     track = track_of(contents, body)
     if not track.posed:
         return True
-    place = track.export.position[track.export.found]
+    place = track.export.position[track.export.tracked]
     low, high = usual_range(place)
     return bool(np.max(high - low) > REST_POSITION_SPREAD)
 

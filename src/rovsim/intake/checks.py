@@ -32,7 +32,7 @@ def unusable(motion: MotionFile) -> str | None:
         export.time,
         export.position,
         export.attitude,
-        export.found,
+        export.tracked,
         commands,
         export.rate or measured_rate(export.time),
         export.nu,

@@ -79,7 +79,7 @@ def missing(one: Pair) -> str:
     if not one.motion.track.posed:
         channels = [f"{kind} at {c.rate:.3g} Hz" for kind, c in export.channels.items() if c.rate]
         return f"; no full poses, but {', '.join(channels)}"
-    untracked = int(np.sum(~export.found))
+    untracked = int(np.sum(~export.tracked))
     return f", {untracked} of them without the body" if untracked else ""
 
 

@@ -66,7 +66,7 @@ def mocap(facts: Facts, draft: CampaignDraft) -> None:
         )
     if track.posed:
         draft.comment(
-            "mocap", WALLS_COMMENT.format(_extent(track.export.position[track.export.found]))
+            "mocap", WALLS_COMMENT.format(_extent(track.export.position[track.export.tracked]))
         )
 
 

@@ -40,7 +40,7 @@ def list_run_entries(facts: Facts) -> list[RunEntry]:
 
 def find_run_spans(export: Export) -> list[tuple[float, float]]:
     """Find the first and last time in s of each run in a file; none where it is one run."""
-    time = export.time[export.found] if export.found.any() else export.time
+    time = export.time[export.tracked] if export.tracked.any() else export.time
     pauses = np.flatnonzero(np.diff(time) > MIN_PAUSE_S)
     begins, ends = time[np.append(0, pauses + 1)], time[np.append(pauses, len(time) - 1)]
     long = ends - begins >= MIN_RUN_S

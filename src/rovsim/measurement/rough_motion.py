@@ -49,7 +49,7 @@ class Velocities:
 
 def even_poses(export: Export | Recording) -> ResampledPoses:
     """Take medians of the found poses over the steps of an even clock, and bridge short gaps."""
-    tracked = export.found
+    tracked = export.tracked
     time, position, attitude = (
         export.time[tracked],
         export.position[tracked],
@@ -108,7 +108,7 @@ def estimate_velocities(export: Export | Recording) -> Velocities:
     """Take body velocities as exported, else from slopes of full poses, else from the channels."""
     if export.nu is not None:
         return _exported(export)
-    if not export.found.any():
+    if not export.tracked.any():
         return _of_channels(export.channels)
     return of_poses(even_poses(export))
 
@@ -120,7 +120,7 @@ def of_poses(poses: ResampledPoses) -> Velocities:
 
 
 def _exported(export: Export | Recording) -> Velocities:
-    tracked, clock = export.found, even_clock(export.time[export.found])
+    tracked, clock = export.tracked, even_clock(export.time[export.tracked])
     assert export.nu is not None
     nu = _interpolated(clock, export.time[tracked], export.nu[tracked])
     return Velocities(clock, nu)

@@ -51,9 +51,9 @@ def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
 
 def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     """Remark a vehicle that is upside down most of the time, although its weight would right it."""
-    if not recording.found.any() or not righting(vehicle)[3] > 0.0:
+    if not recording.tracked.any() or not righting(vehicle)[3] > 0.0:
         return
-    upright = matrix(recording.attitude[recording.found])[:, 2, 2]
+    upright = matrix(recording.attitude[recording.tracked])[:, 2, 2]
     if np.median(upright) < HANGS:
         yield (
             "The vehicle hangs upside down most of the time, which its own weight would right: "
@@ -66,7 +66,7 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     predicted = _caused(recording, vehicle)
     if predicted is None:
         return
-    has_poses = recording.found.any() and recording.nu is None
+    has_poses = recording.tracked.any() and recording.nu is None
     poses = even_poses(recording) if has_poses else None
     motion = estimate_velocities(recording) if poses is None else of_poses(poses)
     if not np.isfinite(motion.nu).any():
@@ -131,7 +131,7 @@ def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | Non
     """
     commands = recording.commands
     # stretches that `use` leaves out are not found, and may last longer than `LONGEST`
-    covered = recording.time[recording.found] if recording.found.any() else recording.time
+    covered = recording.time[recording.tracked] if recording.tracked.any() else recording.time
     if len(commands.time) < 2 or np.ptp(covered) < SHORTEST:
         return None
     begin = max(float(commands.time[0]), float(covered[0]))
@@ -151,7 +151,7 @@ def _told(axes: Array) -> str:
 
 def _out_of_tank(recording: Recording) -> Iterator[str]:
     """Remark a path that lies mostly outside of the tank."""
-    position, walls = recording.position[recording.found], recording.site.tank
+    position, walls = recording.position[recording.tracked], recording.site.tank
     if not len(position):
         return
     low, high = position < walls[:, 0] - OUTSIDE, position > walls[:, 1] + OUTSIDE

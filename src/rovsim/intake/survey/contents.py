@@ -31,7 +31,7 @@ class Track:
     @property
     def posed(self) -> bool:
         """Whether there are full poses (position and attitude)."""
-        return bool(self.export.found.any())
+        return bool(self.export.tracked.any())
 
     @property
     def start(self) -> float:

@@ -39,7 +39,7 @@ def assess(recording: Recording, anomalies: Anomalies, outliers: int | None = No
         anomalies: what was repaired or noticed while reading.
         outliers: number of frames that the outlier rejection refused; None when not looked for.
     """
-    time, tracked = recording.time, recording.found
+    time, tracked = recording.time, recording.tracked
     gaps = find_gaps(recording, anomalies.used)
     report = Quality(
         run=recording.run.id,
@@ -81,7 +81,7 @@ def find_gaps(recording: Recording, used: Sequence[tuple[float, float]] = ()) ->
         recording: what was read.
         used: spans [from, to] that are used, s: gaps outside are left out. Empty if all is used.
     """
-    time = recording.time[recording.found]
+    time = recording.time[recording.tracked]
     steps = np.diff(time)
     limit = max(MIN_GAP_S, 2.0 * float(np.median(np.diff(recording.time))))
     long = np.flatnonzero(steps > limit * (1.0 + 1e-9))

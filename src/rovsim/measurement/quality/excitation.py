@@ -56,7 +56,7 @@ def _velocity(recording: Recording) -> tuple[Array, Array]:
 def rough_velocity(recording: Recording) -> Array:
     """Body velocities (k, 6): the exported ones, else differences of medians of short blocks."""
     if recording.nu is not None:
-        return recording.nu[recording.found]
+        return recording.nu[recording.tracked]
     return _differences(*select_found_poses(recording), rate=recording.rate, length=BLOCK_S)
 
 
@@ -87,7 +87,7 @@ def select_found_poses(recording: Recording) -> tuple[Array, Array, Array]:
     Returns:
         Time (k, 1), s; position (k, 3), NED, m; sign-continuous attitude (k, 4).
     """
-    tracked = recording.found
+    tracked = recording.tracked
     attitude = continuous(recording.attitude[tracked])
     return recording.time[tracked][:, None], recording.position[tracked], attitude
 

@@ -26,7 +26,7 @@ def measure_noise(recording: Recording) -> PoseNoise:
 
 def _evenly_spaced(recording: Recording) -> Array:
     """Mask (k - 3,): where four consecutive found frames are one nominal step apart each."""
-    steps = np.diff(recording.time[recording.found])
+    steps = np.diff(recording.time[recording.tracked])
     even = np.abs(steps * recording.rate - 1.0) < 0.5
     return even[:-2] & even[1:-1] & even[2:]
 

@@ -19,7 +19,7 @@ def usable_reason(recording: Recording) -> str | None:
 
     Without full poses only its length and the size of its velocities are checked.
     """
-    tracked = recording.found
+    tracked = recording.tracked
     if too_fast := find_impossible(recording):
         return too_fast
     if not recording.posed:

@@ -41,7 +41,7 @@ class _Both(NamedTuple):
 
 def doubt_velocities(recording: Recording | Export) -> Iterator[str]:
     """Yield a sentence where velocities (u, v, w) or rates (p, q, r) contradict the poses."""
-    if not recording.found.any():
+    if not recording.tracked.any():
         return
     for kind, measured in _measured(recording).items():
         comparison = _compare(recording, kind, measured)
@@ -78,7 +78,7 @@ def _at(own: Channel, time: Array) -> Array:
 
 def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None:
     """Average both over sliding windows; None with too few windows or hardly any motion."""
-    tracked = of.found & np.isfinite(measured).all(axis=1)
+    tracked = of.tracked & np.isfinite(measured).all(axis=1)
     time, position, attitude = of.time[tracked], of.position[tracked], of.attitude[tracked]
     if len(time) < MIN_WINDOWS:
         return None

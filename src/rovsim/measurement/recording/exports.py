@@ -19,7 +19,7 @@ class Export:
         time: (n,) s.
         position: (n, 3) m.
         attitude: (n, 4), unit quaternion (w, x, y, z) from body to world.
-        found: bool (n,), False where the body was not seen.
+        tracked: bool (n,), False where the body was not seen.
         rate: nominal rate, Hz; None when the file does not say.
         nu: (n, 6), body velocities, m/s and rad/s; None when not exported.
         repairs: number of lines that were repaired or left out.
@@ -30,7 +30,7 @@ class Export:
     time: Array
     position: Array
     attitude: Array
-    found: Array
+    tracked: Array
     rate: float | None = None
     nu: Array | None = None
     repairs: MotionRepairs = field(default_factory=MotionRepairs)

@@ -17,7 +17,7 @@ POSE_CHANNELS = ("position", "attitude", "euler")  # channels that full poses co
 def list_held(export: Export) -> list[str]:
     """List what a file holds: full poses, and the kinds of channels with any sample."""
     channels = [kind for kind, channel in export.channels.items() if len(channel.time)]
-    return [*([FULL_POSES] if len(export.time) and export.found.any() else []), *channels]
+    return [*([FULL_POSES] if len(export.time) and export.tracked.any() else []), *channels]
 
 
 def join(exports: Mapping[Path, Export]) -> Export:

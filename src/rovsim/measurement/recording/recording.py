@@ -20,7 +20,7 @@ class Recording:
     """One run as it was measured, on the MoCap clock.
 
     Where no full poses were measured, there are only channels: `time` holds the times of all of
-    them, `rate` is that of the fastest, and `found` is False throughout.
+    them, `rate` is that of the fastest, and `tracked` is False throughout.
 
     Attributes:
         run: which run it is.
@@ -28,7 +28,7 @@ class Recording:
         time: (n,) s, increasing.
         position: (n, 3), NED, m.
         attitude: (n, 4), unit quaternion (w, x, y, z) from FRD to NED.
-        found: bool (n,), False where the body was not seen (the pose there is NaN).
+        tracked: bool (n,), False where the body was not seen (the pose there is NaN).
         commands: what was commanded.
         rate: nominal rate, Hz.
         nu: (n, 6), exported body velocities in FRD, m/s and rad/s, which are means from time[k] to
@@ -42,7 +42,7 @@ class Recording:
     time: Array
     position: Array
     attitude: Array
-    found: Array
+    tracked: Array
     commands: Commands
     rate: float
     nu: Array | None = None
@@ -52,12 +52,12 @@ class Recording:
     @property
     def posed(self) -> bool:
         """Whether this is a recording of full poses, even if the body was never seen."""
-        return bool(self.found.any()) or not self.channels
+        return bool(self.tracked.any()) or not self.channels
 
     def write(self, path: Path) -> None:
         """Write to `.npz`."""
         arrays = {**labels(self.run, self.site, self.commands), "time": self.time}
-        arrays |= {"position": self.position, "attitude": self.attitude, "found": self.found}
+        arrays |= {"position": self.position, "attitude": self.attitude, "found": self.tracked}
         arrays["rate"] = np.array(self.rate)
         if self.nu is not None:
             arrays["nu"] = self.nu

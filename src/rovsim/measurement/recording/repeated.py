@@ -47,13 +47,13 @@ def without_repeated(export: Export) -> Export:
     frozen = frames.frame[_find_frozen(frames)]
     if not len(frozen):
         return export
-    tracked = export.found.copy()
+    tracked = export.tracked.copy()
     tracked[frozen] = False
     note = (
         f"{len(frozen)} frames repeat the pose before them to the last digit while the vehicle "
         "moves: they count as not found."
     )
-    return replace(export, found=tracked, notes=(*export.notes, note))
+    return replace(export, tracked=tracked, notes=(*export.notes, note))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class _Seen:
 
     @staticmethod
     def of(export: Export) -> "_Seen":
-        frame = np.flatnonzero(export.found)
+        frame = np.flatnonzero(export.tracked)
         position, attitude = export.position[frame], export.attitude[frame]
         pose = np.hstack([position, attitude])
         repeated = (pose[1:] == pose[:-1]).all(axis=1)
@@ -112,7 +112,7 @@ def _slower(export: Export, seen: _Seen, lines: int) -> Export:
         seen: its frames.
         lines: number of lines in which a pose usually stands.
     """
-    mask = ~export.found
+    mask = ~export.tracked
     for start, count in seen.runs():
         mask[seen.frame[start : start + max(count - lines, 0) + 1 : lines]] = True
     rows = {n: getattr(export, n)[mask] for n in ("time", "position", "attitude", "found")}

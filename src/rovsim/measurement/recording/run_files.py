@@ -132,9 +132,11 @@ def _use(export: Export, run: Run) -> tuple[Export, int]:
         )
         for name, channel in export.channels.items()
     }
-    if not export.found.any():
+    if not export.tracked.any():
         return _cut(export, mask, used_channels), int(np.sum(~mask))
-    return replace(export, found=export.found & mask, channels=used_channels), int(np.sum(~mask))
+    return replace(export, tracked=export.tracked & mask, channels=used_channels), int(
+        np.sum(~mask)
+    )
 
 
 def _cut(export: Export, used: Array, kept: Channels) -> Export:
@@ -159,7 +161,7 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
     R = S_world R_file S_body, so each side is converted on its own.
     """
     world, body = axes_signs(mocap.world_axes), axes_signs(mocap.body_axes)
-    tracked = export.found[:, None]
+    tracked = export.tracked[:, None]
     nu = None if export.nu is None else export.nu * np.tile(body, 2)
     return Recording(
         info,
@@ -167,7 +169,7 @@ def to_ned(export: Export, mocap: Mocap, info: RunInfo, at: Site, commands: Comm
         export.time,
         np.where(tracked, export.position * world, np.nan),
         np.where(tracked, channels.attitude_to_ned(export.attitude, mocap), np.nan),
-        export.found,
+        export.tracked,
         commands,
         export.rate or measured_rate(export.time),
         nu,

@@ -30,16 +30,16 @@ def tidy_export(export: Export, path: Path) -> Export:
         BadInput: there are neither poses nor a channel with two samples.
         SeveralRuns: the times start again.
     """
-    for time in (export.time[export.found], *(c.time for c in export.channels.values())):
+    for time in (export.time[export.tracked], *(c.time for c in export.channels.values())):
         check_one_run(time, path)
     channels, unsorted, duplicates = tidy_channels(export.channels)
     repairs = replace(export.repairs, unsorted=unsorted, duplicates=duplicates)
-    if not export.found.any() and any(len(c.time) > 1 for c in channels.values()):
+    if not export.tracked.any() and any(len(c.time) > 1 for c in channels.values()):
         return _of_channels(replace(export, repairs=repairs), channels)
     order = np.argsort(export.time, kind="stable")
     time = export.time[order]
     keep = order[np.diff(time, prepend=-np.inf) > 0]
-    if len(keep) < 2 or not export.found[keep].any():
+    if len(keep) < 2 or not export.tracked[keep].any():
         raise _nothing(export, len(keep), path)
     rate, measured = export.rate, measured_rate(export.time[keep])
     if rate and abs(measured / rate - 1.0) > RATE_TOLERANCE:
@@ -52,7 +52,7 @@ def tidy_export(export: Export, path: Path) -> Export:
         time=export.time[keep],
         position=export.position[keep],
         attitude=export.attitude[keep],
-        found=export.found[keep],
+        tracked=export.tracked[keep],
         rate=rate,
         nu=None if export.nu is None else export.nu[keep],
         repairs=repairs,
@@ -82,7 +82,7 @@ def _of_channels(export: Export, channels: Channels) -> Export:
         time=time,
         position=unknown[:, :3],
         attitude=unknown[:, 3:],
-        found=np.zeros(len(time), bool),
+        tracked=np.zeros(len(time), bool),
         rate=rate,
         nu=None,
         channels=channels,

@@ -41,7 +41,7 @@ def bin_motion(recording: Recording) -> Motion:
     length = np.diff(time)
     end = float(time[-1] + np.median(length))
     edges = np.append(time, end)
-    usable = recording.found & np.isfinite(nu).all(axis=1)
+    usable = recording.tracked & np.isfinite(nu).all(axis=1)
     usable = usable & (np.diff(edges) <= MAX_BIN_RATIO * np.median(length))
     usable[-1] = False
     eta, state_nu = _states(recording, nu, edges, usable)

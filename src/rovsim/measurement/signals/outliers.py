@@ -166,7 +166,7 @@ def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAl
     If these frames are removed and the search is repeated, it finds nothing more.
     """
     mask = np.zeros(len(recording.time), bool)
-    frames = np.flatnonzero(recording.found)
+    frames = np.flatnonzero(recording.tracked)
     if len(frames) > 1:
         time = recording.time[frames]
         step = max(1.0 / recording.rate, float(np.median(np.diff(recording.time))))

@@ -67,7 +67,7 @@ def resample(recording: Recording, settings: Resampling, outlier_settings: Outli
     fewer than two believable frames gives poses none of which is usable.
     """
     rate = settings.rate or recording.rate
-    believed = recording.found & ~find_outliers(recording, outlier_settings)
+    believed = recording.tracked & ~find_outliers(recording, outlier_settings)
     if np.count_nonzero(believed) < 2:
         return _nothing_usable(recording, rate)
     time = recording.time[believed]
