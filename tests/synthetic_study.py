@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.spectrum import find_spectrum
-from rovsim.evaluation.error_conditions.conditions import SPEEDS, Blocks, Condition
+from rovsim.evaluation.error_conditions.conditions import SPEED_NAMES, Blocks, Condition
 from rovsim.evaluation.error_conditions.entries import list_conditions
 from rovsim.evaluation.error_conditions.findings import explain_errors
 from rovsim.evaluation.error_conditions.search import SearchedModel
@@ -95,7 +95,7 @@ def driven(seconds: float, error: np.ndarray, seed: int = 0) -> Blocks:
     rng, count = np.random.default_rng(seed), int(seconds / BLOCK_S)
     slow = lfilter([1.0], [1.0, -0.8], rng.standard_normal((2 * count, 12)), axis=0)
     kinds = [Condition(THROUGHOUT, "", THROUGHOUT)]
-    kinds += [Condition(n, "m/s", "speed", a) for n, a in zip(SPEEDS, AXES, strict=True)]
+    kinds += [Condition(n, "m/s", "speed", a) for n, a in zip(SPEED_NAMES, AXES, strict=True)]
     kinds += [Condition(f"{a} thrust", "N", "thrust", a) for a in AXES]
     columns = np.column_stack([np.zeros(2 * count), 0.2 * slow[:, :6], 10 * slow[:, 6:]])
     values = dict(zip(kinds, columns.T, strict=True))

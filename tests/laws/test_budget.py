@@ -68,7 +68,7 @@ def test_each_part_is_what_its_equation_says(tmp_path):
 
 def test_an_effect_of_the_vehicle_without_a_named_part_is_one_of_its_own(monkeypatch):
     named = made(model())
-    monkeypatch.delitem(force_budget.NOMINAL, "quadratic_damping")
+    monkeypatch.delitem(force_budget.NOMINAL_PARTS, "quadratic_damping")
     found = made(model())
     drag = found.parts["quadratic_damping"]
     np.testing.assert_allclose(drag, named.parts["quadratic damping"], atol=1e-9)
@@ -79,7 +79,7 @@ def test_an_effect_of_the_vehicle_without_a_named_part_is_one_of_its_own(monkeyp
 def test_all_that_a_vehicle_has_is_part_of_the_budget(name):
     held = {"rigid_body", "thrusters", "held_axes"}  # weight, Coriolis; commands; no force
     for effect in load_vehicle(name).effects():
-        assert effect.id in (held if effect.neutral() is effect else force_budget.NOMINAL)
+        assert effect.id in (held if effect.neutral() is effect else force_budget.NOMINAL_PARTS)
 
 
 def test_the_missing_force_is_the_one_that_was_left_out():

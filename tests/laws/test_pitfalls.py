@@ -7,7 +7,11 @@ import pytest
 
 from flown import observed
 from rovsim.dynamics.effect_entry import EffectEntry
-from rovsim.evaluation.held_out.pitfalls import SAID, measure_pitfalls, on_wrong_clock
+from rovsim.evaluation.held_out.pitfalls import (
+    ASSUMED_BIN_WIDTH_S,
+    measure_pitfalls,
+    on_wrong_clock,
+)
 from rovsim.learning.learner import learner_settings
 from rovsim.results.pitfalls import PITFALLS
 from rovsim.simulation.settings import SimulationSettings
@@ -68,8 +72,8 @@ def test_the_wrong_clock_moves_bins_and_commands_alike(flown):
         commands=replace(motion.commands, time=edges[:-1] + 0.05, value=motion.commands.value[:n]),
     )
     wrong = on_wrong_clock(binned)
-    assert np.allclose(np.diff(np.append(wrong.time, wrong.end)), SAID)
+    assert np.allclose(np.diff(np.append(wrong.time, wrong.end)), ASSUMED_BIN_WIDTH_S)
     assert wrong.time[0] == binned.time[0]
     before = np.searchsorted(binned.time, binned.commands.time, side="right")
     assert np.array_equal(before, np.searchsorted(wrong.time, wrong.commands.time, side="right"))
-    assert np.allclose(wrong.nu_dot[1:] * SAID, np.diff(binned.nu, axis=0))
+    assert np.allclose(wrong.nu_dot[1:] * ASSUMED_BIN_WIDTH_S, np.diff(binned.nu, axis=0))

@@ -118,7 +118,7 @@ def _look(
     standstills = find_standstills(sampled())
     for name in runs.of("test") if search.split == "test" else ():
         search.add_run(runs.motions[name])
-    return [search.found], standstills
+    return [search.result], standstills
 
 
 def _climb(

@@ -142,7 +142,9 @@ def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, seen.J)
-    faint_ones = np.flatnonzero((lengths > MAX_ROUNDING_STDS) & (lengths < MIN_VISIBLE_STDS)).tolist()
+    faint_ones = np.flatnonzero(
+        (lengths > MAX_ROUNDING_STDS) & (lengths < MIN_VISIBLE_STDS)
+    ).tolist()
     stepped_back = {i: step_back(seen.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
     scale = np.where(lengths > MAX_ROUNDING_STDS, 1.0, 0.0)[:, None, None]

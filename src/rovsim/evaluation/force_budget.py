@@ -32,10 +32,10 @@ from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import ReplaySettings, SimulationSettings
 
 CORIOLIS, RESTORING, THRUSTERS = "Coriolis", "weight and buoyancy", "thrusters"
-RESIDUAL = "learned residual"
+RESIDUAL_NAME = "learned residual"
 # Names of the vehicle's own effects as parts, in the order in which they are put in. An effect that
 # is not listed comes after them, under its id.
-NOMINAL = {
+NOMINAL_PARTS = {
     "net_buoyancy": RESTORING,
     "buoyancy_center": RESTORING,
     "waterplane_stiffness": RESTORING,
@@ -88,18 +88,20 @@ def _cumulative(
     for k, effect in sorted(enumerate(model.vehicle_effects), key=lambda pair: _place(pair[1])):
         if so_far.effects[k] is not effect:  # else every vehicle has it: in from the start
             so_far = so_far.with_effect(k, effect)
-            yield NOMINAL.get(effect.id, effect.id), _force(so_far, motion, no_thrust)
+            yield NOMINAL_PARTS.get(effect.id, effect.id), _force(so_far, motion, no_thrust)
     yield THRUSTERS, _at(so_far, motion, settings)
     for k, effect in enumerate(model.added, start=len(model.vehicle_effects)):
         so_far = so_far.with_effect(k, effect)
         yield f"+{effect.id}", _at(so_far, motion, settings)
     if model.residual is not None:
-        yield RESIDUAL, _at(model, motion, settings)
+        yield RESIDUAL_NAME, _at(model, motion, settings)
 
 
 def _place(effect: Effect) -> int:
     """Position of an effect of the vehicle in the order of parts."""
-    return list(NOMINAL).index(effect.id) if effect.id in NOMINAL else len(NOMINAL)
+    return (
+        list(NOMINAL_PARTS).index(effect.id) if effect.id in NOMINAL_PARTS else len(NOMINAL_PARTS)
+    )
 
 
 def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:

@@ -12,8 +12,8 @@ from rovsim.results.growth import Curve
 from rovsim.simulation.prediction import Prediction
 from rovsim.simulation.windows import find_windows, predicted
 
-BINS = 25  # at most
-NARROWEST = 0.2  # s: wider than the spacing of recordings that are means over bins
+MAX_BINS = 25  # points of a curve
+MIN_BIN_WIDTH_S = 0.2  # s: wider than the spacing of recordings that are means over bins
 
 
 class GrowthScore:
@@ -25,7 +25,7 @@ class GrowthScore:
 
     def __init__(self, horizon: float) -> None:
         self.horizon = horizon
-        self._bins = max(1, min(BINS, round(horizon / NARROWEST)))
+        self._bins = max(1, min(MAX_BINS, round(horizon / MIN_BIN_WIDTH_S)))
         self._edges = np.linspace(0.0, horizon, self._bins + 1)
         self._count, self._squares = np.zeros((self._bins, 6)), np.zeros((self._bins, 6))
 

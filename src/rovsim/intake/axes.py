@@ -11,7 +11,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.rotations import matrix
-from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, MIN_LEAD_RATIO
 from rovsim.intake.survey.contents import Track
 from rovsim.measurement.recording.readers import FileAxes
 
@@ -117,7 +117,7 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
     score, axes = turned[0]
     rival = turned[1][0] if len(turned) > 1 else 0.0
     name = next((n for n in bodies if np.array_equal(axes, BODY_ROTATIONS[n])), "")
-    if score < AHEAD * rival:
+    if score < MIN_LEAD_RATIO * rival:
         return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
     if name:
         return (

@@ -7,7 +7,7 @@ import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.core.robust import usual_range
-from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, MIN_LEAD_RATIO
 from rovsim.intake.survey.contents import Contents, Track
 from rovsim.measurement.quality.usability import REST_POSITION_SPREAD
 
@@ -47,7 +47,7 @@ def find_body(motions: Sequence[Contents], score: Callable[[str], float]) -> Fou
         )
     scores = {name: score(name) for name in common}
     best, second = sorted(common, key=lambda name: -scores[name])[:2]
-    if scores[best] >= MIN_CORRELATION and scores[best] > AHEAD * scores[second]:
+    if scores[best] >= MIN_CORRELATION and scores[best] > MIN_LEAD_RATIO * scores[second]:
         reason = f"of {', '.join(common)} the one that follows the commands ({scores[best]:.2f})"
         return FoundBody(best, reason, tuple(common))
     moving = [name for name in common if any(_moves(m, name) for m in motions)]

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.run import Commands, RunInfo, Site
 from rovsim.evaluation.commanded_motion.clocks import tell_following, tell_together
-from rovsim.evaluation.commanded_motion.conventions import BETTER, find_convention
+from rovsim.evaluation.commanded_motion.conventions import MIN_GAIN, find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION
 from rovsim.evaluation.commanded_motion.predicted import predict_velocity
 from rovsim.intake.facts import Facts
@@ -132,7 +132,7 @@ def check_order(
     }
     score_unchanged = scores.pop("")
     label = max(scores, key=lambda key: scores[key])
-    if scores[label] < max(score_unchanged + BETTER, MIN_CORRELATION):
+    if scores[label] < max(score_unchanged + MIN_GAIN, MIN_CORRELATION):
         return ""
     return (
         f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "

@@ -8,8 +8,8 @@ from numpy import ndarray as Array
 
 from rovsim.dynamics.vehicle import default_vehicle
 from rovsim.evaluation.commanded_motion.cross_correlation import (
-    AHEAD,
     MIN_CORRELATION,
+    MIN_LEAD_RATIO,
     CrossCorrelation,
 )
 from rovsim.intake.motions import correlate, turned
@@ -65,7 +65,7 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     )
     rivals = [scores.get(fit.name, 0.0) for fit in ordered if not _one_hull(fit, best)]
     likely = scores.get(best.name, 0.0) >= MIN_CORRELATION
-    ahead = scores.get(best.name, 0.0) >= AHEAD * max(rivals, default=0.0)
+    ahead = scores.get(best.name, 0.0) >= MIN_LEAD_RATIO * max(rivals, default=0.0)
     by_name = best.by_name and len(ordered) == 1
     return replace(undecided, fit=best) if by_name or (likely and ahead) else undecided
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.evaluation.commanded_motion.cross_correlation import (
-    REACH,
-    SHORTEST,
+    MAX_CLOCK_OFFSET_S,
+    MIN_MOTION_S,
     CrossCorrelation,
     cross_correlate,
     rotations,
@@ -96,11 +96,15 @@ def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossC
         return None
     time, nu = caused
     clock = motion.measured.time
-    if np.ptp(clock) < SHORTEST:
+    if np.ptp(clock) < MIN_MOTION_S:
         return None
     disjoint = clock[-1] < time[0] or time[-1] < clock[0]
     shift = float(clock[0] - time[0]) if disjoint else 0.0
-    reach = max(REACH, abs(np.ptp(time) - np.ptp(clock))) if disjoint else REACH
+    reach = (
+        max(MAX_CLOCK_OFFSET_S, abs(np.ptp(time) - np.ptp(clock)))
+        if disjoint
+        else MAX_CLOCK_OFFSET_S
+    )
     return cross_correlate(motion.measured, time, nu, shift, min(reach, MAX_COMPARED_S))
 
 

@@ -13,7 +13,7 @@ from typing import Callable, Iterator, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.evaluation.commanded_motion.cross_correlation import AHEAD, MIN_CORRELATION
+from rovsim.evaluation.commanded_motion.cross_correlation import MIN_CORRELATION, MIN_LEAD_RATIO
 from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.names import run_key, sensor_key
 
@@ -82,7 +82,9 @@ def _by_content(table: Array) -> list[int | None]:
     for k, row in enumerate(table):
         best = int(np.argmax(row))
         rivals = [*np.delete(row, best), *np.delete(table[:, best], k)]
-        sure = row[best] >= MIN_CORRELATION and row[best] >= AHEAD * max(rivals, default=0.0)
+        sure = row[best] >= MIN_CORRELATION and row[best] >= MIN_LEAD_RATIO * max(
+            rivals, default=0.0
+        )
         matches.append(best if sure else None)
     return matches
 

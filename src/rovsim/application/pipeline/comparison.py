@@ -56,7 +56,7 @@ def compare(
         growth=scores.growth,
         steps=tuple(scores.steps),
         budget_totals=BudgetTotals(runs=totals),
-        where=list_conditions([search.found for search in searches]),
+        where=list_conditions([search.result for search in searches]),
         drawn=_choose_drawn(scores.comparison, models[-1].name, list(data.motions)),
     )
 

@@ -19,4 +19,4 @@ def find_error_conditions(
     search = ConditionSearch(model, splits, settings)
     for motion in counted(motions, "searching"):
         search.add_run(motion)
-    return list_conditions([search.found])
+    return list_conditions([search.result])

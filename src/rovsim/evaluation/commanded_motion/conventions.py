@@ -15,7 +15,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.rotations import conjugate, continuous, to_euler
 from rovsim.core.signs import minus
-from rovsim.evaluation.commanded_motion.clocks import EARLIEST, LATEST
+from rovsim.evaluation.commanded_motion.clocks import MAX_USUAL_LAG_S, MIN_USUAL_LAG_S
 from rovsim.evaluation.commanded_motion.cross_correlation import (
     MIN_CORRELATION,
     Commanded,
@@ -25,14 +25,16 @@ from rovsim.measurement.rough_motion import ResampledPoses, of_poses
 
 # Correlations by which another reading must be better: over all axes, and over the linear ones
 # alone. In the 52 right runs of the practice campaigns, no reading is better by 0.03 over these.
-BETTER, FASTER = 0.12, 0.05
-AS_GOOD, AS_FAST = 0.1, 0.02  # likewise: readings that differ by less are both reported
-ANGLES = ("roll", "pitch", "yaw")
-OWN = "Rz(yaw) Ry(pitch) Rx(roll)"
-ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY")  # intrinsic rotations, each about the rotated axis
-UNTURNED = tuple(map(tuple, np.eye(3).tolist()))
+MIN_GAIN, MIN_LINEAR_GAIN = 0.12, 0.05
+# likewise: readings that differ by less are both reported
+TIE_MARGIN, LINEAR_TIE_MARGIN = 0.1, 0.02
+EULER_ANGLES = ("roll", "pitch", "yaw")
+EULER_RULE = "Rz(yaw) Ry(pitch) Rx(roll)"
+# intrinsic rotations, each about the rotated axis
+EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY")
+IDENTITY_AXES = tuple(map(tuple, np.eye(3).tolist()))
 EAST_NORTH_UP = ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))  # of north, east, down
-LINEAR = np.arange(6) < 3
+LINEAR_AXES = np.arange(6) < 3
 
 
 @dataclass(frozen=True)
@@ -42,19 +44,20 @@ class OtherReading:
     Attributes:
         score: mean correlation with this reading.
         own: mean correlation as the poses were read.
-        said: what is read otherwise, for a sentence.
+        description: what is read otherwise, for a sentence.
         remedy: what to do about the file, in sentences.
     """
 
     score: float
     own: float
-    said: str
+    description: str
     remedy: str
 
     def __str__(self) -> str:
         return (
             "positions and attitudes do not go together: the motion follows its commands better "
-            f"with {self.said} (likeness {self.score:.2f} against {minus(f'{self.own:.2f}')}). "
+            f"with {self.description} (likeness {self.score:.2f} against "
+            f"{minus(f'{self.own:.2f}')}). "
             f"{self.remedy}"
         )
 
@@ -65,13 +68,13 @@ class _Reading(NamedTuple):
     Attributes:
         attitude: quaternions (n, 4), body to world.
         position: (n, 3), m.
-        said: what is read otherwise, for a sentence.
+        description: what is read otherwise, for a sentence.
         remedy: what to do about the file, in sentences.
     """
 
     attitude: Array
     position: Array
-    said: str = ""
+    description: str = ""
     remedy: str = ""
 
 
@@ -107,23 +110,25 @@ def find_convention(
     Returns:
         The best reading; None where none is clearly better.
     """
-    shift = 0.0 if EARLIEST <= lag <= LATEST else lag
-    commanded = Commanded(poses.time, *caused, shift, LATEST)
+    shift = 0.0 if MIN_USUAL_LAG_S <= lag <= MAX_USUAL_LAG_S else lag
+    commanded = Commanded(poses.time, *caused, shift, MAX_USUAL_LAG_S)
 
     def likeness(reading: _Reading) -> _Likeness:
         motion = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
         correlation = commanded.correlate(motion)
         score, k_best = max(((correlation.best(a)[0], k) for k, a in enumerate(axes)))
-        linear = replace(correlation, excited=correlation.excited & LINEAR)
+        linear = replace(correlation, excited=correlation.excited & LINEAR_AXES)
         return _Likeness(score, linear.best(axes[k_best])[0])
 
     unchanged = likeness(_Reading(poses.attitude, poses.position))
-    if unchanged.whole > 1.0 - BETTER:
+    if unchanged.whole > 1.0 - MIN_GAIN:
         return None
-    return _told(unchanged, [(likeness(r), r) for r in _readings(poses, angles)])
+    return _choose_reading(unchanged, [(likeness(r), r) for r in _list_readings(poses, angles)])
 
 
-def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherReading | None:
+def _choose_reading(
+    own: _Likeness, scored: list[tuple[_Likeness, _Reading]]
+) -> OtherReading | None:
     """Describe the readings that are clearly better and about as good as the best of them.
 
     Args:
@@ -133,11 +138,11 @@ def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherRead
     Returns:
         At most two readings in one, the simplest ones; None where none is clearly better.
     """
-    threshold = max(own.whole + BETTER, MIN_CORRELATION)
+    threshold = max(own.whole + MIN_GAIN, MIN_CORRELATION)
     candidates = [
         (likeness, reading)
         for likeness, reading in scored
-        if likeness.whole >= threshold and likeness.linear >= own.linear + FASTER
+        if likeness.whole >= threshold and likeness.linear >= own.linear + MIN_LINEAR_GAIN
     ]
     if not candidates:
         return None
@@ -145,15 +150,15 @@ def _told(own: _Likeness, scored: list[tuple[_Likeness, _Reading]]) -> OtherRead
     best_readings = [
         reading
         for likeness, reading in candidates
-        if likeness.whole >= best_likeness.whole - AS_GOOD
-        and likeness.linear >= best_likeness.linear - AS_FAST
+        if likeness.whole >= best_likeness.whole - TIE_MARGIN
+        and likeness.linear >= best_likeness.linear - LINEAR_TIE_MARGIN
     ][:2]
-    wording = ", or with ".join(reading.said for reading in best_readings)
+    wording = ", or with ".join(reading.description for reading in best_readings)
     remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in best_readings))
     return OtherReading(best_likeness.whole, own.whole, wording, remedy)
 
 
-def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
+def _list_readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
     """Yield other readings of poses, simple ones first."""
     yield _Reading(
         conjugate(poses.attitude),
@@ -165,7 +170,7 @@ def _readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:
     if angles:
         yield from _of_angles(poses)
     for axes in orientations():
-        if axes not in (UNTURNED, EAST_NORTH_UP):
+        if axes not in (IDENTITY_AXES, EAST_NORTH_UP):
             yield _of_positions(poses, axes)
 
 
@@ -192,13 +197,13 @@ def _of_angles(poses: ResampledPoses) -> Iterator[_Reading]:
         if np.any(sign < 0.0):
             changed = angles * sign + [0.0, 0.0, 0.5 * np.pi * turns]
             yield _Reading(_composed("ZYX", changed), poses.position, *_of_signs(sign, turns))
-    for order in ORDERS:
-        rule = " ".join(f"R{axis.lower()}({ANGLES['XYZ'.index(axis)]})" for axis in order)
+    for order in EULER_ORDERS:
+        rule = " ".join(f"R{axis.lower()}({EULER_ANGLES['XYZ'.index(axis)]})" for axis in order)
         yield _Reading(
             _composed(order, angles),
             poses.position,
             f"angles of the order R = {rule}",
-            f"Angles are read as R = {OWN}: export such, or quaternions.",
+            f"Angles are read as R = {EULER_RULE}: export such, or quaternions.",
         )
 
 
@@ -209,7 +214,7 @@ def _of_signs(sign: Array, turns: int) -> tuple[str, str]:
         sign: of roll, pitch and yaw (3,), 1 or -1.
         turns: quarter turns that are added to yaw.
     """
-    negated = [name for name, s in zip(ANGLES, sign, strict=True) if s < 0.0]
+    negated = [name for name, s in zip(EULER_ANGLES, sign, strict=True) if s < 0.0]
     names = " and ".join(filter(None, [", ".join(negated[:-1]), negated[-1]]))
     change = f"the sign{'s' * (len(negated) > 1)} of {names} turned"
     remedy = f"Turn {'these signs' if len(negated) > 1 else 'that sign'} in the columns of angles"

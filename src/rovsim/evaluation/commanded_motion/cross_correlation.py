@@ -14,16 +14,16 @@ from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.rough_motion import Velocities
 from rovsim.measurement.signals.clock import time_step
 
-REACH = 10.0  # s by which clocks that share a start may differ
-SHORTEST = 8.0  # s: in less, a vehicle swings so few times that any two motions are correlated
-OVERLAP = 0.5  # share of the shorter recording that must overlap with the other
-AFTER = 2.0  # s for which a motion goes on after its last command
-SPARSE = 1e-9  # of motions of size 1: less is rounding
-FEW = 64  # lags up to which plain sums are faster than Fourier transforms
+MAX_CLOCK_OFFSET_S = 10.0  # s by which clocks that share a start may differ
+MIN_MOTION_S = 8.0  # s: in less, a vehicle swings so few times that any two motions are correlated
+MIN_OVERLAP_SHARE = 0.5  # share of the shorter recording that must overlap with the other
+COASTING_S = 2.0  # s for which a motion goes on after its last command
+ROUNDING_LIMIT = 1e-9  # of motions of size 1: less is rounding
+MAX_DIRECT_LAGS = 64  # lags up to which plain sums are faster than Fourier transforms
 # Mean correlation. Runs reach 0.42 to 0.99 with their own commands, and at most 0.30 with those of
 # other runs (public tank runs, practice campaigns: docs/your_own_recordings.md).
 MIN_CORRELATION = 0.38
-AHEAD = 1.3  # times the correlation of the next best
+MIN_LEAD_RATIO = 1.3  # times the correlation of the next best
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ def _vertex(score: Array, k: int) -> float:
         return 0.0
     left, middle, right = score[k - 1 : k + 2]
     curvature = left - 2.0 * middle + right
-    return float(0.5 * (left - right) / curvature) if curvature < -SPARSE else 0.0
+    return float(0.5 * (left - right) / curvature) if curvature < -ROUNDING_LIMIT else 0.0
 
 
 @cache
@@ -97,7 +97,11 @@ def rotations() -> list[Array]:
 
 
 def cross_correlate(
-    measured: Velocities, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
+    measured: Velocities,
+    time: Array,
+    commanded: Array,
+    shift: float = 0.0,
+    reach: float = MAX_CLOCK_OFFSET_S,
 ) -> CrossCorrelation:
     """Correlate measured velocities with commanded ones; for the arguments see `Commanded`."""
     return Commanded(measured.time, time, commanded, shift, reach).correlate(measured)
@@ -115,22 +119,27 @@ class Commanded:
     """
 
     def __init__(
-        self, clock: Array, time: Array, commanded: Array, shift: float = 0.0, reach: float = REACH
+        self,
+        clock: Array,
+        time: Array,
+        commanded: Array,
+        shift: float = 0.0,
+        reach: float = MAX_CLOCK_OFFSET_S,
     ) -> None:
         self.commanded, step = commanded, time_step(clock)
         count = max(1, int(reach / step))
         begin, end = clock[0] - count * step, clock[-1] + count * step
         times = begin + step * np.arange(round((end - begin) / step) + 1)
-        inside = (times >= time[0] + shift) & (times <= time[-1] + shift + AFTER)
+        inside = (times >= time[0] + shift) & (times <= time[-1] + shift + COASTING_S)
         padded = np.stack([np.interp(times, time + shift, c) for c in commanded.T], axis=1)
         inside &= finite_rows(padded)
         padded = np.where(inside[:, None], padded - _mean(padded[inside]), 0.0)
         # measured velocities begin `k` steps after the commanded ones: lag = (count - k) * step
         lags = len(padded) - len(clock) + 1
         self.lag = step * (count - np.arange(lags)) + shift
-        self.seen = inside.sum()
-        kind = _Windows if lags <= FEW else _Spectra
-        self.itself, self.squared, self.known = (
+        self.valid_count = inside.sum()
+        kind = _Windows if lags <= MAX_DIRECT_LAGS else _Spectra
+        self.itself, self.squared, self.valid = (
             kind(x, len(clock)) for x in (padded, padded**2, inside[:, None].astype(float))
         )
 
@@ -155,9 +164,11 @@ class Commanded:
         """
         a = np.where(whole[:, None], nu - _mean(nu[whole]), 0.0)
         mask = whole[:, None].astype(float)
-        too_short = self.known.sums(mask)[:, 0, 0] < OVERLAP * min(whole.sum(), self.seen)
-        size = self.known.sums(a**2) * self.squared.sums(mask)
-        correlations = self.itself.sums(a) / np.sqrt(np.maximum(size, SPARSE))
+        too_short = self.valid.sums(mask)[:, 0, 0] < MIN_OVERLAP_SHARE * min(
+            whole.sum(), self.valid_count
+        )
+        size = self.valid.sums(a**2) * self.squared.sums(mask)
+        correlations = self.itself.sums(a) / np.sqrt(np.maximum(size, ROUNDING_LIMIT))
         return np.where(too_short[:, None, None], np.nan, correlations)
 
 
@@ -169,7 +180,7 @@ def _strength(nu: Array, commanded: Array, excited: Array) -> float:
     axes = slice(0, 3) if excited[:3].any() else slice(3, 6)
     motion_std = np.sqrt(np.nansum(np.nanvar(nu[:, axes], axis=0)))
     commanded_std = np.sqrt(np.sum(commanded[:, axes].var(axis=0)))
-    return float(motion_std / max(commanded_std, SPARSE))
+    return float(motion_std / max(commanded_std, ROUNDING_LIMIT))
 
 
 class _Windows:

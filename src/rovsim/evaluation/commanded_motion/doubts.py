@@ -9,12 +9,12 @@ from rovsim.core.robust import usual_range
 from rovsim.core.rotations import half_turn, matrix, multiply
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
-from rovsim.evaluation.commanded_motion.clocks import CLEARER, tell_following
+from rovsim.evaluation.commanded_motion.clocks import MIN_PEAK_LEAD, tell_following
 from rovsim.evaluation.commanded_motion.conventions import find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import (
-    AHEAD,
     MIN_CORRELATION,
-    SHORTEST,
+    MIN_LEAD_RATIO,
+    MIN_MOTION_S,
     cross_correlate,
     orientations,
 )
@@ -27,14 +27,16 @@ from rovsim.measurement.rough_motion import (
     of_poses,
 )
 
-LONGEST = 120.0  # s of commands that are considered
-HANGS = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle hangs upside down
-OUTSIDE, SHARE = 0.5, 0.5  # m beyond a wall, share of the frames: more than a wrong calibration
-STOPPED, OFTEN = 2.0, 5.0  # s, and times the longest step of a log, by which it ends too early
+MAX_COMMANDS_S = 120.0  # s of commands that are considered
+UPSIDE_DOWN_COSINE = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle hangs upside down
+# m beyond a wall, share of the frames: more than a wrong calibration
+WALL_TOLERANCE_M, MAX_OUTSIDE_SHARE = 0.5, 0.5
+# s, and times the longest step of a log, by which it ends too early
+MAX_END_GAP_S, MAX_END_GAP_STEPS = 2.0, 5.0
 # Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
 # of a ship that steers reach 0.8 along wrong axes, and of a catamaran 0.98 along the right ones.
-CLEAR = 0.9
-MOVES = ("surge", "sway", "heave")
+CLEAR_CORRELATION = 0.9
+TRANSLATION_AXES = ("surge", "sway", "heave")
 
 
 def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
@@ -54,7 +56,7 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     if not recording.tracked.any() or not righting(vehicle)[3] > 0.0:
         return
     upright = matrix(recording.attitude[recording.tracked])[:, 2, 2]
-    if np.median(upright) < HANGS:
+    if np.median(upright) < UPSIDE_DOWN_COSINE:
         yield (
             "The vehicle hangs upside down most of the time, which its own weight would right: "
             "check 'mocap.body_axes' and 'mocap.world_axes'."
@@ -63,7 +65,7 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
 
 def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     """Remark a motion unlike its commands: another convention, other axes or another clock."""
-    predicted = _caused(recording, vehicle)
+    predicted = _predict_caused(recording, vehicle)
     if predicted is None:
         return
     has_poses = recording.tracked.any() and recording.nu is None
@@ -78,17 +80,17 @@ def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     best_score, axes = max(
         ((correlation.best(a := np.array(o))[0], a) for o in orientations()), key=_first
     )
-    if best_score < CLEAR and not can_push_sideways(vehicle):
+    if best_score < CLEAR_CORRELATION and not can_push_sideways(vehicle):
         return
     lag = lag if score >= MIN_CORRELATION else 0.0
     if poses and (
         message := _read_otherwise(poses, recording.site.axes, predicted, lag, best_score)
     ):
         yield message[0].upper() + message[1:]
-    elif best_score >= MIN_CORRELATION and best_score > AHEAD * score:
+    elif best_score >= MIN_CORRELATION and best_score > MIN_LEAD_RATIO * score:
         yield (
-            f"The vehicle moves along other axes than those commanded: {_told(axes)} (likeness "
-            f"{best_score:.2f}; as described {score:.2f}). Check 'mocap.body_axes', "
+            f"The vehicle moves along other axes than those commanded: {_describe_swaps(axes)} "
+            f"(likeness {best_score:.2f}; as described {score:.2f}). Check 'mocap.body_axes', "
             "'mocap.world_axes' and the order and signs of 'commands.columns'."
         )
     elif message := tell_following(correlation, np.eye(3)):
@@ -116,7 +118,11 @@ def _read_otherwise(
         poses.time, poses.position * signs, multiply(turn, multiply(poses.attitude, turn))
     )
     convention = find_convention(as_in_file, caused, [np.diag(signs)], lag)
-    return str(convention) if convention is not None and convention.score > best + CLEARER else ""
+    return (
+        str(convention)
+        if convention is not None and convention.score > best + MIN_PEAK_LEAD
+        else ""
+    )
 
 
 def _first(pair: tuple[float, Array]) -> float:
@@ -124,26 +130,26 @@ def _first(pair: tuple[float, Array]) -> float:
     return pair[0]
 
 
-def _caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
+def _predict_caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
     """Times (n,) in s and body velocities (n, 6) FRD that the commands would cause.
 
     None where there are too few commands, or the run is too short.
     """
     commands = recording.commands
-    # stretches that `use` leaves out are not found, and may last longer than `LONGEST`
+    # stretches that `use` leaves out are not found, and may last longer than `MAX_COMMANDS_S`
     covered = recording.time[recording.tracked] if recording.tracked.any() else recording.time
-    if len(commands.time) < 2 or np.ptp(covered) < SHORTEST:
+    if len(commands.time) < 2 or np.ptp(covered) < MIN_MOTION_S:
         return None
     begin = max(float(commands.time[0]), float(covered[0]))
-    return cause(vehicle, commands, begin, LONGEST)
+    return cause(vehicle, commands, begin, MAX_COMMANDS_S)
 
 
-def _told(axes: Array) -> str:
+def _describe_swaps(axes: Array) -> str:
     """Say in which direction a vehicle moves for each commanded one, where these are different."""
     swaps = []
-    for name, column in zip(MOVES, axes.T, strict=True):
+    for name, column in zip(TRANSLATION_AXES, axes.T, strict=True):
         k = int(np.argmax(np.abs(column)))
-        move = f"{'−' if column[k] < 0 else ''}{MOVES[k]}"
+        move = f"{'−' if column[k] < 0 else ''}{TRANSLATION_AXES[k]}"
         if move != name:
             swaps.append(f"{name} shows as {move}")
     return ", ".join(swaps)
@@ -154,10 +160,10 @@ def _out_of_tank(recording: Recording) -> Iterator[str]:
     position, walls = recording.position[recording.tracked], recording.site.tank
     if not len(position):
         return
-    low, high = position < walls[:, 0] - OUTSIDE, position > walls[:, 1] + OUTSIDE
+    low, high = position < walls[:, 0] - WALL_TOLERANCE_M, position > walls[:, 1] + WALL_TOLERANCE_M
     share = np.mean(low | high, axis=0)
     k = int(np.argmax(share))
-    if share[k] > SHARE:
+    if share[k] > MAX_OUTSIDE_SHARE:
         sign = recording.site.axes[k]
         ends = usual_range(position[:, k])
         reach = [minus(f"{end:.2f}") for end in sorted(float(sign * end) for end in ends)]
@@ -177,7 +183,7 @@ def _log_that_ends(recording: Recording) -> Iterator[str]:
     if len(time) < 2 or not np.any(recording.commands.value[-1]):
         return
     gap = end - float(time[-1])
-    if gap > max(STOPPED, OFTEN * float(np.diff(time).max())):
+    if gap > max(MAX_END_GAP_S, MAX_END_GAP_STEPS * float(np.diff(time).max())):
         yield (
             f"The log of commands ends {gap:.1f} s before the recording; its last line is held "
             "until then. Leave that part out with 'use', or complete the log."

@@ -18,7 +18,8 @@ from rovsim.measurement.rough_motion import MIN_STEP_S
 from rovsim.measurement.signals.clock import time_step
 from rovsim.simulation.drive import Drive
 
-BEFORE, AFTER = 1.0, 3.0  # s that are predicted before the first and after the last command
+# s that are predicted before the first and after the last command
+PREDICTED_BEFORE_S, PREDICTED_AFTER_S = 1.0, 3.0
 
 
 def predict_wrench(vehicle: Vehicle, commands: Commands) -> Array:
@@ -62,7 +63,7 @@ def cause(
         Times (n,) in s, and velocities (n, 6) in m/s and rad/s, FRD.
     """
     end = min(float(commands.time[-1]), begin + longest)
-    time = np.arange(begin - BEFORE, end + AFTER, MIN_STEP_S)
+    time = np.arange(begin - PREDICTED_BEFORE_S, end + PREDICTED_AFTER_S, MIN_STEP_S)
     return time, predict_velocity(vehicle, commands, time)
 
 

@@ -15,14 +15,16 @@ from numpy import ndarray as Array
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.results.error_conditions import BLOCK_S
 
-BINS = 8  # of equal width between the tails
-VISITS = 4  # stretches that a bin needs to be judged
-SHORTEST, LONGEST = 2.0, 10.0  # s, of a stretch
-FLAT = 1e-6  # in the unit of the condition: one that varies less varies by rounding alone
-MANY = 2000  # stretches, at most: they are enough to know chance, and need memory
-NEAR = 0.6  # of a block: two blocks whose distance differs more from a lag have a gap between them
-TAIL = 0.03  # share of all values beyond the outer edges, at either end
-TIMES = 3.0  # correlation times that a stretch should last
+BIN_COUNT = 8  # of equal width between the tails
+MIN_VISITS = 4  # stretches that a bin needs to be judged
+MIN_STRETCH_S, MAX_STRETCH_S = 2.0, 10.0  # length of a stretch
+# in the unit of the condition: one that varies less varies by rounding alone
+MIN_VALUE_RANGE = 1e-6
+MAX_STRETCHES = 2000  # they are enough to know chance, and need memory
+# of a block: two blocks whose distance differs more from a lag have a gap between them
+MAX_LAG_DEVIATION = 0.6
+TAIL_SHARE = 0.03  # share of all values beyond the outer edges, at either end
+STRETCH_CORRELATION_TIMES = 3.0  # correlation times that a stretch should last
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +80,11 @@ def number_stretches(blocks: Blocks, error: Array) -> Array:
         Number of the stretch, 0 to g - 1, to which each block belongs (n,).
     """
     typical = np.clip(
-        TIMES * correlation_time(_unexplained(blocks, error), blocks), SHORTEST, LONGEST
+        STRETCH_CORRELATION_TIMES * correlation_time(_unexplained(blocks, error), blocks),
+        MIN_STRETCH_S,
+        MAX_STRETCH_S,
     )
-    length = max(float(typical), len(error) * BLOCK_S / MANY)
+    length = max(float(typical), len(error) * BLOCK_S / MAX_STRETCHES)
     key = np.stack([blocks.run, np.floor(blocks.time / length)], axis=1)
     return np.unique(key, axis=0, return_inverse=True)[1].ravel()
 
@@ -106,8 +110,11 @@ def correlation_time(error: Array, blocks: Blocks) -> float:
     """
     power = float(np.mean(error**2))
     total = 1.0
-    for lag in range(1, int(LONGEST / BLOCK_S)):
-        lagged = np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK_S) < NEAR * BLOCK_S
+    for lag in range(1, int(MAX_STRETCH_S / BLOCK_S)):
+        lagged = (
+            np.abs(blocks.time[lag:] - blocks.time[:-lag] - lag * BLOCK_S)
+            < MAX_LAG_DEVIATION * BLOCK_S
+        )
         pairs = lagged & (blocks.run[lag:] == blocks.run[:-lag])
         product = float(np.mean((error[lag:] * error[:-lag])[pairs])) if pairs.any() else 0.0
         if product <= 0 or power == 0:
@@ -124,8 +131,8 @@ def cut(values: Array) -> tuple[Array, Array]:
     Returns:
         Edges (b + 1,), and the index (n,) of the bin of each value.
     """
-    low, high = np.quantile(values, [TAIL, 1.0 - TAIL])
-    count = BINS if high - low > FLAT else 1
+    low, high = np.quantile(values, [TAIL_SHARE, 1.0 - TAIL_SHARE])
+    count = BIN_COUNT if high - low > MIN_VALUE_RANGE else 1
     edges = np.linspace(low, high, count + 1)
     member = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, count - 1)
     edges[0], edges[-1] = values.min(), values.max()
@@ -145,7 +152,7 @@ def cut_bins(condition: Condition, values: Array, stretch: Array) -> Binning:
     visits = np.array([len(np.unique(stretch[member == b])) for b in range(len(count))])
     total = np.bincount(member, values, minlength=len(count))
     center = np.where(count > 0, total / np.maximum(count, 1), 0.5 * (edges[1:] + edges[:-1]))
-    return Binning(condition, edges, center, member, count, visits >= VISITS)
+    return Binning(condition, edges, center, member, count, visits >= MIN_VISITS)
 
 
 def sums(binning: Binning, error: Array, stretch: Array) -> Array:

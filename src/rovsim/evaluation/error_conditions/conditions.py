@@ -21,11 +21,11 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import BLOCK_S, THROUGHOUT
 from rovsim.simulation.samples import Samples
 
-SEEN = 0.5  # share of a block that must have been measured
-SPEEDS = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
+MIN_MEASURED_SHARE = 0.5  # share of a block that must have been measured
+SPEED_NAMES = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
 HEADING = "heading"
 ACCELERATION = "acceleration"  # a kind that is drawn, but not searched
-ANGLES = ("roll angle", "pitch angle", HEADING)
+ANGLE_NAMES = ("roll angle", "pitch angle", HEADING)
 UNITS = {  # of the six axes, by kind
     "speed": VELOCITY_UNITS,
     "thrust": FORCE_UNITS,
@@ -83,7 +83,7 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     time = motion.time[samples.index] - motion.time[0]
     step = float(np.median(np.diff(motion.time)))
     block, count = np.unique(np.floor(time / BLOCK_S).astype(int), return_counts=True)
-    full = count * step >= SEEN * BLOCK_S
+    full = count * step >= MIN_MEASURED_SHARE * BLOCK_S
     member = np.searchsorted(block, np.floor(time / BLOCK_S).astype(int))
 
     def mean(x: Array) -> Array:
@@ -136,9 +136,9 @@ def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Ar
     rate = np.gradient(samples.wrench, time, axis=0) if len(time) > 1 else 0 * samples.wrench
     for k in np.flatnonzero(moves).tolist():
         unit = UNITS["speed"][k]
-        values[Condition(SPEEDS[k], unit, "speed", AXES[k])] = samples.nu[:, k]
+        values[Condition(SPEED_NAMES[k], unit, "speed", AXES[k])] = samples.nu[:, k]
     for k in np.flatnonzero(moves).tolist():
-        name, unit = f"absolute {SPEEDS[k]}", UNITS["speed"][k]
+        name, unit = f"absolute {SPEED_NAMES[k]}", UNITS["speed"][k]
         values[Condition(name, unit, "absolute", AXES[k])] = np.abs(samples.nu[:, k])
     for k, axis in enumerate(AXES):
         unit = UNITS["thrust"][k]
@@ -149,7 +149,7 @@ def _values(motion: Motion, samples: Samples, time: Array) -> dict[Condition, Ar
     angles = to_euler(samples.attitude)
     turns = moves[3:] if motion.measured is None else [*moves[3:5], *motion.measured.heading]
     for k in np.flatnonzero(turns).tolist():
-        values[Condition(ANGLES[k], "rad", "attitude", AXES[3 + k])] = angles[:, k]
+        values[Condition(ANGLE_NAMES[k], "rad", "attitude", AXES[3 + k])] = angles[:, k]
     return (
         values | _place(motion, samples.index) | {Condition("time in the run", "s", "time"): time}
     )

@@ -9,7 +9,7 @@ from rovsim.core.axes import AXES
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.findings import ErrorExplanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel
-from rovsim.evaluation.error_conditions.sentences import UNITS, say_finding, say_findings
+from rovsim.evaluation.error_conditions.sentences import ERROR_UNITS, say_finding, say_findings
 from rovsim.results.error_conditions import (
     ConditionFinding,
     ConditionTable,
@@ -33,7 +33,7 @@ def _list_model(one: SearchedModel) -> ModelConditions:
         enough=explanation.enough,
         error={axis: _size(explanation, k) for k, axis in enumerate(AXES)},
         sentences=tuple(say_findings(explanation)),
-        findings=tuple(map(_finding, explanation.findings)),
+        findings=tuple(map(_report_finding, explanation.findings)),
         axes={
             axis: {name: tabulate(t) for name, t in tables.items()}
             for axis, tables in explanation.tables.items()
@@ -53,14 +53,14 @@ def _size(explanation: ErrorExplanation, k: int) -> ErrorSize:
     return ErrorSize(rms=rms(blocks.error), measured_rms=rms(blocks.measured))
 
 
-def _finding(found: Finding) -> ConditionFinding:
+def _report_finding(finding: Finding) -> ConditionFinding:
     """Report a finding with its sentence."""
     return ConditionFinding(
-        **found.share().model_dump(),
-        unit=UNITS[found.axis],
-        chance=found.chance,
-        alike=tuple(c.name for c in found.alike),
-        sentence=say_finding(found),
+        **finding.share().model_dump(),
+        unit=ERROR_UNITS[finding.axis],
+        chance=finding.chance,
+        alike=tuple(c.name for c in finding.alike),
+        sentence=say_finding(finding),
     )
 
 

@@ -24,13 +24,13 @@ from rovsim.evaluation.error_conditions.bins import (
 from rovsim.evaluation.error_conditions.conditions import Blocks, Condition
 from rovsim.results.error_conditions import THROUGHOUT, ConditionShare
 
-LEVEL = 0.005  # chance of any false finding in a whole search over an adequate model
-FLIPS = 3999  # draws of signs: they tell chances down to 1/4000, a twentieth of LEVEL
-SMALLEST = 0.03  # share of the squared error: a condition that explains less is not reported
-NEGLIGIBLE = 0.03  # likewise: explained error over the measured acceleration, both RMS
-AS_GOOD = 0.9  # of the best share: conditions with more cannot be told apart from the best
-MOST = 3  # findings of each axis
-FEWEST = 8  # stretches: with fewer, nothing is said
+SIGNIFICANCE_LEVEL = 0.005  # chance of any false finding in a whole search over an adequate model
+SIGN_FLIP_COUNT = 3999  # they tell chances down to 1/4000, a twentieth of SIGNIFICANCE_LEVEL
+MIN_ERROR_SHARE = 0.03  # share of the squared error: a condition that explains less is not reported
+MIN_ERROR_RATIO = 0.03  # likewise: explained error over the measured acceleration, both RMS
+TIE_RATIO = 0.9  # of the best share: conditions with more cannot be told apart from the best
+MAX_AXIS_FINDINGS = 3  # findings that are reported of each axis
+MIN_STRETCHES = 8  # with fewer, nothing is said
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,18 +112,18 @@ def explain_errors(blocks: Blocks, seed: int = 0, inertia: Array | None = None) 
         stretch = number_stretches(blocks, error)
         cuts = [cut_bins(c, x, stretch) for c, x in blocks.values.items()]
         tables[axis] = {b.condition.name: bin_errors(b, error, stretch) for b in cuts}
-        threshold = max(SMALLEST, NEGLIGIBLE**2 * _relative_power(blocks, k))
+        threshold = max(MIN_ERROR_SHARE, MIN_ERROR_RATIO**2 * _relative_power(blocks, k))
         with threadpool_limits(1, "blas"):  # the matrices are small: threads would wait
             causes = _of_axis(axis, error, cuts, stretch, seed)
-        pushes = [_pushed(f, blocks, k, inertia) for f in causes]
+        pushes = [_estimate_push(f, blocks, k, inertia) for f in causes]
         findings += [f for f in pushes if f.share_of_error > threshold]
-        enough_stretches = enough_stretches and int(stretch.max()) + 1 >= FEWEST
+        enough_stretches = enough_stretches and int(stretch.max()) + 1 >= MIN_STRETCHES
     return ErrorExplanation(
         blocks, tables, sorted(findings, key=lambda f: -f.share_of_error), enough_stretches
     )
 
 
-def _pushed(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:
+def _estimate_push(one: Finding, blocks: Blocks, k: int, inertia: Array | None) -> Finding:
     """Add to a finding of axis k the push of a constant: row k of tau_res = M a_res."""
     if inertia is None:
         return one
@@ -151,12 +151,14 @@ def _of_axis(
         seed: of the random signs.
     """
     count = int(stretch.max()) + 1
-    signs = np.random.default_rng(seed).choice([-1.0, 1.0], (count, FLIPS))
+    signs = np.random.default_rng(seed).choice([-1.0, 1.0], (count, SIGN_FLIP_COUNT))
     findings: list[Finding] = []
     remainder, power = error, float(np.sum(error**2))
-    while count >= FEWEST and len(findings) < MOST and power > 0:
-        finding = _next(axis, remainder, cuts, stretch, signs, float(np.sum(remainder**2)) / power)
-        if finding is None or finding.share_of_error < SMALLEST:
+    while count >= MIN_STRETCHES and len(findings) < MAX_AXIS_FINDINGS and power > 0:
+        finding = _find_next(
+            axis, remainder, cuts, stretch, signs, float(np.sum(remainder**2)) / power
+        )
+        if finding is None or finding.share_of_error < MIN_ERROR_SHARE:
             break
         findings.append(replace(finding, after=tuple(f.condition for f in findings)))
         at = finding.table.binning
@@ -164,7 +166,7 @@ def _of_axis(
     return findings
 
 
-def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
+def _find_next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     """Find the condition that explains most of what is left; None where chance explains as much.
 
     A constant is preferred if it explains nearly as much. `scale` is the share of the whole squared
@@ -172,12 +174,14 @@ def _next(axis, left, cuts, stretch, signs, scale: float) -> Finding | None:
     """
     tables = [bin_errors(b, left, stretch) for b in cuts]
     chances = _chances(left, cuts, stretch, signs)
-    significant = [(t, p) for t, p in zip(tables, chances, strict=True) if p <= LEVEL / len(AXES)]
+    significant = [
+        (t, p) for t, p in zip(tables, chances, strict=True) if p <= SIGNIFICANCE_LEVEL / len(AXES)
+    ]
     if not significant:
         return None
     largest = max(t.share for t, _ in significant)
     near_largest = sorted(
-        (r for r in significant if r[0].share >= AS_GOOD * largest), key=lambda r: -r[0].share
+        (r for r in significant if r[0].share >= TIE_RATIO * largest), key=lambda r: -r[0].share
     )
     simplest = [r for r in near_largest if r[0].binning.condition.name == THROUGHOUT]
     table, chance = (simplest or near_largest)[0]

@@ -20,7 +20,7 @@ from rovsim.evaluation.error_conditions.conditions import (
     list_shown_conditions,
 )
 
-NEARLY = 0.97  # of the most: other conditions show as much, as a steady force shows in any
+TIE_RATIO = 0.97  # of the most: other conditions show as much, as a steady force shows in any
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ def find_most_lowered(
         for c in _compare(before, after, axis, conditions, shown is not None and shown.size)
     ]
     largest = max((c.removed for c in candidates), default=0.0)
-    near_largest = [c for c in candidates if c.removed >= NEARLY * largest]
+    near_largest = [c for c in candidates if c.removed >= TIE_RATIO * largest]
     declared = shown.condition if shown else ""
     return max(
         near_largest,

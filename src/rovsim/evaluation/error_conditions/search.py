@@ -73,7 +73,7 @@ class ConditionSearch:
             self._parts.append(average_blocks(motion, samples))
 
     @property
-    def found(self) -> SearchedModel:
+    def result(self) -> SearchedModel:
         """What the error on the runs so far varies with."""
         parts = self._parts
         if not parts:
@@ -94,4 +94,4 @@ def search_runs(model: Model, runs: Runs, settings: SimulationSettings) -> Searc
     search = ConditionSearch(model, set(runs.splits.values()), settings)
     for name in runs.of(search.split):
         search.add_run(runs.motions[name])
-    return search.found
+    return search.result

@@ -5,12 +5,12 @@ import numpy as np
 from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS
 from rovsim.core.signs import minus
 from rovsim.evaluation.error_conditions.conditions import Condition
-from rovsim.evaluation.error_conditions.findings import SMALLEST, ErrorExplanation, Finding
+from rovsim.evaluation.error_conditions.findings import MIN_ERROR_SHARE, ErrorExplanation, Finding
 from rovsim.results.error_conditions import THROUGHOUT
 
-UNITS = dict(zip(AXES, ACCELERATION_UNITS, strict=True))  # of an error, by axis
+ERROR_UNITS = dict(zip(AXES, ACCELERATION_UNITS, strict=True))
 PUSH_UNITS = dict(zip(AXES, FORCE_UNITS, strict=True))
-POSITIVE = {
+POSITIVE_DIRECTIONS = {
     "surge": "forward",
     "sway": "to starboard",
     "heave": "downward",
@@ -18,7 +18,7 @@ POSITIVE = {
     "pitch": "nose up",
     "yaw": "to starboard",
 }
-NEGATIVE = {
+NEGATIVE_DIRECTIONS = {
     "surge": "backward",
     "sway": "to port",
     "heave": "upward",
@@ -28,7 +28,7 @@ NEGATIVE = {
 }
 # If a condition is of the same axis as the error: what it means that the two have equal signs, and
 # what it means that they have opposite ones.
-RELATIONS = {
+RELATION_PHRASES = {
     "speed": ("brakes too much when moving fast", "brakes too little when moving fast"),
     "thrust": ("responds too weakly to its thrust", "responds too strongly to its thrust"),
     "change": (
@@ -37,7 +37,7 @@ RELATIONS = {
     ),
     "attitude": ("rights itself too strongly", "rights itself too weakly"),
 }
-USUAL = {
+USUAL_CAUSES = {
     "speed": "damping, or an added mass that is off",
     "absolute": "lift or coupled damping",
     "thrust": "thruster gain, or an added mass that is off",
@@ -50,13 +50,17 @@ USUAL = {
     "coupled": "a coupling (allocation, lift, off-diagonal damping or mass), or an autopilot "
     "that the log does not show",
 }
-STRAIGHT = 0.6  # correlation of error and condition: beyond, the error grows or falls with it
+# correlation of error and condition: beyond, the error grows or falls with it
+MIN_LINEAR_CORRELATION = 0.6
 
 
-def say_finding(found: Finding) -> str:
+def say_finding(finding: Finding) -> str:
     """Say a finding in sentences that need no others."""
-    earlier = f", beyond {' and '.join(found.after)}" if found.after else ""
-    return f"{_begin(found.axis)}{earlier}: {_what(found)} {_share(found)} {_usual(found)}"
+    earlier = f", beyond {' and '.join(finding.after)}" if finding.after else ""
+    return (
+        f"{_capitalize(finding.axis)}{earlier}: {_say_dependence(finding)} "
+        f"{_say_share(finding)} {_say_usual_cause(finding)}"
+    )
 
 
 def say_findings(explanation: ErrorExplanation) -> list[str]:
@@ -76,10 +80,10 @@ def amount(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 10 else f"{value:#.2g}".rstrip(".")
 
 
-def relation(found: Finding) -> float:
+def relation(finding: Finding) -> float:
     """Correlation of the bin means with the condition, weighted by blocks; NaN with one bin."""
-    at = found.table.binning
-    x, y, w = at.center[at.judged], found.table.mean[at.judged], at.count[at.judged]
+    at = finding.table.binning
+    x, y, w = at.center[at.judged], finding.table.mean[at.judged], at.count[at.judged]
     if len(x) < 2:
         return float("nan")
     x, y = x - np.average(x, weights=w), y - np.average(y, weights=w)
@@ -87,51 +91,54 @@ def relation(found: Finding) -> float:
     return float(np.sum(w * x * y) / spread) if spread > 0 else 0.0
 
 
-def _what(found: Finding) -> str:
+def _say_dependence(finding: Finding) -> str:
     """Say how the error depends on the condition, and how large it gets."""
-    condition, unit = found.table.binning.condition, UNITS[found.axis]
+    condition, unit = finding.table.binning.condition, ERROR_UNITS[finding.axis]
     if condition.kind == THROUGHOUT:
-        return _constant(found, unit)
-    wordings = RELATIONS.get(condition.kind) if condition.axis == found.axis else None
-    r = relation(found)
-    if wordings and condition.name != "heading" and abs(r) > STRAIGHT:
-        return f"the model {wordings[0] if r > 0 else wordings[1]}. {_extreme(found, unit)}."
-    return f"the error changes with {condition.name}: {_range(found, unit)}."
+        return _say_constant(finding, unit)
+    wordings = RELATION_PHRASES.get(condition.kind) if condition.axis == finding.axis else None
+    r = relation(finding)
+    if wordings and condition.name != "heading" and abs(r) > MIN_LINEAR_CORRELATION:
+        return f"the model {wordings[0] if r > 0 else wordings[1]}. {_say_extreme(finding, unit)}."
+    return f"the error changes with {condition.name}: {_say_range(finding, unit)}."
 
 
-def _constant(found: Finding, unit: str) -> str:
+def _say_constant(finding: Finding, unit: str) -> str:
     """Say by how much, and to which side, the vehicle constantly accelerates more."""
-    mean = float(found.table.mean[0])
-    side = (POSITIVE if mean > 0 else NEGATIVE)[found.axis]
-    push = f", as a push of {_push(found)} would make it" if found.push is not None else ""
+    mean = float(finding.table.mean[0])
+    side = (POSITIVE_DIRECTIONS if mean > 0 else NEGATIVE_DIRECTIONS)[finding.axis]
+    push = (
+        f", as a push of {_format_push(finding)} would make it" if finding.push is not None else ""
+    )
     return (
         f"throughout, the vehicle accelerates {amount(abs(mean))} {unit} more {side} "
         f"than the model{push}, whatever else varies."
     )
 
 
-def _push(found: Finding) -> str:
+def _format_push(finding: Finding) -> str:
     """Write the force or moment that would cause the mean error, with its unit."""
-    return f"{amount(abs(found.push or 0.0))} {PUSH_UNITS[found.axis]}"
+    return f"{amount(abs(finding.push or 0.0))} {PUSH_UNITS[finding.axis]}"
 
 
-def _extreme(found: Finding, unit: str) -> str:
+def _say_extreme(finding: Finding, unit: str) -> str:
     """Say in which bin of the condition the mean error is largest."""
-    b = int(np.argmax(np.where(found.table.binning.judged, np.abs(found.table.mean), -1.0)))
-    mean, condition = abs(float(found.table.mean[b])), found.table.binning.condition
+    b = int(np.argmax(np.where(finding.table.binning.judged, np.abs(finding.table.mean), -1.0)))
+    mean, condition = abs(float(finding.table.mean[b])), finding.table.binning.condition
     return (
-        f"The error is largest, {amount(mean)} {unit}, where {condition.name} is {_span(found, b)}"
+        f"The error is largest, {amount(mean)} {unit}, where {condition.name} is "
+        f"{_format_span(finding, b)}"
     )
 
 
-def _range(found: Finding, unit: str) -> str:
+def _say_range(finding: Finding, unit: str) -> str:
     """Say the lowest and the highest mean error, and in which bins they are."""
-    filled, mean = found.table.binning.judged, found.table.mean
+    filled, mean = finding.table.binning.judged, finding.table.mean
     low = int(np.argmin(np.where(filled, mean, np.inf)))
     high = int(np.argmax(np.where(filled, mean, -np.inf)))
     return (
-        f"{_signed(mean[low])} {unit} {_span(found, low)}, "
-        f"{_signed(mean[high])} {unit} {_span(found, high)} (measured minus model)"
+        f"{_signed(mean[low])} {unit} {_format_span(finding, low)}, "
+        f"{_signed(mean[high])} {unit} {_format_span(finding, high)} (measured minus model)"
     )
 
 
@@ -140,11 +147,11 @@ def _signed(value: float) -> str:
     return f"{'−' if value < 0 else '+'}{amount(abs(float(value)))}"
 
 
-def _span(found: Finding, b: int) -> str:
+def _format_span(finding: Finding, b: int) -> str:
     """Say which values are in bin b; the outer bins are open."""
-    edges, condition = found.table.binning.edges, found.table.binning.condition
+    edges, condition = finding.table.binning.edges, finding.table.binning.condition
     if condition.unit == "rad":
-        return f"near {minus(f'{np.degrees(found.table.binning.center[b]):.0f}')}°"
+        return f"near {minus(f'{np.degrees(finding.table.binning.center[b]):.0f}')}°"
     low, high = (_plain(x) for x in edges[b : b + 2])
     if b == 0:
         return f"below {high} {condition.unit}"
@@ -158,34 +165,34 @@ def _plain(value: float) -> str:
     return minus(amount(float(value)))
 
 
-def _share(found: Finding) -> str:
+def _say_share(finding: Finding) -> str:
     """Say which share of the error a condition explains, and which others would explain as much."""
-    share, at = f"{100 * found.share_of_error:.0f} %", found.table.binning.condition
+    share, at = f"{100 * finding.share_of_error:.0f} %", finding.table.binning.condition
     if at.kind == THROUGHOUT:
         return f"{share} of the squared error is constant."
-    text = f"{_begin(at.name)} explains {share} of the squared error."
-    if found.constant > SMALLEST:
-        push = f" (a push of {_push(found)})" if found.push is not None else ""
-        text = f"{text[:-1]}, a constant alone {100 * found.constant:.0f} %{push}."
-    alternatives = [c.name for c in found.alike[:2]]
+    text = f"{_capitalize(at.name)} explains {share} of the squared error."
+    if finding.constant > MIN_ERROR_SHARE:
+        push = f" (a push of {_format_push(finding)})" if finding.push is not None else ""
+        text = f"{text[:-1]}, a constant alone {100 * finding.constant:.0f} %{push}."
+    alternatives = [c.name for c in finding.alike[:2]]
     if not alternatives:
         return text
     names = " or ".join(alternatives)
-    return f"{text} ({_begin(names)} would explain about as much: they varied together.)"
+    return f"{text} ({_capitalize(names)} would explain about as much: they varied together.)"
 
 
-def _begin(words: str) -> str:
+def _capitalize(words: str) -> str:
     """Begin with a capital letter; the rest stays as it is."""
     return words[0].upper() + words[1:]
 
 
-def _usual(found: Finding) -> str:
+def _say_usual_cause(finding: Finding) -> str:
     """Say what often causes such a finding."""
-    return f"Often: {USUAL[_cause(found.axis, found.table.binning.condition)]}."
+    return f"Often: {USUAL_CAUSES[_cause_key(finding.axis, finding.table.binning.condition)]}."
 
 
-def _cause(axis: str, condition: Condition) -> str:
-    """Key in `USUAL` of an axis and a condition; "coupled" if the condition is of another axis."""
+def _cause_key(axis: str, condition: Condition) -> str:
+    """Key in `USUAL_CAUSES` of axis and condition; "coupled" for a condition of another axis."""
     if condition.name == "heading":
         return "heading"
     of_motion = condition.kind in ("speed", "thrust", "attitude")

@@ -20,14 +20,15 @@ from rovsim.simulation.replay import replay
 from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import SimulationSettings
 
-SAID = 0.1  # s, the bin that the public code replays with
-FAR = 1e6  # standard deviations from all training data: there a Gaussian process knows no data
+ASSUMED_BIN_WIDTH_S = 0.1  # s, the bin that the public code replays with
+# standard deviations from all training data: there a Gaussian process knows no data
+FAR_SIGMAS = 1e6
 
 
 def on_wrong_clock(motion: Motion) -> Motion:
-    """Change the clock of a binned run as if each bin lasted `SAID` s; its commands move along."""
+    """Change the clock of a binned run as if each bin lasted 0.1 s; its commands move along."""
     edges = np.append(motion.time, motion.end)
-    clock = motion.time[0] + SAID * np.arange(len(edges))
+    clock = motion.time[0] + ASSUMED_BIN_WIDTH_S * np.arange(len(edges))
     arrival = np.interp(motion.commands.time, edges, clock)
     return replace(
         motion,
@@ -108,7 +109,7 @@ def _costs_of_a_broken_gp(
     X = _X(test, gp)
     scale = np.maximum(np.std(np.concatenate([_X(s, gp) for s in runs]), axis=0), 1e-9)
     right, far, twice = (
-        explained(gp.predict, x, test.a_res) for x in (X, X + FAR * scale, X / scale)
+        explained(gp.predict, x, test.a_res) for x in (X, X + FAR_SIGMAS * scale, X / scale)
     )
     return {
         "lost data": Cost(right=right, wrong=far),

@@ -29,9 +29,9 @@ from rovsim.results.published_errors import (
     Standing,
 )
 
-COUNTED = ("acceleration_rmse", "velocity_mae")  # metrics by which a model is judged
-METRICS = (*COUNTED, "velocity_rmse")
-PUBLISHED = "published "  # in front of the names of others' models
+JUDGED_METRICS = ("acceleration_rmse", "velocity_mae")  # metrics by which a model is judged
+METRICS = (*JUDGED_METRICS, "velocity_rmse")
+PUBLISHED_PREFIX = "published "  # in front of the names of others' models
 COLUMNS = ("run", "variant", "model", "axis", *METRICS)
 
 
@@ -190,7 +190,7 @@ def _cell(
     best = min(theirs, key=lambda p: p.errors[metric])
     mark = best.errors[metric] if moved[axis] else max(best.errors[metric], at_rest)
     smallest = {
-        f"{PUBLISHED}{model}": min(p.errors[metric] for p in theirs if p.model == model)
+        f"{PUBLISHED_PREFIX}{model}": min(p.errors[metric] for p in theirs if p.model == model)
         for model in dict.fromkeys(p.model for p in theirs)
     }
     errors = {**ours, **smallest}
@@ -229,7 +229,7 @@ def stand(ratios: Sequence[float | None]) -> Standing:
 def _stand(name: str, cells: Sequence[PublishedCell]) -> ModelStanding:
     """Tell how one model stands: in the counted metrics together, by metric, and by axis."""
     model_cells = [cell for cell in cells if name in cell.ratios]
-    counted = [cell for cell in model_cells if cell.metric in COUNTED]
+    counted = [cell for cell in model_cells if cell.metric in JUDGED_METRICS]
 
     def among(cells: Sequence[PublishedCell]) -> Standing:
         return stand([cell.ratios[name] for cell in cells])

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rovsim.core.model_names import EFFECTS
-from rovsim.evaluation.held_out.published_errors import COUNTED, PUBLISHED
+from rovsim.evaluation.held_out.published_errors import JUDGED_METRICS, PUBLISHED_PREFIX
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import Look, Style, looks
 from rovsim.reporting.figures.style import sheet, styled
@@ -34,8 +34,8 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
     """Draw the ratios of `published_errors.json`, a panel for each metric."""
     names = _shown(published_errors)
     style = looks(names)
-    figure = sheet(60 + 60 * len(COUNTED))
-    for axes, metric in zip(figure.subplots(len(COUNTED), 1), COUNTED, strict=True):
+    figure = sheet(60 + 60 * len(JUDGED_METRICS))
+    for axes, metric in zip(figure.subplots(len(JUDGED_METRICS), 1), JUDGED_METRICS, strict=True):
         cells = [cell for cell in published_errors.cells if cell.metric == metric]
         _draw_panel(axes, cells, style)
         axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
@@ -52,7 +52,7 @@ def _shown(published_errors: PublishedErrors) -> list[str]:
 
     A residual on top of the nominal model is left out if there is one on top of effects.
     """
-    own_models = [n for n in published_errors.models if not n.startswith(PUBLISHED)]
+    own_models = [n for n in published_errors.models if not n.startswith(PUBLISHED_PREFIX)]
     complete = [n for n in own_models if all(n in cell.ratios for cell in published_errors.cells)]
     stacked = {n.partition("+")[2] for n in complete if n.startswith(f"{EFFECTS}+")}
     return [n for n in complete if n not in stacked]

@@ -1,13 +1,19 @@
 """Write `published_errors.json` as Markdown tables."""
 
-from rovsim.evaluation.held_out.published_errors import COUNTED, METRICS, PUBLISHED, stand
+from rovsim.evaluation.held_out.published_errors import (
+    JUDGED_METRICS,
+    METRICS,
+    PUBLISHED_PREFIX,
+    stand,
+)
 from rovsim.reporting.pages.marked import table
 from rovsim.reporting.tables import QUANTITIES
 from rovsim.reporting.wording import known, significant
 from rovsim.reporting.words.published_errors import tell_standings
 from rovsim.results.published_errors import PublishedErrors
 
-SIMULATOR = f"{PUBLISHED}zero_shot"  # the authors' simulator without a residual: the baseline
+# the authors' simulator without a residual: the baseline
+SIMULATOR = f"{PUBLISHED_PREFIX}zero_shot"
 
 
 def write_markdown(published_errors: PublishedErrors) -> list[str]:
@@ -67,7 +73,7 @@ def _against_simulator(published_errors: PublishedErrors, name: str, metric: str
 def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
     """Return heading and table of one metric: the smallest published errors, and our ratios."""
     heading, units = QUANTITIES[metric]
-    own_models = [name for name in published_errors.models if not name.startswith(PUBLISHED)]
+    own_models = [name for name in published_errors.models if not name.startswith(PUBLISHED_PREFIX)]
     rows = [
         [
             cell.run,
@@ -79,7 +85,7 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
         for cell in published_errors.cells
         if cell.metric == metric
     ]
-    extra = "" if metric in COUNTED else ", not counted above"
+    extra = "" if metric in JUDGED_METRICS else ", not counted above"
     units_text = " and ".join(dict.fromkeys(units))
     return [
         f"### {heading[0].upper()}{heading[1:]}",
