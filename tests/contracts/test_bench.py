@@ -38,7 +38,7 @@ def found():
         patch.delattr("os.setpriority")  # tests do not push other programs aside
         time_neighbours(stopwatch, 150, 0.05)
         time_processes(stopwatch, 150, 0.05)
-    return stopwatch.found
+    return stopwatch.latencies
 
 
 def test_what_was_timed_is_told_before_the_next_way_is(monkeypatch):

@@ -5,17 +5,17 @@ import pytest
 
 from rovsim.application.settings import BlindSettings
 from rovsim.benchmarks.blind.answers import KeptAnswer
-from rovsim.benchmarks.blind.case import SEEDS, Case, Unlisted, seed_of
+from rovsim.benchmarks.blind.case import SEED_RANGES, Case, Unlisted, seed_of
 from rovsim.benchmarks.blind.flight import fly
-from rovsim.benchmarks.blind.law_score import is_right, rate_laws, way
+from rovsim.benchmarks.blind.law_score import error_drop, is_right, rate_laws
 from rovsim.benchmarks.blind.laws import LAWS
 from rovsim.benchmarks.blind.methods import Method
-from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
+from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.benchmarks.blind.recordings import KINDS
 from rovsim.benchmarks.blind.run import Benchmark, pending, place, read_answers, run
 from rovsim.benchmarks.blind.score import matching, score
-from rovsim.benchmarks.blind.suites import APART, FAMILIES, suite
+from rovsim.benchmarks.blind.suites import FAMILIES, NO_FAMILY, suite
 from rovsim.benchmarks.blind.summary import detection_limit, summarize
 from rovsim.benchmarks.blind.tables import write_markdown
 from rovsim.core.errors import BadInput
@@ -57,7 +57,7 @@ def diagnosis(*named, verdict=None, groups=(), **parameters):
 
 @pytest.mark.parametrize("name", ["quick", "standard", "full"])
 def test_every_effect_of_the_catalogue_is_hidden_once_alone(name):
-    assert set(RECIPES) == set(built_in()) == frozenset.union(APART, *FAMILIES)
+    assert set(RECIPES) == set(built_in()) == frozenset.union(NO_FAMILY, *FAMILIES)
     alone = [c.hidden[0].effect for c in suite(name, "development") if c.kind == "single"]
     assert set(alone) == set(built_in())
 
@@ -161,8 +161,8 @@ def test_an_equation_is_right_by_its_quantities_and_worth_what_it_takes_away():
         ([("yaw", "u v", 2.0), ("sway", "u v", 0.1)], False),
     ):
         assert is_right(law(*terms).unexplained.proposal, truth) is right
-    assert way(law(("sway", "u v", 2.0), reached=0.04)) == pytest.approx(1.0)
-    assert way(law(("sway", "u v", 2.0), reached=0.12)) == pytest.approx(0.5)
+    assert error_drop(law(("sway", "u v", 2.0), reached=0.04)) == pytest.approx(1.0)
+    assert error_drop(law(("sway", "u v", 2.0), reached=0.12)) == pytest.approx(0.5)
     case = next(
         c for c in suite("equations", "development") if c.outside[0].name == "coupled_cubic"
     )
@@ -177,9 +177,9 @@ def test_an_equation_is_right_by_its_quantities_and_worth_what_it_takes_away():
 
 
 def test_seeds_of_the_two_ranges_are_disjoint_and_cases_repeatable():
-    ranges = [set(range(first, last + 1)) for first, last in SEEDS.values()]
+    ranges = [set(range(first, last + 1)) for first, last in SEED_RANGES.values()]
     assert not ranges[0] & ranges[1]
-    for seeds, allowed in zip(SEEDS, ranges, strict=True):
+    for seeds, allowed in zip(SEED_RANGES, ranges, strict=True):
         cases = suite("full", seeds)
         assert {c.seed for c in cases} <= allowed
         assert cases == suite("full", seeds)
@@ -205,7 +205,7 @@ def test_sets_hold_effects_of_different_families():
             assert all(len(family & set(names)) <= 1 for family in FAMILIES)
 
 
-@pytest.mark.parametrize("name", OUTSIDE)
+@pytest.mark.parametrize("name", OUTSIDE_EFFECTS)
 def test_outside_physics_never_enters_the_catalogue(name):
     found = drawn_outside(name, 1.0, np.random.default_rng(0))
     assert name not in built_in()
@@ -226,7 +226,9 @@ def pushes(effect, count=400):
     return np.array(found)
 
 
-@pytest.mark.parametrize("name", [n for n, cls in OUTSIDE.items() if issubclass(cls, Wrench)])
+@pytest.mark.parametrize(
+    "name", [n for n, cls in OUTSIDE_EFFECTS.items() if issubclass(cls, Wrench)]
+)
 def test_outside_physics_is_no_drag_law_of_the_catalogue(name):
     found = pushes(drawn_outside(name, 1.0, np.random.default_rng(0)))
     pushed = np.flatnonzero(np.any(found != 0.0, axis=0))

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from rovsim.application.configuration import compose
-from rovsim.benchmarks.designs.cases import SECONDS, ask, hide, list_cases
+from rovsim.benchmarks.designs.cases import FLIGHT_SECONDS, ask, hide, list_cases
 from rovsim.benchmarks.designs.table import tabulate
 from rovsim.dynamics.catalogue import built_in
 from rovsim.results.design_benchmark import FlownCase, ReachedOdds, ReachedStd, ThroughWall
@@ -25,7 +25,7 @@ def test_pairs_and_values_come_in_turns_each_once():
 def test_a_case_hides_what_it_names_and_asks_for_it(case):
     tank, question = hide(case, "development"), ask(case, compose([]))
     (entry,) = tank.effects
-    assert tank.duration == SECONDS
+    assert tank.duration == FLIGHT_SECONDS
     assert hide(case, "development") == tank
     assert hide(case, "reporting").seed != tank.seed
     if "+" in case:

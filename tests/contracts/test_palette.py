@@ -73,7 +73,7 @@ def test_a_curve_can_be_seen_on_white_and_on_the_dark_page(name):
     [
         *(one.color for one in (*budget.KNOWN.values(), *budget.ADDED)),
         *plots.COLORS.values(),
-        *(color for names in plots.SIZES.values() for color in names.values()),
+        *(color for names in plots.PANEL_COLORS.values() for color in names.values()),
     ],
 )
 def test_other_curves_can_be_seen_too(color):
@@ -81,7 +81,7 @@ def test_other_curves_can_be_seen_too(color):
 
 
 def test_parts_and_libraries_of_one_panel_are_told_apart():
-    for drawn in (*plots.SIZES.values(), plots.COLORS):
+    for drawn in (*plots.PANEL_COLORS.values(), plots.COLORS):
         assert len(set(drawn.values())) == len(drawn)
     looks = [(one.color, one.dash) for one in (*budget.KNOWN.values(), *budget.ADDED)]
     assert len(set(looks)) == len(looks)

@@ -10,7 +10,7 @@ from rovsim.application.configuration import compose
 from rovsim.application.settings import select
 from rovsim.apps.cli.commands.blind import Settings
 from rovsim.benchmarks.blind.flight import SIMULATORS, fly
-from rovsim.benchmarks.blind.independent.campaign import STATED, record_campaign
+from rovsim.benchmarks.blind.independent.campaign import SIMULATED_EFFECTS, record_campaign
 from rovsim.benchmarks.blind.independent.exports import write_poses
 from rovsim.benchmarks.blind.independent.motion import Mover, Vehicle
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
@@ -124,8 +124,8 @@ def test_both_simulators_move_alike(name):
 
 
 def test_every_effect_that_is_stated_is_held_against_the_other():
-    assert set(HIDDEN) | set(SENSED) == STATED
-    assert set(built_in()) >= STATED
+    assert set(HIDDEN) | set(SENSED) == SIMULATED_EFFECTS
+    assert set(built_in()) >= SIMULATED_EFFECTS
 
 
 @pytest.mark.parametrize("name", SENSED)

@@ -33,12 +33,12 @@ def diagnosis(campaign: Path, out: Path) -> Diagnosis:
         return result.diagnosis
 
 
-def bands(campaign: Path, found: Diagnosis) -> Bands | None:
+def bands(campaign: Path, diagnosis: Diagnosis) -> Bands | None:
     """Measure how much of the test runs lies in the bands of the model that a diagnosis ends with.
 
     Args:
         campaign: its folder.
-        found: the diagnosis of the campaign.
+        diagnosis: the diagnosis of the campaign.
 
     Returns:
         None where the model has no bands.
@@ -46,5 +46,5 @@ def bands(campaign: Path, found: Diagnosis) -> Bands | None:
     settings = compose(["command=compare"])
     with heard_by():
         data = measure(load_campaign(campaign), settings.signals, even_unusable=True)
-        model = add_effects(found, campaign, "nominal", None, built_in()).model
+        model = add_effects(diagnosis, campaign, "nominal", None, built_in()).model
         return cover_test_runs([model], data, settings)

@@ -26,11 +26,11 @@ from rovsim.results.bands import Bands
 from rovsim.results.blind_benchmark import BandRates, Calibration, Claims, Ranks
 from rovsim.results.fitted import FittedEffect
 
-BINS = 10
+RANK_BINS = 10
 # Claimed probabilities pile up at one, so that bins are finer there.
-EDGES = (0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0)
-EXPECTED = 5  # values a bin; with fewer, the statistic is not chi-square (Cochran 1954)
-COARSER = (10, 5, 2)  # bins of the test: the most that have enough values
+PROBABILITY_EDGES = (0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0)
+MIN_BIN_VALUES = 5  # with fewer, the statistic is not chi-square (Cochran 1954)
+TEST_BIN_COUNTS = (10, 5, 2)  # bins of the test: the most that have enough values
 
 
 @dataclass(frozen=True)
@@ -63,17 +63,17 @@ def calibrate(answers: Sequence[KeptAnswer]) -> Calibration:
     )
 
 
-def rate_bands(found: Sequence[Bands]) -> dict[str, BandRates]:
+def rate_bands(all_bands: Sequence[Bands]) -> dict[str, BandRates]:
     """Measure how often measured velocities lie inside 90 % bands at the ends of windows.
 
     Args:
-        found: bands of the test runs, one entry for each campaign.
+        all_bands: bands of the test runs, one entry for each campaign.
 
     Returns:
         Rates by the length of the windows in s.
     """
     campaigns: dict[str, list[tuple[float, int]]] = defaultdict(list)
-    for bands in found:
+    for bands in all_bands:
         shares: dict[str, list[float]] = defaultdict(list)
         for run in (run for model in bands.models.values() for run in model.runs.values()):
             for seconds, coverage in run.windows.items():
@@ -123,8 +123,8 @@ def _compare(one: FittedEffect, truth: dict[str, float]) -> Iterator[Miss]:
 def rank(misses: Sequence[Miss]) -> Ranks:
     """Count deviations in bins of equal probability under a standard Gaussian; test the counts."""
     z = np.array([m.deviations for m in misses])
-    bins = np.minimum((BINS * ndtr(z)).astype(int), BINS - 1)
-    counts = np.bincount(bins, minlength=BINS)
+    bins = np.minimum((RANK_BINS * ndtr(z)).astype(int), RANK_BINS - 1)
+    counts = np.bincount(bins, minlength=RANK_BINS)
     return Ranks(
         values=len(z),
         covered=float(np.mean(np.abs(z) <= Z_95)) if len(z) else None,
@@ -135,9 +135,9 @@ def rank(misses: Sequence[Miss]) -> Ranks:
 
 
 def _test_evenness(counts: np.ndarray) -> float | None:
-    """Return the chance of a histogram (BINS,) at least as uneven; None for too few values."""
-    for bins in COARSER:
-        if counts.sum() >= EXPECTED * bins:
+    """Return the chance of a histogram (RANK_BINS,) at least as uneven; None for too few values."""
+    for bins in TEST_BIN_COUNTS:
+        if counts.sum() >= MIN_BIN_VALUES * bins:
             return float(chisquare(counts.reshape(bins, -1).sum(axis=1)).pvalue)
     return None
 
@@ -160,11 +160,11 @@ def _names(case: Case) -> set[str]:
     return {entry.effect for entry in case.hidden}
 
 
-def _bin_claims(told: Sequence[tuple[float, bool]]) -> Iterator[Claims]:
+def _bin_claims(names: Sequence[tuple[float, bool]]) -> Iterator[Claims]:
     """Count right names in bins of the claimed probability; empty bins are left out."""
-    for low, high in pairwise(EDGES):
-        last = high == EDGES[-1]
-        inside = [(p, right) for p, right in told if low <= p and (p < high or last)]
+    for low, high in pairwise(PROBABILITY_EDGES):
+        last = high == PROBABILITY_EDGES[-1]
+        inside = [(p, right) for p, right in names if low <= p and (p < high or last)]
         if inside:
             yield _count(inside, low, high)
 

@@ -17,10 +17,10 @@ from rovsim.simulation.synthetic_tank.settings import TankSettings
 
 # First and last seed of each range. Methods are built and tuned on development cases alone; cases
 # of the other range are flown to report results, never to decide anything.
-SEEDS = {"development": (1_000_000, 1_999_999), "reporting": (5_000_000, 5_999_999)}
+SEED_RANGES = {"development": (1_000_000, 1_999_999), "reporting": (5_000_000, 5_999_999)}
 Range = Literal["development", "reporting"]
 
-WEAKER = 0.8  # of the size, each time the vehicle leaves the tank
+WEAKENING_FACTOR = 0.8  # of the size, each time the vehicle leaves the tank
 
 
 class Unlisted(Section):
@@ -97,7 +97,7 @@ class Case(Section):
         """Return the same case with smaller effects, for a pilot that cannot hold the vehicle."""
         outside = tuple(_shrunk_outside(entry) for entry in self.outside)
         hidden = tuple(_shrunk(entry) for entry in self.hidden)
-        strength = self.strength * WEAKER
+        strength = self.strength * WEAKENING_FACTOR
         return self.model_copy(update={"hidden": hidden, "outside": outside, "strength": strength})
 
 
@@ -120,12 +120,12 @@ def _shrunk_outside(one: Unlisted) -> Unlisted:
 
 
 def _closer(value: float, parameter: Parameter) -> float:
-    return float(f"{parameter.combine(parameter.neutral_value, value, WEAKER):.4g}")
+    return float(f"{parameter.combine(parameter.neutral_value, value, WEAKENING_FACTOR):.4g}")
 
 
 def seed_of(case_id: str, seeds: Range) -> int:
     """Return the seed of a case, which does not depend on the other cases of the suite."""
-    first, last = SEEDS[seeds]
+    first, last = SEED_RANGES[seeds]
     return first + zlib.crc32(case_id.encode()) % (last - first + 1)
 
 

@@ -20,11 +20,11 @@ from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
-OFF = 0.25  # of each coefficient, at most
-GAIN, BUOYANCY, CENTER = 0.05, 1.0, 0.004  # 1, N, m, at most
-NOMINAL = (*COEFFICIENTS, "thruster_gain", "net_buoyancy", "buoyancy_center")
+MAX_COEFFICIENT_ERROR = 0.25  # share of each coefficient
+MAX_GAIN_ERROR, MAX_BUOYANCY_ERROR_N, MAX_CENTER_ERROR_M = 0.05, 1.0, 0.004
+NOMINAL_EFFECTS = (*COEFFICIENTS, "thruster_gain", "net_buoyancy", "buoyancy_center")
 # Effects that a wrong vehicle file does not explain, and a pilot can hold.
-SPECIAL = (
+SPECIAL_EFFECTS = (
     "current", "tether_tension", "tether_drag", "thruster_lag", "input_delay", "clock_drift",
     "thruster_deadband", "thrust_asymmetry", "voltage_sag", "marker_offset",
     "marker_misalignment", "constant_wrench", "lift", "fluid_memory", "advance_loss",
@@ -33,7 +33,7 @@ CAMERAS: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "coloured": {"colour_noise": (2e-4, 3e-4), "colour_attitude": (6e-4, 9e-4)},  # m, rad
     "smoothed": {},
 }
-CUTOFF = (3.0, 12.0)  # Hz
+CUTOFF_RANGE_HZ = (3.0, 12.0)
 
 
 def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
@@ -53,7 +53,7 @@ def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
         kind=kind,
         seed=seed_of(case_id, seeds),
         hidden=hidden,
-        forgiven=NOMINAL,
+        forgiven=NOMINAL_EFFECTS,
         tank=merged(*(RECIPES[name].tank for name in special)),
     )
 
@@ -64,9 +64,9 @@ def workshops(k: int, seeds: Range) -> Iterator[Case]:
     These are each special effect alone, each with the third after it in the list, and three cases
     without any.
     """
-    for i, name in enumerate(SPECIAL):
+    for i, name in enumerate(SPECIAL_EFFECTS):
         yield workshop((name,), k, seeds)
-        yield workshop((name, SPECIAL[(i + 3) % len(SPECIAL)]), k, seeds)
+        yield workshop((name, SPECIAL_EFFECTS[(i + 3) % len(SPECIAL_EFFECTS)]), k, seeds)
     yield from (workshop((), 3 * k + j, seeds) for j in range(3))
 
 
@@ -95,7 +95,7 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
     """
     kind, count = list(CAMERAS)[k % 2], (3, 5)[k // 2 % 2]
     random = random_of(f"laboratory/{k}", seeds)
-    eligible = [members for family in families if (members := family & set(SPECIAL))]
+    eligible = [members for family in families if (members := family & set(SPECIAL_EFFECTS))]
     special = draw_apart(eligible, count, random)
     case_id = f"laboratory/{kind}/{'+'.join(special)}/{k}"
     settings, smoothing = _camera(kind, random)
@@ -105,7 +105,7 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
         kind="laboratory",
         seed=seed_of(case_id, seeds),
         hidden=hidden,
-        forgiven=NOMINAL,
+        forgiven=NOMINAL_EFFECTS,
         tank=merged(*(RECIPES[name].tank for name in special), settings),
     )
 
@@ -115,7 +115,7 @@ def _camera(
 ) -> tuple[dict[str, Any], tuple[EffectEntry, ...]]:
     """Draw settings of the tank for imperfect cameras, and the effect of their software, if any."""
     settings: dict[str, Any] = {name: random.uniform(*size) for name, size in CAMERAS[how].items()}
-    cutoff = float(f"{random.uniform(*CUTOFF):.3g}")
+    cutoff = float(f"{random.uniform(*CUTOFF_RANGE_HZ):.3g}")
     smoothing = EffectEntry(effect="pose_filter", parameters={"cutoff": Value(value=cutoff)})
     return {"camera": settings}, (smoothing,) if how == "smoothed" else ()
 
@@ -125,10 +125,21 @@ def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
     water = load_vehicle(default_vehicle()).hydrodynamics
     for name in COEFFICIENTS:
         nominal = np.array(getattr(water, name))
-        yield _entry(name, dict(zip(AXES, random.uniform(-OFF, OFF, 6) * nominal, strict=True)))
-    yield _entry("thruster_gain", {"all": 1.0 + random.uniform(-GAIN, GAIN)})
-    yield _entry("net_buoyancy", {"force": random.uniform(-BUOYANCY, BUOYANCY)})
-    yield _entry("buoyancy_center", {"z": random.uniform(-CENTER, CENTER)})
+        yield _entry(
+            name,
+            dict(
+                zip(
+                    AXES,
+                    random.uniform(-MAX_COEFFICIENT_ERROR, MAX_COEFFICIENT_ERROR, 6) * nominal,
+                    strict=True,
+                )
+            ),
+        )
+    yield _entry("thruster_gain", {"all": 1.0 + random.uniform(-MAX_GAIN_ERROR, MAX_GAIN_ERROR)})
+    yield _entry(
+        "net_buoyancy", {"force": random.uniform(-MAX_BUOYANCY_ERROR_N, MAX_BUOYANCY_ERROR_N)}
+    )
+    yield _entry("buoyancy_center", {"z": random.uniform(-MAX_CENTER_ERROR_M, MAX_CENTER_ERROR_M)})
 
 
 def _entry(name: str, values: Mapping[str, float]) -> EffectEntry:

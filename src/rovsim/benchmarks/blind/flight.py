@@ -5,15 +5,19 @@ from pathlib import Path
 from typing import Callable, Mapping
 
 from rovsim.benchmarks.blind.case import Case
-from rovsim.benchmarks.blind.independent.campaign import STATED, OutOfTank, record_campaign
+from rovsim.benchmarks.blind.independent.campaign import (
+    SIMULATED_EFFECTS,
+    OutOfTank,
+    record_campaign,
+)
 from rovsim.core.errors import BadInput
 from rovsim.dynamics.catalogue import built_in
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.description import TRUTH_FILE
 from rovsim.simulation.synthetic_tank.true_run import LeftTank
 
-TRIES = 12  # 0.8^12 = 0.07 of the size
-PILOTS = 3
+MAX_TRIES = 12  # 0.8^12 = 0.07 of the size
+PILOT_COUNT = 3
 
 
 @dataclass(frozen=True)
@@ -52,12 +56,12 @@ def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
         BadInput: no pilot keeps the vehicle inside the tank.
     """
     record = SIMULATORS[simulator].record
-    for pilot in range(PILOTS):
+    for pilot in range(PILOT_COUNT):
         flown = _held(case.model_copy(update={"seed": case.seed + pilot}), out, record)
         if flown is not None:
             return flown
     raise BadInput(
-        f"the vehicle left the tank with each of {PILOTS} pilots",
+        f"the vehicle left the tank with each of {PILOT_COUNT} pilots",
         where=f"case {case.id}",
         expected="effects that a pilot can hold against",
         remedy="Correct the recipe.",
@@ -66,7 +70,7 @@ def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
 
 def _held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case | None:
     """Weaken a case until its pilot can hold the vehicle; None where that does not succeed."""
-    for _ in range(TRIES):
+    for _ in range(MAX_TRIES):
         try:
             record(case, out)
             return case
@@ -87,7 +91,7 @@ def _independently(case: Case, out: Path) -> None:
 
 def _is_stated(case: Case) -> bool:
     """Whether the second simulator has all hidden effects, and logs commands as the case needs."""
-    stated = all(entry.effect in STATED for entry in case.hidden)
+    stated = all(entry.effect in SIMULATED_EFFECTS for entry in case.hidden)
     return stated and not case.outside and case.settings().log.kind == "pwm"
 
 

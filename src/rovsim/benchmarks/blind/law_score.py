@@ -10,7 +10,7 @@ from rovsim.results.base import or_nan
 from rovsim.results.blind_benchmark import LawRates
 from rovsim.results.diagnosis import Diagnosis, ProposedEquation
 
-HALF = 0.5  # of the way to the noise floor
+MIN_ERROR_DROP = 0.5  # of the way to the noise floor
 
 
 def rate_laws(answers: Sequence[KeptAnswer]) -> dict[str, LawRates]:
@@ -51,7 +51,7 @@ def _rate(answers: Sequence[KeptAnswer], law: KnownLaw | None) -> LawRates:
         for answer in diagnoses
     ]
     right = [p is not None and law is not None and is_right(p, law) for p in laws]
-    half = [isinstance(d, Diagnosis) and way(d) >= HALF for d in diagnoses]
+    half = [isinstance(d, Diagnosis) and error_drop(d) >= MIN_ERROR_DROP for d in diagnoses]
     return LawRates(
         cases=len(answers),
         unexplained=float(
@@ -75,15 +75,18 @@ def is_right(proposal: ProposedEquation, law: KnownLaw) -> bool:
     return largest.on in law.on and quantities == law.quantities
 
 
-def way(found: Diagnosis) -> float:
+def error_drop(diagnosis: Diagnosis) -> float:
     """Return how far the equation takes the error from the selected effects to the noise floor.
 
     Returns:
         0 where the equation does not help, 1 where the error reaches the noise floor; NaN where
         there is no equation.
     """
-    if found.unexplained.proposal is None:
+    if diagnosis.unexplained.proposal is None:
         return float("nan")
-    with_equation = or_nan(found.ladder.models[-1].windows_2s)
-    with_effects, noise_floor = or_nan(found.error.with_effects), or_nan(found.error.noise_floor)
+    with_equation = or_nan(diagnosis.ladder.models[-1].windows_2s)
+    with_effects, noise_floor = (
+        or_nan(diagnosis.error.with_effects),
+        or_nan(diagnosis.error.noise_floor),
+    )
     return (with_effects - with_equation) / (with_effects - noise_floor)

@@ -11,12 +11,19 @@ from math import exp, sqrt, tanh
 import numpy as np
 from numba import njit
 
-from rovsim.benchmarks.blind.outside import OUTSIDE, Backlash, Compression, Jet, Squat, drawn
+from rovsim.benchmarks.blind.outside import (
+    OUTSIDE_EFFECTS,
+    Backlash,
+    Compression,
+    Jet,
+    Squat,
+    drawn,
+)
 from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.base import Coefficients, Effect, Parameter, Wrench
 
 # Linear (N s/m) and quadratic (N s2/m2) drag of the default vehicle in surge, sway, heave.
-DRAG = ((13.7, 141.0), (0.0, 217.0), (33.0, 190.0))
+DRAG_COEFFICIENTS = ((13.7, 141.0), (0.0, 217.0), (33.0, 190.0))
 
 
 @njit(forceinline=True)
@@ -37,9 +44,9 @@ def carried(at, north, east):
     """Return the force (surge, sway, heave; N) of water that moves north and east, m/s."""
     (a, b, c), (d, e, f) = at.R[0], at.R[1]
     return (
-        added(DRAG[0], at.nu_r[0], a * north + d * east),
-        added(DRAG[1], at.nu_r[1], b * north + e * east),
-        added(DRAG[2], at.nu_r[2], c * north + f * east),
+        added(DRAG_COEFFICIENTS[0], at.nu_r[0], a * north + d * east),
+        added(DRAG_COEFFICIENTS[1], at.nu_r[1], b * north + e * east),
+        added(DRAG_COEFFICIENTS[2], at.nu_r[2], c * north + f * east),
     )
 
 
@@ -291,7 +298,7 @@ LAWS: dict[str, KnownLaw] = {
 
 def find_outside(name: str) -> type[Effect]:
     """Return the class of physics outside the catalogue, which may be one of the laws."""
-    return LAWS[name].effect if name in LAWS else OUTSIDE[name]
+    return LAWS[name].effect if name in LAWS else OUTSIDE_EFFECTS[name]
 
 
 def drawn_law(name: str, random: np.random.Generator) -> Effect:

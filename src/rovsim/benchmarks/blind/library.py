@@ -24,7 +24,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import sample_run
 from rovsim.simulation.settings import SimulationSettings
 
-EVERY = 10  # samples: the filter passes a few Hz, frames come at 100
+SAMPLE_STRIDE = 10  # samples: the filter passes a few Hz, frames come at 100
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def problem(
 
 
 def _residual(model: Model, motion: Motion) -> Array:
-    return sample_run(model, motion, SimulationSettings()).a_res[::EVERY]
+    return sample_run(model, motion, SimulationSettings()).a_res[::SAMPLE_STRIDE]
 
 
 def steps(

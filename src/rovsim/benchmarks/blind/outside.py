@@ -214,7 +214,7 @@ class Backlash(ThrusterDynamics):
         return out, F
 
 
-OUTSIDE: dict[str, type[Effect]] = {
+OUTSIDE_EFFECTS: dict[str, type[Effect]] = {
     cls.id: cls
     for cls in (
         SquareWave,
@@ -229,12 +229,12 @@ OUTSIDE: dict[str, type[Effect]] = {
         Backlash,
     )
 }
-SIZES = (0.7, 1.5)  # at strength 1, in scales of the first parameter
+SIZE_RANGE = (0.7, 1.5)  # at strength 1, in scales of the first parameter
 
 
 def drawn_outside(name: str, strength: float, random: np.random.Generator) -> Effect:
     """Draw physics outside the catalogue, its first parameter about `strength` times its scale."""
-    return drawn(OUTSIDE[name], strength, random)
+    return drawn(OUTSIDE_EFFECTS[name], strength, random)
 
 
 def drawn(cls: type[Effect], strength: float, random: np.random.Generator) -> Effect:
@@ -246,6 +246,6 @@ def drawn(cls: type[Effect], strength: float, random: np.random.Generator) -> Ef
         random: from which values are drawn.
     """
     first, *others = cls.parameters
-    values = {first.name: float(random.uniform(*SIZES)) * strength * first.scale}
+    values = {first.name: float(random.uniform(*SIZE_RANGE)) * strength * first.scale}
     values |= {p.name: p.default + float(random.uniform(-1, 1)) * p.scale for p in others}
     return cls(**{k: float(f"{v:.4g}") for k, v in values.items()})

@@ -9,16 +9,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.stats import binom, binomtest
 
-from rovsim.benchmarks.blind.calibration import EXPECTED
+from rovsim.benchmarks.blind.calibration import MIN_BIN_VALUES
 from rovsim.reporting.figures.legends import explain_empty, note
 from rovsim.reporting.figures.style import save, sheet, styled
 from rovsim.results.blind_benchmark import BlindSummary, Calibration, Ranks
 
 RANKS, RELIABILITY = "blind_ranks", "blind_reliability"
-COLUMNS, ROW = 5, 24  # panels beside each other, mm
-CHANCE = 0.99  # of an honest histogram's bars lie inside the band
+COLUMNS, ROW_HEIGHT_MM = 5, 24  # panels beside each other, mm
+BAND_PROBABILITY = 0.99  # of an honest histogram's bars lie inside the band
 BAR, BAND, LINE = "#0072B2", "#dddddd", "#D55E00"
-CERTAIN = 1e-4  # least distance from one at which a probability is drawn
+MIN_DOUBT = 1e-4  # least distance from one at which a probability is drawn
 
 
 def write_pictures(page: Path, results: BlindSummary) -> list[str]:
@@ -39,36 +39,36 @@ def write_pictures(page: Path, results: BlindSummary) -> list[str]:
 
 
 @styled()
-def draw_ranks(found: Calibration) -> Figure:
+def draw_ranks(calibration: Calibration) -> Figure:
     """Draw a rank histogram of all values together, and of each parameter with enough values."""
-    by_name = {"all": found.ranks} | _with_enough(found.parameters)
+    by_name = {"all": calibration.ranks} | _with_enough(calibration.parameters)
     rows = ceil(len(by_name) / COLUMNS)
-    figure = sheet(14 + ROW * rows)
+    figure = sheet(14 + ROW_HEIGHT_MM * rows)
     panels = figure.subplots(rows, COLUMNS, sharex=True, squeeze=False).ravel()
     for axes, (name, ranks) in zip(panels, by_name.items(), strict=False):
         _histogram(axes, name, ranks)
     for axes in panels[len(by_name) :]:
         axes.set_axis_off()
-    omitted = len(found.parameters) - len(by_name) + 1
+    omitted = len(calibration.parameters) - len(by_name) + 1
     note(
         figure,
         [
             "Rank of the truth, Φ((truth − value) / std), and how many values have it.",
-            f"Grey: {100 * CHANCE:.0f} % of the bars of honest intervals lie there.",
-            f"{omitted} parameters have fewer than {2 * EXPECTED} values." if omitted else "",
+            f"Grey: {100 * BAND_PROBABILITY:.0f} % of the bars of honest intervals lie there.",
+            f"{omitted} parameters have fewer than {2 * MIN_BIN_VALUES} values." if omitted else "",
         ],
     )
     return figure
 
 
 def _with_enough(parameters: Mapping[str, Ranks]) -> dict[str, Ranks]:
-    return {name: r for name, r in parameters.items() if r.values >= 2 * EXPECTED}
+    return {name: r for name, r in parameters.items() if r.values >= 2 * MIN_BIN_VALUES}
 
 
 def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
     """Draw the number of values in each bin, over the band in which honest ones lie."""
     bins = len(ranks.counts)
-    low, high = binom.interval(CHANCE, ranks.values, 1.0 / bins)
+    low, high = binom.interval(BAND_PROBABILITY, ranks.values, 1.0 / bins)
     axes.axhspan(low, high, color=BAND, zorder=0)
     axes.bar((np.arange(bins) + 0.5) / bins, ranks.counts, width=0.8 / bins, color=BAR)
     effect, _, parameter = name.partition(".")
@@ -82,13 +82,13 @@ def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
 
 
 @styled()
-def draw_reliability(found: Calibration) -> Figure:
+def draw_reliability(calibration: Calibration) -> Figure:
     """Draw the share of right names against their claimed probability, with 95 % intervals."""
     figure = sheet(75)
     axes = figure.subplots()
     # distance from one, in which 0.99 and 0.999 are far apart
-    doubts = np.array([max(1.0 - (c.claimed or 0.0), CERTAIN) for c in found.probability])
-    for doubt, bin_ in zip(doubts, found.probability, strict=True):
+    doubts = np.array([max(1.0 - (c.claimed or 0.0), MIN_DOUBT) for c in calibration.probability])
+    for doubt, bin_ in zip(doubts, calibration.probability, strict=True):
         interval = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")
         share = bin_.right / bin_.names
         axes.plot([doubt] * 2, [interval.low, interval.high], color=BAR, linewidth=1.2)
@@ -102,11 +102,11 @@ def draw_reliability(found: Calibration) -> Figure:
             ha="right",
             va="top",
         )
-    honest = np.geomspace(CERTAIN, 1.0, 100)
+    honest = np.geomspace(MIN_DOUBT, 1.0, 100)
     axes.plot(honest, 1.0 - honest, color=LINE, label="honest")
     axes.set_xscale("log")
-    axes.set_xlim(2.0, 0.7 * CERTAIN)
-    ticks = {0.5: "0.5", 0.1: "0.9", 0.01: "0.99", 1e-3: "0.999", CERTAIN: "above"}
+    axes.set_xlim(2.0, 0.7 * MIN_DOUBT)
+    ticks = {0.5: "0.5", 0.1: "0.9", 0.01: "0.99", 1e-3: "0.999", MIN_DOUBT: "above"}
     axes.set_xticks(list(ticks), list(ticks.values()))
     axes.set_xticks([], minor=True)
     axes.set(
@@ -114,6 +114,6 @@ def draw_reliability(found: Calibration) -> Figure:
     )
     axes.set_ylim(0.0, 1.05)
     axes.legend(loc="lower right")
-    if not found.probability:
+    if not calibration.probability:
         explain_empty(axes, "no name had a probability")
     return figure

@@ -40,10 +40,10 @@ class Recipe:
     weak: bool = True
 
 
-TRANSLATION, LEVEL = ("surge", "sway", "heave"), ("surge", "sway")
-PLACE: Mapping[str, Range] = {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "z": (-0.15, 0.15)}
-NARROW = {"tank": {"x": (0.0, 4.2), "y": (0.0, 3.2), "z": (0.0, 3.0)}}  # a walled test basin
-SHALLOW = {"tank": {"x": (0.0, 10.0), "y": (0.0, 5.0), "z": (0.0, 2.0)}}
+TRANSLATION_AXES, HORIZONTAL_AXES = ("surge", "sway", "heave"), ("surge", "sway")
+PLACE_RANGES: Mapping[str, Range] = {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "z": (-0.15, 0.15)}
+NARROW_TANK = {"tank": {"x": (0.0, 4.2), "y": (0.0, 3.2), "z": (0.0, 3.0)}}  # a walled test basin
+SHALLOW_TANK = {"tank": {"x": (0.0, 10.0), "y": (0.0, 5.0), "z": (0.0, 2.0)}}
 
 
 def _each(*names: str) -> tuple[tuple[str, ...], ...]:
@@ -53,18 +53,20 @@ def _each(*names: str) -> tuple[tuple[str, ...], ...]:
 RECIPES: Mapping[str, Recipe] = {
     "net_buoyancy": Recipe(_each("force"), (0.75, 1.5)),
     "buoyancy_center": Recipe(_each("x", "y", "z"), (0.6, 1.8)),
-    "payload": Recipe(_each("mass"), (0.6, 1.6), 1, PLACE),
-    "constant_wrench": Recipe((*_each(*TRANSLATION, "pitch", "yaw"), LEVEL), (0.6, 1.5)),
-    "linear_damping": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (0.8, 2.0), 1),
-    "quadratic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (1.5, 3.0), 1),
-    "cubic_damping": Recipe((*_each(*TRANSLATION), LEVEL), (6.0, 12.0), 1),
-    "dry_friction": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (2.0, 4.0), 1),
+    "payload": Recipe(_each("mass"), (0.6, 1.6), 1, PLACE_RANGES),
+    "constant_wrench": Recipe(
+        (*_each(*TRANSLATION_AXES, "pitch", "yaw"), HORIZONTAL_AXES), (0.6, 1.5)
+    ),
+    "linear_damping": Recipe((*_each(*TRANSLATION_AXES, "yaw"), HORIZONTAL_AXES), (0.8, 2.0), 1),
+    "quadratic_damping": Recipe((*_each(*TRANSLATION_AXES), HORIZONTAL_AXES), (1.5, 3.0), 1),
+    "cubic_damping": Recipe((*_each(*TRANSLATION_AXES), HORIZONTAL_AXES), (6.0, 12.0), 1),
+    "dry_friction": Recipe((*_each(*TRANSLATION_AXES, "yaw"), HORIZONTAL_AXES), (2.0, 4.0), 1),
     "coupled_damping": Recipe(
         _each("yaw_from_sway", "pitch_from_surge", "roll_from_sway", "sway_from_yaw_quadratic")
         + _each("pitch_from_heave", "yaw_from_sway_quadratic", "pitch_from_surge_quadratic"),
         (2.0, 5.0),
     ),
-    "added_mass": Recipe((*_each(*TRANSLATION, "yaw"), LEVEL), (0.8, 2.0), 1),
+    "added_mass": Recipe((*_each(*TRANSLATION_AXES, "yaw"), HORIZONTAL_AXES), (0.8, 2.0), 1),
     "added_mass_coupling": Recipe(_each("surge_pitch", "sway_roll", "sway_yaw"), (2.0, 4.0)),
     "lift": Recipe(_each("coefficient"), (1.5, 3.0), 1),
     "fluid_memory": Recipe(_each("coefficient"), (2.0, 5.0), 1, {"time_constant": (0.3, 1.5)}),
@@ -77,8 +79,8 @@ RECIPES: Mapping[str, Recipe] = {
         {"slack_length": (0.3, 1.0), "anchor_x": (3, 7), "anchor_y": (1, 4), "anchor_z": (3, 3)},
     ),
     "tether_drag": Recipe(_each("coefficient"), (5.0, 10.0), 1),
-    "wall_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=NARROW),
-    "surface_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=SHALLOW),
+    "wall_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=NARROW_TANK),
+    "surface_proximity": Recipe(_each("gain"), (3.0, 6.0), 1, tank=SHALLOW_TANK),
     "thruster_lag": Recipe(_each("time_constant"), (1.0, 2.5), 1),
     "input_delay": Recipe(_each("delay"), (1.5, 4.0), 1),
     "clock_drift": Recipe(_each("rate"), (1.0, 3.0)),

@@ -20,11 +20,11 @@ from rovsim.dynamics.effect_entry import EffectEntry, Value
 
 Sizes = Mapping[str, tuple[float, float]]  # of parameters, least and most
 Hidden = tuple[str, Sizes]
-CASES = 8  # of each kind
+CASES_PER_KIND = 8
 
-SHIP = str(Path(__file__).parent / "vehicles" / "azimuth_ship.yaml")
+SHIP_FILE = str(Path(__file__).parent / "vehicles" / "azimuth_ship.yaml")
 # An autopilot's attitude is good to 0.2 degrees, its pressure sensor to a centimetre.
-ATTITUDE = {"rate": 10.0, "noise": 0.003}
+ATTITUDE_SENSOR = {"rate": 10.0, "noise": 0.003}
 LAG: Hidden = ("thruster_lag", {"time_constant": (0.1, 0.25)})
 DELAY: Hidden = ("input_delay", {"delay": (0.1, 0.25)})
 CURRENT: Hidden = ("current", {"north": (0.04, 0.1), "east": (0.04, 0.1)})
@@ -72,7 +72,7 @@ KINDS: Mapping[str, Kind] = {
         {
             "runs": _runs("3dof"),
             "log": {"kind": "demand"},
-            "sensors": {"depth": {"rate": 3.0, "noise": 0.01}, "attitude": ATTITUDE},
+            "sensors": {"depth": {"rate": 3.0, "noise": 0.01}, "attitude": ATTITUDE_SENSOR},
         },
         (
             BUOYANCY,
@@ -89,7 +89,7 @@ KINDS: Mapping[str, Kind] = {
             "runs": _runs(),
             "sensors": {
                 "rates": {"rate": 200.0, "noise": 0.01},
-                "attitude": ATTITUDE,
+                "attitude": ATTITUDE_SENSOR,
                 "depth": {"rate": 5.0, "noise": 0.01},
             },
         },
@@ -106,7 +106,7 @@ KINDS: Mapping[str, Kind] = {
     "ship": Kind(
         {
             "runs": _runs(),
-            "vehicle": SHIP,
+            "vehicle": SHIP_FILE,
             "duration": 120.0,
             "tank": {"x": (0.0, 40.0), "y": (0.0, 40.0), "z": (0.0, 3.0)},
             "turbulence": {"force": 0.05, "moment": 0.02},
@@ -163,7 +163,7 @@ KINDS: Mapping[str, Kind] = {
 def recordings(seeds: Range) -> Iterator[Case]:
     """Yield eight cases of each kind: what it can show, what it cannot, nothing, and over again."""
     for kind in KINDS:
-        yield from (recording(kind, k, seeds) for k in range(CASES))
+        yield from (recording(kind, k, seeds) for k in range(CASES_PER_KIND))
 
 
 def recording(kind: str, k: int, seeds: Range) -> Case:

@@ -21,8 +21,9 @@ from rovsim.dynamics.vehicle import default_vehicle, vehicle_file
 from rovsim.results.bands import Bands
 from rovsim.results.diagnosis import Answer, Diagnosis
 
-FLIGHT = "rovsim.benchmarks.blind.flight"
-_ASIDE = {"tank": (), "independent": ("independent",)}  # subfolder of the answers, by simulator
+FLIGHT_MODULE = "rovsim.benchmarks.blind.flight"
+# subfolder of the answers, by simulator
+_SUBFOLDERS = {"tank": (), "independent": ("independent",)}
 Progress = Callable[[int, int], None]
 
 
@@ -65,7 +66,7 @@ class Benchmark:
     @staticmethod
     def of(asked: BlindSettings, out: str | None) -> "Benchmark":
         """Prepare a run with some settings; `out` is results/blind unless given."""
-        folder = Path(out or Path("results/blind", *_ASIDE[asked.simulator]))
+        folder = Path(out or Path("results/blind", *_SUBFOLDERS[asked.simulator]))
         cases = [c for c in suite(asked.suite, asked.seeds) if share_of(c.id) < asked.share]
         return Benchmark(asked, folder, tuple(cases), tuple(chosen(asked.methods)))
 
@@ -117,7 +118,9 @@ def pending(
     """
     backend = SIMULATORS[simulator]
     vehicle = [vehicle_file(default_vehicle())]
-    codes = {m.name: digest(FLIGHT, *backend.code, *m.code, described=vehicle) for m in methods}
+    codes = {
+        m.name: digest(FLIGHT_MODULE, *backend.code, *m.code, described=vehicle) for m in methods
+    }
     for case in filter(backend.states, cases):
         answers = [(m, place(folder, m, case), fingerprint(case, codes[m.name])) for m in methods]
         unanswered = tuple(w for w in answers if not _answered(w[1], w[2]))
@@ -162,10 +165,10 @@ def _ask(method: Method, campaign: Path, out: Path) -> tuple[Diagnosis | Answer 
         return None, f"{type(error).__name__}: {error}"
 
 
-def _cover(method: Method, campaign: Path, found: Diagnosis | Answer | None) -> Bands | None:
-    if method.bands is None or not isinstance(found, Diagnosis):
+def _cover(method: Method, campaign: Path, diagnosis: Diagnosis | Answer | None) -> Bands | None:
+    if method.bands is None or not isinstance(diagnosis, Diagnosis):
         return None
-    return method.bands(campaign, found)
+    return method.bands(campaign, diagnosis)
 
 
 def run(jobs: Sequence[PendingCase], progress: Progress = lambda done, total: None) -> None:

@@ -32,7 +32,7 @@ Regression = Callable[[Array, Array], Array]
 
 # The best of `rovsim.benchmarks.blind.tuning`, on development seeds (docs/benchmark_blind.md).
 THRESHOLD, RIDGE = 0.17, 0.02
-LEAST_GAIN, MOST_TERMS = 0.05, 8
+MIN_GAIN, MAX_TERMS = 0.05, 8
 
 
 def stlsq(campaign: Path, out: Path) -> Answer:
@@ -42,7 +42,7 @@ def stlsq(campaign: Path, out: Path) -> Answer:
 
 def frols(campaign: Path, out: Path) -> Answer:
     """Answer with what forward regression selects; `out` is not used."""
-    return answer(of_campaign(campaign), forward(LEAST_GAIN, MOST_TERMS))
+    return answer(of_campaign(campaign), forward(MIN_GAIN, MAX_TERMS))
 
 
 def thresholded(threshold: float, ridge: float) -> Regression:

@@ -23,7 +23,7 @@ import numpy as np
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.benchmarks.blind.field import CAMERAS, camera, laboratory, workshops
 from rovsim.benchmarks.blind.laws import LAWS, drawn_law
-from rovsim.benchmarks.blind.outside import OUTSIDE, drawn_outside
+from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings
 from rovsim.core.axes import AXES
@@ -31,19 +31,19 @@ from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
 
-CALM = Camera()
-NOISY: Mapping[str, Any] = {
+USUAL_CAMERA = Camera()
+NOISY_TANK: Mapping[str, Any] = {
     "camera": {
-        "position_noise": 3 * CALM.position_noise,
-        "attitude_noise": 3 * CALM.attitude_noise,
+        "position_noise": 3 * USUAL_CAMERA.position_noise,
+        "attitude_noise": 3 * USUAL_CAMERA.attitude_noise,
     }
 }
-WEAK = (0.5, 0.25, 0.1)
-STRONG = (2.0, 4.0)
-SHORT = (30.0, 20.0)  # s
-MANY = (4, 5, 6, 7, 8)  # effects at once
-DEVIATION = (0.02, 0.05)  # of each coefficient
-DEVIATING = ("linear_damping", "quadratic_damping", "added_mass")
+WEAK_STRENGTHS = (0.5, 0.25, 0.1)
+STRONG_STRENGTHS = (2.0, 4.0)
+SHORT_FLIGHTS_S = (30.0, 20.0)
+COMBINATION_SIZES = (4, 5, 6, 7, 8)  # effects hidden at once
+DEVIATION_SHARES = (0.02, 0.05)  # of each coefficient
+DEVIATING_EFFECTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 # Effects of one family push much alike, so that two of them together have no single right answer.
 FAMILIES: tuple[frozenset[str], ...] = (
@@ -61,7 +61,7 @@ FAMILIES: tuple[frozenset[str], ...] = (
     frozenset({"onboard_control"}),
 )  # fmt: skip
 # Never combined: they need another vehicle or log, or they hide what else is wrong.
-APART = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "thruster_order"})
+NO_FAMILY = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "thruster_order"})
 
 
 def suite(name: str, seeds: Range) -> list[Case]:
@@ -74,7 +74,7 @@ def quick(seeds: Range) -> Iterator[Case]:
     for name in RECIPES:
         yield hiding("single", (name,), 0, seeds)
     yield from (nothing(k, seeds) for k in range(3))
-    yield from (outside(name, 0, seeds) for name in list(OUTSIDE)[::3])
+    yield from (outside(name, 0, seeds) for name in list(OUTSIDE_EFFECTS)[::3])
     yield from (combination(2, k, seeds) for k in range(2))
     yield combination(3, 0, seeds)
     yield deviation(0, seeds)
@@ -88,12 +88,12 @@ def standard(seeds: Range) -> Iterator[Case]:
     yield from (combination(2, k, seeds) for k in range(2, 20))
     yield from (combination(3, k, seeds) for k in range(1, 10))
     yield from (nothing(k, seeds) for k in range(3, 24))
-    yield from (outside(n, 0, seeds) for k, n in enumerate(OUTSIDE) if k % 3)
+    yield from (outside(n, 0, seeds) for k, n in enumerate(OUTSIDE_EFFECTS) if k % 3)
     for name, recipe in RECIPES.items():
         if recipe.weak:
             yield hiding("weak", (name,), 0, seeds, 0.25)
     yield from workshops(0, seeds)
-    yield from (combination(count, 0, seeds) for count in MANY)
+    yield from (combination(count, 0, seeds) for count in COMBINATION_SIZES)
     yield from (camera(kind, k, seeds) for kind in CAMERAS for k in range(4))
 
 
@@ -105,24 +105,24 @@ def full(seeds: Range) -> Iterator[Case]:
     for name, recipe in RECIPES.items():
         yield from (hiding("single", (name,), k, seeds) for k in range(6))
         if recipe.weak:
-            for strength in WEAK:
+            for strength in WEAK_STRENGTHS:
                 yield from (hiding("weak", (name,), k, seeds, strength) for k in range(4))
-        yield hiding("noisy", (name,), 0, seeds, tank=NOISY)
-        for seconds in SHORT:
+        yield hiding("noisy", (name,), 0, seeds, tank=NOISY_TANK)
+        for seconds in SHORT_FLIGHTS_S:
             yield hiding(f"short {seconds:g} s", (name,), 0, seeds, tank={"duration": seconds})
     yield from (combination(2, k, seeds) for k in range(40))
     yield from (combination(3, k, seeds) for k in range(20))
     yield from (deviation(k, seeds) for k in range(20))
     yield from (nothing(k, seeds) for k in range(24))
-    yield from (nothing(k, seeds, "none, noisy", NOISY) for k in range(6))
-    for seconds in SHORT:
+    yield from (nothing(k, seeds, "none, noisy", NOISY_TANK) for k in range(6))
+    for seconds in SHORT_FLIGHTS_S:
         yield from (
             nothing(k, seeds, f"none, {seconds:g} s", {"duration": seconds}) for k in range(5)
         )
     yield from (case for k in range(2) for case in workshops(k, seeds))
-    yield from (combination(count, k, seeds) for count in MANY for k in range(4))
+    yield from (combination(count, k, seeds) for count in COMBINATION_SIZES for k in range(4))
     yield from (camera(kind, k, seeds) for kind in CAMERAS for k in range(10))
-    for name in OUTSIDE:
+    for name in OUTSIDE_EFFECTS:
         yield from (outside(name, k, seeds) for k in range(4))
         yield outside(name, 0, seeds, beside=True)
 
@@ -186,15 +186,15 @@ def deviation(k: int, seeds: Range) -> Case:
     """
     case_id = f"deviation/{k}"
     random = random_of(case_id, seeds)
-    share = DEVIATION[k % len(DEVIATION)]
+    share = DEVIATION_SHARES[k % len(DEVIATION_SHARES)]
     water = load_vehicle(default_vehicle()).hydrodynamics
-    hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING]
+    hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING_EFFECTS]
     return Case(
         id=case_id,
         kind="deviation",
         seed=seed_of(case_id, seeds),
         hidden=tuple(hidden),
-        forgiven=DEVIATING,
+        forgiven=DEVIATING_EFFECTS,
         strength=share,
     )
 
@@ -224,15 +224,15 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
     )
 
 
-LAWLESS = ("tone", "kicks", "square_wave", "shedding", "ingress", "loose_ballast")
-EACH = 3  # cases of each law
+LAWLESS_EFFECTS = ("tone", "kicks", "square_wave", "shedding", "ingress", "loose_ballast")
+CASES_PER_LAW = 3
 
 
 def equations(seeds: Range) -> Iterator[Case]:
     """Yield laws outside the catalogue, physics that follows no law of the state, and nothing."""
-    for k in range(EACH):
+    for k in range(CASES_PER_LAW):
         yield from (law(name, k, seeds) for name in LAWS)
-    yield from (outside(name, 0, seeds) for name in LAWLESS)
+    yield from (outside(name, 0, seeds) for name in LAWLESS_EFFECTS)
     yield from (nothing(k, seeds) for k in range(4))
 
 
@@ -245,7 +245,9 @@ def strong(seeds: Range) -> Iterator[Case]:
     """Yield every effect at several times the strength that a laboratory would usually meet."""
     for name, recipe in RECIPES.items():
         if recipe.weak:
-            yield from (hiding("strong", (name,), 0, seeds, strength) for strength in STRONG)
+            yield from (
+                hiding("strong", (name,), 0, seeds, strength) for strength in STRONG_STRENGTHS
+            )
 
 
 def law(name: str, k: int, seeds: Range) -> Case:

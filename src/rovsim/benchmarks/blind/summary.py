@@ -14,8 +14,8 @@ from rovsim.benchmarks.blind.score import Score, score
 from rovsim.results.blind_benchmark import EffectRates, MethodSummary, Rates
 from rovsim.results.diagnosis import Answer, Diagnosis
 
-WORSE = 1.02  # of the nominal error: what a user would call worse; less is chance
-HALF = 0.5 - 1e-12  # one half, whichever way the mean of shares is rounded
+WORSE_RATIO = 1.02  # of the nominal error: what a user would call worse; less is chance
+HALF_SHARE = 0.5 - 1e-12  # one half, whichever way the mean of shares is rounded
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def _is_worse(answer: Answer | Diagnosis) -> bool | None:
     if not isinstance(answer, Diagnosis) or answer.error.nominal is None:
         return None
     with_effects = answer.error.with_effects
-    return with_effects is None or with_effects > WORSE * answer.error.nominal
+    return with_effects is None or with_effects > WORSE_RATIO * answer.error.nominal
 
 
 def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
@@ -94,33 +94,33 @@ def summarize(answers: Sequence[KeptAnswer]) -> MethodSummary:
 
 
 def _grouped(
-    found: Sequence[ScoredCase], key: Callable[[ScoredCase], str]
+    cases: Sequence[ScoredCase], key: Callable[[ScoredCase], str]
 ) -> Iterable[tuple[str, list[ScoredCase]]]:
     """Group cases; groups are in the order of their first member."""
     groups: dict[str, list[ScoredCase]] = {}
-    for judged in found:
+    for judged in cases:
         groups.setdefault(key(judged), []).append(judged)
     return groups.items()
 
 
-def _by_effect(found: Sequence[ScoredCase]) -> Iterable[tuple[str, list[ScoredCase]]]:
+def _by_effect(cases: Sequence[ScoredCase]) -> Iterable[tuple[str, list[ScoredCase]]]:
     """Group by effect the cases that hide one effect alone, with usual noise and length."""
-    single = [j for j in found if j.case.kind.split()[0] in ("single", "weak")]
+    single = [j for j in cases if j.case.kind.split()[0] in ("single", "weak")]
     return _grouped(single, lambda j: j.case.hidden[0].effect)
 
 
-def rate(found: Sequence[ScoredCase]) -> Rates:
+def rate(cases: Sequence[ScoredCase]) -> Rates:
     """Return the shares of cases in which answers are right.
 
     A crash is wrong in every respect, except that it names nothing false.
     """
-    scores = [j.score for j in found]
-    of_names = [s for j, s in zip(found, scores, strict=True) if j.case.names]
+    scores = [j.score for j in cases]
+    of_names = [s for j, s in zip(cases, scores, strict=True) if j.case.names]
     parameters = [p for s in scores if s for p in s.parameters]
     errors = [p.error for p in parameters]
-    cpu_seconds = [j.cpu_seconds for j in found if j.cpu_seconds is not None]
+    cpu_seconds = [j.cpu_seconds for j in cases if j.cpu_seconds is not None]
     return Rates(
-        cases=len(found),
+        cases=len(cases),
         verdict=share([bool(s and s.verdict) for s in scores]),
         first_strict=share([bool(s and s.first_strict) for s in of_names]),
         first=share([bool(s and s.first) for s in of_names]),
@@ -131,10 +131,10 @@ def rate(found: Sequence[ScoredCase]) -> Rates:
         false_names=share([bool(s and s.false) for s in scores]),
         unexplained=share([bool(s and s.flagged) for s in scores]),
         alike=_mean([s.alike for s in scores if s]),
-        redrawn=share([j.redrawn for j in found]),
-        worse=share([j.worse for j in found if j.worse is not None]),
-        seconds=_quantile([j.seconds for j in found], 0.5),
-        seconds_95=_quantile([j.seconds for j in found], 0.95),
+        redrawn=share([j.redrawn for j in cases]),
+        worse=share([j.worse for j in cases if j.worse is not None]),
+        seconds=_quantile([j.seconds for j in cases], 0.5),
+        seconds_95=_quantile([j.seconds for j in cases], 0.95),
         cpu_seconds=_quantile(cpu_seconds, 0.5),
         cpu_seconds_95=_quantile(cpu_seconds, 0.95),
         parameters=len(errors),
@@ -157,41 +157,41 @@ def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if values else None
 
 
-def _rate_effect(found: Sequence[ScoredCase]) -> EffectRates:
+def _rate_effect(cases: Sequence[ScoredCase]) -> EffectRates:
     """Rate the cases that hide one effect alone, and find its detection limit.
 
     The rates are those at strength 1.
     """
-    full = [j for j in found if j.case.kind == "single"]
-    first_right = [(j.case.strength, bool(j.score and j.score.first)) for j in found]
+    full = [j for j in cases if j.case.kind == "single"]
+    first_right = [(j.case.strength, bool(j.score and j.score.first)) for j in cases]
     wrong_answers = {j.first or j.verdict for j in full if not (j.score and j.score.first)}
     return EffectRates(
         **dict(rate(full)), limit=detection_limit(first_right), instead=tuple(sorted(wrong_answers))
     )
 
 
-def detection_limit(found: Sequence[tuple[float, bool]]) -> float | None:
+def detection_limit(outcomes: Sequence[tuple[float, bool]]) -> float | None:
     """Return the strength at which half of the cases are named right.
 
     That is where an isotonic fit to the shares by strength passes one half, interpolated in the
     logarithm of the strength.
 
     Args:
-        found: strength of each case, and whether the effect was named.
+        outcomes: strength of each case, and whether the effect was named.
 
     Returns:
         The strength; the lowest tried if half are named even there. None if fewer than half are
         named at the highest, or if only one strength was tried.
     """
-    strengths = np.array(sorted({s for s, _ in found}))
+    strengths = np.array(sorted({s for s, _ in outcomes}))
     if len(strengths) < 2:
         return None
-    counts = np.array([[sum(s == x for s, _ in found)] for x in strengths], dtype=float).ravel()
-    shares = np.array([np.mean([ok for s, ok in found if s == x]) for x in strengths])
+    counts = np.array([[sum(s == x for s, _ in outcomes)] for x in strengths], dtype=float).ravel()
+    shares = np.array([np.mean([ok for s, ok in outcomes if s == x]) for x in strengths])
     fit = isotonic_regression(shares, weights=counts).x  # the nearest shares that never fall
-    if fit[-1] < HALF:
+    if fit[-1] < HALF_SHARE:
         return None
-    k = int(np.argmax(fit >= HALF))
+    k = int(np.argmax(fit >= HALF_SHARE))
     if k == 0:
         return float(strengths[0])
     fraction = (0.5 - fit[k - 1]) / (fit[k] - fit[k - 1])

@@ -2,7 +2,7 @@
 
 from typing import Mapping, Sequence
 
-from rovsim.benchmarks.blind.case import SEEDS
+from rovsim.benchmarks.blind.case import SEED_RANGES
 from rovsim.benchmarks.blind.pictures import RANKS, RELIABILITY
 from rovsim.core.schema import Section
 from rovsim.reporting.pages import marked
@@ -45,7 +45,7 @@ BAND_COLUMNS = {
     "high": "in 5 % more than",
 }
 OUTSIDE_COLUMNS = {"cases": "cases", "verdict": "flagged", "false_names": "a false name"}
-PERCENT = {"inside", "low", "high", "verdict", "first", "exact_strict", "exact", "unseen",
+PERCENT_COLUMNS = {"inside", "low", "high", "verdict", "first", "exact_strict", "exact", "unseen",
            "false_names",
            "unexplained", "proposed", "right", "half",
            "error_median", "error_95", "coverage", "worse", "covered", "p_value"}  # fmt: skip
@@ -57,10 +57,11 @@ RANK_COLUMNS = {
     "counts": "ranks",
     "said": "intervals are",
 }
-_FLOWN = {"tank": "tank", "independent": "independent simulator"}
-UNLIKELY = 0.01  # p-value of a rank histogram, below which intervals are not called honest
-RARE = 0.001  # p-values below are all written as below this
-NEARLY = 0.1  # of the width of an interval: less is of the right width
+_SIMULATOR_NAMES = {"tank": "tank", "independent": "independent simulator"}
+# p-value of a rank histogram, below which intervals are not called honest
+MIN_HONEST_P_VALUE = 0.01
+MIN_PRINTED_P_VALUE = 0.001  # p-values below are all written as below this
+WIDTH_TOLERANCE = 0.1  # of the width of an interval: less is of the right width
 CAPTIONS = {
     RANKS: "Rank histograms: where the truth lies in what was said of each parameter",
     RELIABILITY: "Reliability: share of right names against the probability that was claimed",
@@ -69,11 +70,11 @@ CAPTIONS = {
 
 def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
     """Write a summary as Markdown, with those of the page's pictures that were drawn."""
-    first, last = SEEDS[results.seeds]
+    first, last = SEED_RANGES[results.seeds]
     share = "" if results.share == 1.0 else f" SHARE={results.share:g}"
     parts = [
         f"Made by `make benchmark-blind SUITE={results.suite}{share}`; {results.seeds} seeds "
-        f"{first} to {last}; flown in the {_FLOWN[results.simulator]}.",
+        f"{first} to {last}; flown in the {_SIMULATOR_NAMES[results.simulator]}.",
     ]
     for name, summary in results.methods.items():
         parts += [f"### {name}", table(summary.kinds, "cases of", KIND_COLUMNS)]
@@ -85,19 +86,23 @@ def write_markdown(results: BlindSummary, pictures: Sequence[str] = ()) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _calibration(found: Calibration, pictures: Sequence[str]) -> list[str]:
+def _calibration(calibration: Calibration, pictures: Sequence[str]) -> list[str]:
     """Write whether intervals and probabilities are honest; nothing without intervals."""
-    if not found.ranks.values:
+    if not calibration.ranks.values:
         return []
     images = {name: f"![{CAPTIONS[name]}](images/{name}.png)" for name in pictures}
     parts = ["**Are intervals honest?** All kinds of cases together."]
-    parts += [_table_ranks({"all": found.ranks} | found.effects, "effect")]
-    parts += ["Parameter by parameter:", _table_ranks(found.parameters, "parameter")]
+    parts += [_table_ranks({"all": calibration.ranks} | calibration.effects, "effect")]
+    parts += ["Parameter by parameter:", _table_ranks(calibration.parameters, "parameter")]
     parts += [images.get(RANKS, "")]
-    parts += ["**Are probabilities honest?**", _table_claims(found), images.get(RELIABILITY, "")]
-    if found.bands:
+    parts += [
+        "**Are probabilities honest?**",
+        _table_claims(calibration),
+        images.get(RELIABILITY, ""),
+    ]
+    if calibration.bands:
         parts += ["**Do bands hold?** 90 % of the measured velocities should lie inside."]
-        parts += [table(found.bands, "s after a start", BAND_COLUMNS)]
+        parts += [table(calibration.bands, "s after a start", BAND_COLUMNS)]
     return parts
 
 
@@ -111,16 +116,16 @@ def _say(ranks: Ranks) -> str:
     """Say in a word whether intervals are honest."""
     if ranks.p_value is None or ranks.stretch is None:
         return "–"
-    if ranks.p_value > UNLIKELY:
+    if ranks.p_value > MIN_HONEST_P_VALUE:
         return "honest, as far as can be seen"
-    if abs(ranks.stretch - 1.0) < NEARLY:
+    if abs(ranks.stretch - 1.0) < WIDTH_TOLERANCE:
         return "of the right width, but uneven"
     return "too narrow" if ranks.stretch > 1.0 else "too wide"
 
 
-def _table_claims(found: Calibration) -> str:
-    rows = [[f"{c.low:g} to {c.high:g}", *_share_right(c)] for c in found.probability]
-    rows += [["none", *_share_right(found.without_probability)]]
+def _table_claims(calibration: Calibration) -> str:
+    rows = [[f"{c.low:g} to {c.high:g}", *_share_right(c)] for c in calibration.probability]
+    rows += [["none", *_share_right(calibration.without_probability)]]
     return marked.table(["probability", "claimed, mean", "names", "right"], rows)
 
 
@@ -153,8 +158,8 @@ def shown(key: str, value: float | Sequence[str] | Sequence[int] | None) -> str:
         return ", ".join(str(v) for v in value)
     if isinstance(value, int):
         return str(value)
-    if key == "p_value" and value < RARE:
-        return f"below {100 * RARE:.1f} %"
-    if key in PERCENT:
+    if key == "p_value" and value < MIN_PRINTED_P_VALUE:
+        return f"below {100 * MIN_PRINTED_P_VALUE:.1f} %"
+    if key in PERCENT_COLUMNS:
         return f"{100 * value:.0f} %" if value >= 0.1 or value == 0 else f"{100 * value:.1f} %"
     return f"{value:.3g}"

@@ -14,28 +14,28 @@ from rovsim.dynamics.learned.residual import Residual
 from rovsim.evaluation.latency import time_calls
 from rovsim.results.timing import Accuracy, RemainingRms
 
-SEEN, UNSEEN = "3dof", "6dof"
-CALLS = 2_000
+SEEN_CONTROL, UNSEEN_CONTROL = "3dof", "6dof"
+TIMED_CALLS = 2_000
 
 
 def measure_accuracy(pairs: Pairs) -> tuple[Accuracy, ...]:
     """Measure cost (us a prediction) and share of the residual left, for each way to learn."""
-    train = pairs.of(SEEN)
+    train = pairs.of(SEEN_CONTROL)
     return tuple(
         Accuracy(
             name=name,
             points=residual.points,
             fades=fades,
             median_us=_cost(residual, pairs),
-            seen=measure_left(residual, pairs, SEEN),
-            unseen=measure_left(residual, pairs, UNSEEN),
+            seen=measure_left(residual, pairs, SEEN_CONTROL),
+            unseen=measure_left(residual, pairs, UNSEEN_CONTROL),
         )
         for name, fades, residual in _ways(train)
     )
 
 
 def _cost(residual: Residual, pairs: Pairs) -> float:
-    latency = time_calls(ours(residual), pairs.queries, CALLS, 200, points=residual.points)
+    latency = time_calls(ours(residual), pairs.queries, TIMED_CALLS, 200, points=residual.points)
     return latency.median_us
 
 

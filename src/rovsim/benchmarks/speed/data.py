@@ -13,8 +13,8 @@ from rovsim.learning.export import Kernel, export_expansion, export_neighbours
 from rovsim.learning.learner import learner_settings, train
 from rovsim.learning.scaling import fit_scaling
 
-SEED = 5  # of the rows that are drawn
-NEIGHBOURS = 5
+DRAW_SEED = 5  # of the rows that are drawn
+NEIGHBOUR_COUNT = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Pairs:
 
     def drawn(self) -> "Pairs":
         """Shuffle the train rows."""
-        order = np.random.default_rng(SEED).permutation(len(self.X))
+        order = np.random.default_rng(DRAW_SEED).permutation(len(self.X))
         return replace(self, X=self.X[order], Y=self.Y[order], control=self.control[order])
 
     def first(self, rows: int) -> "Pairs":
@@ -66,14 +66,14 @@ class Pairs:
         scaling = fit_scaling("standard", X)
         Z = scaling.apply(X)
         if kind == "knn":
-            return export_neighbours(features, scaling, Z, Y, NEIGHBOURS, "distance")
+            return export_neighbours(features, scaling, Z, Y, NEIGHBOUR_COUNT, "distance")
         kernel = Kernel(Z, np.full(Z.shape[1], 5.0), Y)
         return export_expansion(features, scaling, np.zeros(outputs), [kernel])
 
 
 def fitted(kind: str, pairs: Pairs, **more: Any) -> Residual:
     """Train a residual of a kind, with these settings of its learner."""
-    settings = {"k": NEIGHBOURS, **more} if kind == "knn" else more
+    settings = {"k": NEIGHBOUR_COUNT, **more} if kind == "knn" else more
     learner = learner_settings({"kind": kind, **settings})
     return train(pairs.X, pairs.Y, learner, seed=0, control="6dof")
 

@@ -17,11 +17,11 @@ from rovsim.evaluation.latency import time_calls
 from rovsim.learning.learner import library_of
 from rovsim.results.timing import Latency
 
-BUSY = 100  # us: about the time of the slowest of our ways to predict
-CHECKED = 500  # queries whose predictions are compared
+BUSY_US = 100  # about the time of the slowest of our ways to predict
+MAX_COMPARED_QUERIES = 500  # queries whose predictions are compared
 # Takes the latencies so far, and how the process was scheduled.
 Tell = Callable[[dict[str, Latency], str], None]
-GP = {"kernel": "shared"}  # all else as in `conf/residual/gp.yaml`
+GP_SETTINGS = {"kernel": "shared"}  # all else as in `conf/residual/gp.yaml`
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,12 @@ class Stopwatch:
         effort: how much is measured.
         scheduling: how the process was scheduled.
         tell: called with the results so far and the scheduling, after each way to predict.
-        found: latencies by `name@points`.
+        latencies: latencies by `name@points`.
     """
 
     def __init__(self, pairs: Pairs, effort: Effort, tell: Tell = lambda *_: None) -> None:
         self.pairs, self.effort, self.scheduling, self.tell = pairs, effort, "", tell
-        self.found: dict[str, Latency] = {}
+        self.latencies: dict[str, Latency] = {}
 
     def time(self, name: str, call: Callable, points: int, seconds: float) -> Latency:
         """Time one way to predict, and keep the latency under `name@points`.
@@ -76,10 +76,10 @@ class Stopwatch:
                 points=points,
                 seconds=seconds,
             )
-        self.found[f"{name}@{points}"] = stats
+        self.latencies[f"{name}@{points}"] = stats
         times = f"{stats.median_us:12.1f} us median {stats.p999_us:12.1f} us p99.9"
         print(f"{name}@{points}".ljust(36), times, flush=True)
-        self.tell(self.found, self.scheduling)
+        self.tell(self.latencies, self.scheduling)
         return stats
 
     def beside(
@@ -95,7 +95,7 @@ class Stopwatch:
             seconds: longest time for each library.
         """
         stats = self.time(name, own, points, 60.0)
-        queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // CHECKED)]
+        queries = self.pairs.queries[:: max(1, len(self.pairs.queries) // MAX_COMPARED_QUERIES)]
         first_queries = queries[:3]  # a library may take seconds a call
         differences, speedups = {}, {}
         for other, call in theirs.items():
@@ -106,7 +106,7 @@ class Stopwatch:
         update = {"largest_difference": differences} | (
             {"times_faster": speedups} if speedups else {}
         )
-        self.found[f"{name}@{points}"] = stats.model_copy(update=update)
+        self.latencies[f"{name}@{points}"] = stats.model_copy(update=update)
 
 
 def _difference(own: Callable, call: Callable, queries: Array) -> float:
@@ -128,7 +128,7 @@ def both(residual: Residual) -> Callable:
 
 def busy(x: Array) -> Array:
     """Do nothing for as long as a prediction takes; if it is late, the machine was elsewhere."""
-    end = perf_counter_ns() + 1000 * BUSY
+    end = perf_counter_ns() + 1000 * BUSY_US
     while perf_counter_ns() < end:
         pass
     return x
@@ -149,7 +149,7 @@ def inference(
         Latencies by `name@points`, and how the process was scheduled.
     """
     stopwatch = Stopwatch(pairs, effort, tell)
-    stopwatch.time(f"nothing_for_{BUSY}_us", busy, 0, effort.seconds)
+    stopwatch.time(f"nothing_for_{BUSY_US}_us", busy, 0, effort.seconds)
     for points in (2_000, 20_000):
         time_neighbours(stopwatch, points, effort.seconds)
     time_processes(stopwatch, 2_000, effort.seconds)
@@ -161,7 +161,7 @@ def inference(
         time_processes(stopwatch, points, sweep)
     for name, call, points in _variants(pairs):
         stopwatch.beside(name, call, points, {}, sweep)
-    return stopwatch.found, stopwatch.scheduling
+    return stopwatch.latencies, stopwatch.scheduling
 
 
 def time_neighbours(stopwatch: Stopwatch, points: int, seconds: float) -> None:
@@ -176,7 +176,7 @@ def time_processes(stopwatch: Stopwatch, points: int, seconds: float) -> None:
     That is its mean, its mean and variance, and the correction that fades outside of the data.
     """
     pairs = stopwatch.pairs.first(points)
-    gp = fitted("gp", pairs, max_points=points, **GP)
+    gp = fitted("gp", pairs, max_points=points, **GP_SETTINGS)
     unfaded = unfading(gp)
     stopwatch.beside("gp_mean", ours(unfaded), points, libraries.means(unfaded), seconds)
     stopwatch.beside("gp_faded", ours(gp), points, {}, seconds)

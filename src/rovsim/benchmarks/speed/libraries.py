@@ -21,7 +21,7 @@ def neighbours(residual: Residual) -> Ways:
     from pykdtree.kdtree import KDTree
     from scipy.spatial import cKDTree
 
-    points, targets, scaling = _known(residual)
+    points, targets, scaling = _training_points(residual)
     k = residual.settings["k"]
     with_tree: dict[str, Any] = {"scipy_knn": cKDTree(points), "pykdtree_knn": KDTree(points)}
     return {
@@ -30,7 +30,7 @@ def neighbours(residual: Residual) -> Ways:
     }
 
 
-def _known(residual: Residual) -> tuple[Array, Array, Scaling]:
+def _training_points(residual: Residual) -> tuple[Array, Array, Scaling]:
     a = residual.arrays
     return a["points"], a["targets"], Scaling(a["shift"], a["scale"])
 
@@ -75,7 +75,7 @@ def _sklearn(residual: Residual) -> Predict:
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel
 
-    a, (points, targets, scaling) = residual.arrays, _known(residual)
+    a, (points, targets, scaling) = residual.arrays, _training_points(residual)
     kernel = ConstantKernel(a["outputscale"][0]) * RBF(a["lengthscale"][0])
     process = GaussianProcessRegressor(kernel, alpha=float(a["noise"][0]), optimizer=None)
     process.fit(points, targets.T - a["mean"])
@@ -88,7 +88,7 @@ def _sklearn(residual: Residual) -> Predict:
 
 
 def _numpy(residual: Residual) -> Predict:
-    a, (points, targets, scaling) = residual.arrays, _known(residual)
+    a, (points, targets, scaling) = residual.arrays, _training_points(residual)
     lengthscale, outputscale = a["lengthscale"][0], a["outputscale"][0]
     Z = points / lengthscale
     squares = (Z**2).sum(1)

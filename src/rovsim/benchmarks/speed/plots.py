@@ -20,7 +20,7 @@ from rovsim.reporting.figures.style import sheet, styled
 from rovsim.results.timing import Accuracy, Bench, Latency
 
 # One colour for us, others for the libraries
-SIZES = {
+PANEL_COLORS = {
     "neighbours, k = 5": {
         "knn": BLUE, "pykdtree_knn": GREEN, "scipy_knn": BROWN,
         "sklearn_knn": VERMILION,
@@ -40,7 +40,7 @@ COLORS = {kind: FAMILIES[kind].color for kind in ("knn", "gp", "svgp")} | {
 def draw_sizes(bench: Bench) -> Figure:
     """Draw median (line) and p99.9 (dotted, above it) against points, one panel a family."""
     figure = sheet(110)
-    for axes, (title, names) in zip(figure.subplots(1, 2), SIZES.items(), strict=True):
+    for axes, (title, names) in zip(figure.subplots(1, 2), PANEL_COLORS.items(), strict=True):
         for name, color in names.items():
             sizes = _sizes(bench.inference, name)
             for statistic, style in (("median_us", "o-"), ("p999_us", ":")):

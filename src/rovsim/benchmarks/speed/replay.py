@@ -15,7 +15,7 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.batch import Batch, Starts
 from rovsim.simulation.drive import Drive
 
-STEP = 0.01  # s
+STEP_S = 0.01
 REPEATS = 15  # the best of so many: what the machine can do when nothing else runs
 
 
@@ -32,8 +32,8 @@ def steps_per_second(model: Model, count: int, steps: int) -> float:
     """
     force = np.random.default_rng(0).uniform(-10, 10, (steps, len(model.body.directions)))
     thrust = Thrust(force, np.zeros((steps, 6)), np.full((steps, 6), np.nan))
-    drive, batch = Drive.by(model, thrust, steps * STEP), Batch([model], Site.unknown())
-    time = STEP * np.arange(steps + 1)
+    drive, batch = Drive.by(model, thrust, steps * STEP_S), Batch([model], Site.unknown())
+    time = STEP_S * np.arange(steps + 1)
     state = np.zeros((1, count, 13))
     state[..., 3] = 1.0
     starts = Starts(state, np.zeros(count, np.int64), np.full(count, steps))
@@ -82,10 +82,10 @@ def numpy_steps_per_second(model: Model) -> float:
         for f in force:
             tau = B @ f
             k1 = slope(x, tau)
-            k2 = slope(x + 0.5 * STEP * k1, tau)
-            k3 = slope(x + 0.5 * STEP * k2, tau)
-            k4 = slope(x + STEP * k3, tau)
-            x = x + STEP / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+            k2 = slope(x + 0.5 * STEP_S * k1, tau)
+            k3 = slope(x + 0.5 * STEP_S * k2, tau)
+            k4 = slope(x + STEP_S * k3, tau)
+            x = x + STEP_S / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
             x[3:7] /= np.linalg.norm(x[3:7])
 
     return steps / best(drive)

@@ -9,7 +9,7 @@ from rovsim.reporting.pages.marked import replace_tables, table
 from rovsim.reporting.wording import significant
 from rovsim.results.timing import Accuracy, Bench, Latency
 
-PLOTS = {
+PLOT_CAPTIONS = {
     "bench_sizes": "Median and 99.9th percentile of one prediction against the number of points.",
     "bench_accuracy": "Error left against cost, where it was taught and where it was not.",
 }
@@ -31,7 +31,7 @@ def write_page(path: Path, bench: Bench) -> None:
 
 def write_markdown(bench: Bench) -> str:
     """Write `bench.json` as Markdown."""
-    plots = [f"![{caption}](images/{name}.png)" for name, caption in PLOTS.items()]
+    plots = [f"![{caption}](images/{name}.png)" for name, caption in PLOT_CAPTIONS.items()]
     parts = [
         f"{bench.machine}; {bench.scheduling}.",
         "### Replay",
@@ -74,11 +74,11 @@ def _inference(inference: Mapping[str, Latency]) -> str:
     return table(head, rows)
 
 
-def _by_library(said: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
+def _by_library(numbers: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
     """Return a number that our entries have for each library, by the library's `name@points`."""
     return {
         f"{other}@{key.split('@')[1]}": value
-        for key, others in said.items()
+        for key, others in numbers.items()
         for other, value in others.items()
     }
 

@@ -19,7 +19,7 @@ from rovsim.application.settings import BenchSettings, WritingSettings
 from rovsim.apps.cli.output import say
 from rovsim.benchmarks.speed.accuracy import measure_accuracy
 from rovsim.benchmarks.speed.data import Pairs, fitted, unfading
-from rovsim.benchmarks.speed.inference import GP, Effort, inference
+from rovsim.benchmarks.speed.inference import GP_SETTINGS, Effort, inference
 from rovsim.benchmarks.speed.replay import replay_speeds
 from rovsim.benchmarks.speed.tables import write_page
 from rovsim.core.extras import require
@@ -51,7 +51,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     options = settings.bench
     pairs = _pairs(samples, FeatureSettings()).drawn()
     large = _pairs(samples, LARGE).drawn()
-    gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP)
+    gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP_SETTINGS)
     knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
     residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
     effort = Effort(options.calls, options.warmup, options.seconds)

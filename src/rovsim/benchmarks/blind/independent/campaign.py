@@ -12,14 +12,14 @@ from rovsim.benchmarks.blind.independent.exports import BODY, write_commands, wr
 from rovsim.benchmarks.blind.independent.motion import Mover, Vehicle
 from rovsim.benchmarks.blind.independent.pilot import Pilot, draw_pushes
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
-from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden, read_constants
+from rovsim.benchmarks.blind.independent.vehicle import MOCAP_TO_NED, Hidden, read_constants
 from rovsim.core.errors import BadInput
 from rovsim.core.shipped import conf_file
 from rovsim.core.yaml_files import read_yaml, write_yaml
 
 # Effects of the catalogue that this simulator has. Missing are a loop on board, whose set-points
 # the log would hold, and a current that wanders, since no observer can drift with it.
-STATED = frozenset({
+SIMULATED_EFFECTS = frozenset({
     "net_buoyancy", "buoyancy_center", "payload", "constant_wrench", "linear_damping",
     "quadratic_damping", "cubic_damping", "dry_friction", "coupled_damping", "added_mass",
     "added_mass_coupling", "lift", "fluid_memory", "current", "tether_tension", "tether_drag",
@@ -57,7 +57,7 @@ def _record(
     """Fly one run, and write its exports."""
     file = read_yaml(conf_file(f"vehicle/{settings['vehicle']}.yaml") or Path(settings["vehicle"]))
     hidden = _list_hidden(settings)
-    tank = np.sort(np.array([settings["tank"][k] for k in "xyz"]) * UPSIDE[:, None], axis=1)
+    tank = np.sort(np.array([settings["tank"][k] for k in "xyz"]) * MOCAP_TO_NED[:, None], axis=1)
     seconds, tick = float(settings["duration"]), 1.0 / settings["log"]["rate"]
     thrusters = Thrusters(file, hidden, seconds)
     flight = Flight(

@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
-from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Hidden
+from rovsim.benchmarks.blind.independent.vehicle import MOCAP_TO_NED, Hidden
 from rovsim.core.files import write_text
 
 BODY = "vehicle"
@@ -102,12 +102,12 @@ def _format(places: Array, attitudes: Rotation, random: np.random.Generator) -> 
     These are position in mm, roll, pitch and yaw in degrees, the residual, and the rotation matrix
     column by column.
     """
-    flip = np.diag(UPSIDE)
+    flip = np.diag(MOCAP_TO_NED)
     R = flip @ attitudes.as_matrix() @ flip
     yaw_pitch_roll = Rotation.from_matrix(R).as_euler("ZYX", degrees=True)
     columns = np.swapaxes(R, 1, 2).reshape(-1, 9)
     residual = random.uniform(0.2, 0.7, size=(len(places), 1))
-    return np.hstack([1000.0 * places * UPSIDE, yaw_pitch_roll[:, ::-1], residual, columns])
+    return np.hstack([1000.0 * places * MOCAP_TO_NED, yaw_pitch_roll[:, ::-1], residual, columns])
 
 
 def _header(frames: int, rate: float) -> str:

@@ -15,11 +15,18 @@ from numpy import ndarray as Array
 from scipy.integrate import DOP853
 from scipy.spatial.transform import Rotation
 
-from rovsim.benchmarks.blind.independent.pushes import ARM, Instant, Push, cross, list_pushes
+from rovsim.benchmarks.blind.independent.pushes import (
+    MEMORY_SCALE,
+    Instant,
+    Push,
+    cross,
+    list_pushes,
+)
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
 from rovsim.benchmarks.blind.independent.vehicle import Constants, Hidden, skew
 
-TOLERANCE = 1e-7  # of one step of some 20 ms, relative; a tenth of it absolute, in m, 1, kg m/s, N
+# of one step of some 20 ms, relative; a tenth of it absolute, in m, 1, kg m/s, N
+STEP_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +74,7 @@ class Mover:
         thrusters: Thrusters,
         hidden: Hidden,
         tank: Array,
-        tolerance: float = TOLERANCE,
+        tolerance: float = STEP_TOLERANCE,
     ) -> None:
         self.own, self.thrusters, self.tolerance = own, thrusters, tolerance
         self.pushes: Sequence[Push] = list_pushes(own, hidden, tank)
@@ -79,7 +86,7 @@ class Mover:
         self.lag = hidden.get("thruster_lag", {}).get("time_constant", 0.0)
         self.sags = "voltage_sag" in hidden
         wake = hidden.get("fluid_memory", {})
-        self.wake = wake.get("coefficient", 0.0) * ARM
+        self.wake = wake.get("coefficient", 0.0) * MEMORY_SCALE
         self.wake_time = wake.get("time_constant", 0.0)
         self.loss = hidden.get("advance_loss", {}).get("coefficient", 0.0)
         arm = hidden.get("propeller_torque", {}).get("ratio", 0.0)

@@ -7,18 +7,19 @@ from numpy import ndarray as Array
 
 from rovsim.benchmarks.blind.independent.motion import Vehicle
 
-SINES, SLOWEST, FASTEST = 8, 0.04, 0.7  # sines on each stick; Hz: what a hand does
+SINE_COUNT, MIN_STICK_HZ, MAX_STICK_HZ = 8, 0.04, 0.7  # sines on each stick; Hz: what a hand does
 # RMS of the sticks: demands in surge, sway, heave and yaw; angles in rad in roll and pitch
-STICKS = {
+STICK_RMS = {
     "3dof": np.array([0.15, 0.15, 0.10, 0.0, 0.0, 0.0]),
     "6dof": np.array([0.15, 0.14, 0.10, 0.25, 0.25, 0.12]),
 }
-JOURNEY = 12.0  # s from place to place
-ROOM = np.array([1.4, 1.1, 0.4])  # m about the middle, or half of what the walls leave if less
-PLACE, SPEED, TRIM = 0.2, 0.25, 0.025  # demand per m, per m/s, per m s
-UPRIGHT, RATE = 0.3, 0.12  # demand per rad, per rad/s
-MOST = 0.4  # demand of an axis
-LATE = 10  # ticks of 20 ms: the reaction time of an eye and a hand
+JOURNEY_S = 12.0  # from place to place
+# m about the middle, or half of what the walls leave if less
+MAX_ROAMING_M = np.array([1.4, 1.1, 0.4])
+PLACE_GAIN, SPEED_GAIN, TRIM_GAIN = 0.2, 0.25, 0.025  # demand per m, per m/s, per m s
+UPRIGHT_GAIN, RATE_GAIN = 0.3, 0.12  # demand per rad, per rad/s
+MAX_DEMAND = 0.4  # demand of an axis
+REACTION_TICKS = 10  # ticks of 20 ms: the reaction time of an eye and a hand
 
 
 class Pilot:
@@ -26,26 +27,26 @@ class Pilot:
 
     Attributes:
         places: (n, 3) that are headed for, one after the other, m, NED.
-        hertz: frequencies (SINES, 6) of the sticks, Hz.
-        phase: (SINES, 6) of the sticks, rad.
+        hertz: frequencies (SINE_COUNT, 6) of the sticks, Hz.
+        phase: (SINE_COUNT, 6) of the sticks, rad.
         size: amplitude (6,) of each sine.
         heading: yaw at the start, rad.
         trim: integral part (3,) of the position control.
-        seen: states so far.
+        states: states so far.
     """
 
     def __init__(
         self, control: str, tank: Array, seconds: float, random: np.random.Generator
     ) -> None:
         low, high = tank[:, 0] + 0.6, tank[:, 1] - 0.6  # m, half the vehicle and a hand's breadth
-        half = np.minimum(0.25 * (high - low), ROOM)
-        count = int(seconds / JOURNEY) + 2
+        half = np.minimum(0.25 * (high - low), MAX_ROAMING_M)
+        count = int(seconds / JOURNEY_S) + 2
         self.places = 0.5 * (low + high) + half * random.uniform(-1.0, 1.0, (count, 3))
-        self.hertz = random.uniform(SLOWEST, FASTEST, (SINES, 6))
-        self.phase = random.uniform(0.0, 2.0 * np.pi, (SINES, 6))
-        self.size = STICKS[control] * np.sqrt(2.0 / SINES)
+        self.hertz = random.uniform(MIN_STICK_HZ, MAX_STICK_HZ, (SINE_COUNT, 6))
+        self.phase = random.uniform(0.0, 2.0 * np.pi, (SINE_COUNT, 6))
+        self.size = STICK_RMS[control] * np.sqrt(2.0 / SINE_COUNT)
         self.heading = float(random.uniform(-np.pi, np.pi))
-        self.trim, self.seen = np.zeros(3), []  # type: tuple[Array, list[Vehicle]]
+        self.trim, self.states = np.zeros(3), []  # type: tuple[Array, list[Vehicle]]
 
     def begin(self, thrusters: int) -> Vehicle:
         """Return the vehicle at rest at the first place."""
@@ -55,17 +56,19 @@ class Pilot:
 
     def steer(self, t: float, now: Vehicle, tick: float) -> Array:
         """Return the demand (6,) at time t, from the present state and the states so far."""
-        self.seen.append(now)
-        delayed = self.seen[max(0, len(self.seen) - 1 - LATE)]
-        k, fraction = divmod(t / JOURNEY, 1.0)
+        self.states.append(now)
+        delayed = self.states[max(0, len(self.states) - 1 - REACTION_TICKS)]
+        k, fraction = divmod(t / JOURNEY_S, 1.0)
         goal = (1.0 - fraction) * self.places[int(k)] + fraction * self.places[int(k) + 1]
         error = goal - delayed.place
-        self.trim = np.clip(self.trim + TRIM * tick * error, -0.3, 0.3)
+        self.trim = np.clip(self.trim + TRIM_GAIN * tick * error, -0.3, 0.3)
         demand = self.size * np.sum(np.sin(2.0 * np.pi * self.hertz * t + self.phase), axis=0)
-        demand[:3] += delayed.R.T @ (PLACE * error + self.trim) - SPEED * delayed.velocity[:3]
+        demand[:3] += (
+            delayed.R.T @ (PLACE_GAIN * error + self.trim) - SPEED_GAIN * delayed.velocity[:3]
+        )
         tilt = [np.arctan2(now.R[2, 1], now.R[2, 2]), -np.arcsin(np.clip(now.R[2, 0], -1.0, 1.0))]
-        demand[3:5] = UPRIGHT * (demand[3:5] - tilt) - RATE * now.velocity[3:5]
-        return np.clip(demand, -MOST, MOST)
+        demand[3:5] = UPRIGHT_GAIN * (demand[3:5] - tilt) - RATE_GAIN * now.velocity[3:5]
+        return np.clip(demand, -MAX_DEMAND, MAX_DEMAND)
 
 
 def draw_pushes(

@@ -10,11 +10,12 @@ from typing import Callable, Mapping
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.benchmarks.blind.independent.vehicle import UPSIDE, Constants, Hidden
+from rovsim.benchmarks.blind.independent.vehicle import MOCAP_TO_NED, Constants, Hidden
 
 Given = Mapping[str, float]
-CREEP = 0.01  # m/s, rad/s: within it dry friction has its sign (docs/catalogue.md)
-ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  # 1 and kappa, m2, of fluid_memory (catalogue.md)
+FRICTION_SPEED = 0.01  # m/s, rad/s: within it dry friction has its sign (docs/catalogue.md)
+# 1 and kappa, m2, of fluid_memory (catalogue.md)
+MEMORY_SCALE = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +77,8 @@ def _near(hidden: Hidden, tank: Array, place: Array) -> float:
 
 
 def friction(given: Given, at: Instant) -> Array:
-    """Return dry friction, -c tanh(v / CREEP) on each axis."""
-    return -_axes(given) * np.tanh(at.v / CREEP)
+    """Return dry friction, -c tanh(v / FRICTION_SPEED) on each axis."""
+    return -_axes(given) * np.tanh(at.v / FRICTION_SPEED)
 
 
 def trim(given: Given, at: Instant) -> Array:
@@ -103,7 +104,7 @@ def pull(given: Given, at: Instant) -> Array:
 def tow(given: Given, tank: Array, at: Instant) -> Array:
     """Return the drag of a wet tether in tow, which grows with the distance to its anchor."""
     middle = np.array([*tank[:2].mean(axis=1), tank[2, 0]])
-    reach = _anchor(given, UPSIDE * middle) - at.place
+    reach = _anchor(given, MOCAP_TO_NED * middle) - at.place
     v = at.v[:3]
     size = given["coefficient"] * np.sqrt(reach @ reach) * np.sqrt(v @ v)
     return _hung(-size * v, _attachment(given))
@@ -132,7 +133,7 @@ def _attachment(given: Given) -> Array:
 def _anchor(given: Given, otherwise: Array) -> Array:
     """Return where the anchor is (3,), m, NED; parameters and `otherwise` are in MoCap axes."""
     anchor = [given.get(f"anchor_{k}", v) for k, v in zip("xyz", otherwise, strict=True)]
-    return UPSIDE * np.array(anchor)
+    return MOCAP_TO_NED * np.array(anchor)
 
 
 def _hung(force: Array, place: Array) -> Array:

@@ -10,7 +10,7 @@ from rovsim.core.axes import AXES
 
 Hidden = Mapping[str, Mapping[str, float]]  # values by effect and parameter
 
-UPSIDE = np.array([1.0, -1.0, -1.0])  # between MoCap axes (z up) and NED, either way
+MOCAP_TO_NED = np.array([1.0, -1.0, -1.0])  # between MoCap axes (z up) and NED, either way
 
 
 @dataclass(frozen=True, eq=False)
