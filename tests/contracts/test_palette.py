@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 
 from rovsim.benchmarks.speed import plots
 from rovsim.reporting.figures import budget
-from rovsim.reporting.figures.palette import FAMILIES, LEAST, contrast, looks
+from rovsim.reporting.figures.palette import FAMILIES, MIN_CONTRAST, contrast, looks
 
 MODELS = ("nominal", "refitted", "repaired", "new", "third", "fourth", "fifth", "knn_3dof",
           "knn_6dof", "effects+knn_6dof", "gp_6dof", "svgp_6dof", "zero_acceleration")  # fmt: skip
@@ -64,26 +64,28 @@ def on_the_dark_page(color):
 @pytest.mark.parametrize("name", MODELS)
 def test_a_curve_can_be_seen_on_white_and_on_the_dark_page(name):
     color = looks(MODELS)[name].color
-    assert contrast(color) >= LEAST
-    assert contrast(DARK) / contrast(on_the_dark_page(color)) >= LEAST
+    assert contrast(color) >= MIN_CONTRAST
+    assert contrast(DARK) / contrast(on_the_dark_page(color)) >= MIN_CONTRAST
 
 
 @pytest.mark.parametrize(
     "color",
     [
-        *(one.color for one in (*budget.KNOWN.values(), *budget.ADDED)),
+        *(one.color for one in (*budget.PART_LOOKS.values(), *budget.ADDED_PART_LOOKS)),
         *plots.COLORS.values(),
         *(color for names in plots.PANEL_COLORS.values() for color in names.values()),
     ],
 )
 def test_other_curves_can_be_seen_too(color):
-    assert contrast(color) >= LEAST
+    assert contrast(color) >= MIN_CONTRAST
 
 
 def test_parts_and_libraries_of_one_panel_are_told_apart():
     for drawn in (*plots.PANEL_COLORS.values(), plots.COLORS):
         assert len(set(drawn.values())) == len(drawn)
-    looks = [(one.color, one.dash) for one in (*budget.KNOWN.values(), *budget.ADDED)]
+    looks = [
+        (one.color, one.dash) for one in (*budget.PART_LOOKS.values(), *budget.ADDED_PART_LOOKS)
+    ]
     assert len(set(looks)) == len(looks)
     for (one, dash), (other, same) in itertools.combinations(looks, 2):
         if dash == same:

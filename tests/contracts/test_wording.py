@@ -17,9 +17,9 @@ from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.tables import Column, Table, tabulate_ladder
 from rovsim.reporting.wording import (
-    ERROR,
     ERROR_MEANING,
-    LADDER,
+    ERROR_NAME,
+    LADDER_NOTE,
     listed,
     rounded,
     significant,
@@ -27,7 +27,7 @@ from rovsim.reporting.wording import (
 )
 from rovsim.reporting.words import terminal
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
-from rovsim.reporting.words.sureness import DOUBTS
+from rovsim.reporting.words.sureness import DOUBT_REASONS
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain, interval
 from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
@@ -140,9 +140,9 @@ def test_the_error_that_ranks_has_one_name_and_one_meaning(content):
     compared = terminal.tell_comparison({"nominal": 0.3}, content["where"], tested=True)
     for said in (ladder.caption, told, compared):
         assert ERROR_MEANING in " ".join(said.split())
-    assert ladder.columns[0].heading == ERROR
-    assert f"the {ERROR} falls from" in told
-    assert ERROR in find_figure("ladder").caption
+    assert ladder.columns[0].heading == ERROR_NAME
+    assert f"the {ERROR_NAME} falls from" in told
+    assert ERROR_NAME in find_figure("ladder").caption
 
 
 @pytest.mark.parametrize(
@@ -205,8 +205,8 @@ def test_a_sure_effect_whose_values_may_each_be_absent_is_told(content):
 
 def test_the_ladder_says_which_rows_build_on_each_other(content):
     steps = (LadderStep(model="nominal", windows_2s=0.2), LadderStep(model="+lift", windows_2s=0.1))
-    assert LADDER in tabulate_ladder(Ladder(steps=steps)).caption
-    assert LADDER not in tabulate_ladder(Ladder(steps=steps[:1])).caption
+    assert LADDER_NOTE in tabulate_ladder(Ladder(steps=steps)).caption
+    assert LADDER_NOTE not in tabulate_ladder(Ladder(steps=steps[:1])).caption
 
 
 def test_a_residual_is_not_praised_where_the_effects_alone_do_better(content):
@@ -239,7 +239,7 @@ def test_why_a_name_has_no_probability_is_said(content, doubt):
     one = SelectedEffect(effect="lift", parameters={}, doubt=doubt)
     found = content["diagnosis"].model_copy(update={"selected": (one,), "rivals": ()})
     said = explain(found, built_in()).missing[0]
-    assert said.worth.endswith(f", no probability: {DOUBTS[doubt]}")
+    assert said.worth.endswith(f", no probability: {DOUBT_REASONS[doubt]}")
 
 
 def test_what_is_unexplained_is_not_said_to_be_all_that_a_perfect_model_leaves(content):

@@ -14,9 +14,10 @@ from rovsim.results.base import or_nan
 from rovsim.results.error_conditions import THROUGHOUT, ConditionTable, ModelConditions
 from rovsim.results.ladder import Ladder
 
-NAME = 28  # letters of a step's name
-ROOM = 1.14  # for the values behind the bars
-FAR = 2.0  # times the highest model: a baseline beyond is cut, so that the models can be told apart
+MAX_NAME_LETTERS = 28  # of a step's name
+HEADROOM_RATIO = 1.14  # for the values behind the bars
+# times the highest model: a baseline beyond is cut, so that the models can be told apart
+MAX_BASELINE_RATIO = 2.0
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,9 @@ class LadderChart:
 def chart_ladder(ladder: Ladder) -> LadderChart:
     """Return the bars of a ladder, and where their axis ends."""
     bars = tuple(
-        LadderBar(s.model, title(s.model, NAME), or_nan(s.windows_2s), family_look(s.model))
+        LadderBar(
+            s.model, title(s.model, MAX_NAME_LETTERS), or_nan(s.windows_2s), family_look(s.model)
+        )
         for s in ladder.models
     )
     floor = or_nan(ladder.noise_floor)
@@ -70,8 +73,8 @@ def _end(steps: Mapping[str, float], floor: float) -> float:
     """Return where the axis ends: a baseline that is far higher than all models is cut."""
     values = {n: v for n, v in {**steps, NOISE_FLOOR: floor}.items() if np.isfinite(v)}
     models = max((v for n, v in values.items() if n != ZERO_ACCELERATION), default=0.0)
-    cut = 0.0 < FAR * models < values.get(ZERO_ACCELERATION, 0.0)
-    return ROOM * (models if cut else max(values.values(), default=0.0)) or 1.0
+    cut = 0.0 < MAX_BASELINE_RATIO * models < values.get(ZERO_ACCELERATION, 0.0)
+    return HEADROOM_RATIO * (models if cut else max(values.values(), default=0.0)) or 1.0
 
 
 def tell_beyond(bars: Sequence[LadderBar]) -> str:

@@ -138,7 +138,7 @@ STUDY_RESULTS: Mapping[str, type[Result]] = _find_results()
 class RunData:
     """What is known of one run: the arguments of figures that are drawn for each run."""
 
-    known: ReportData
+    study: ReportData
     run: str
 
     @property
@@ -193,28 +193,28 @@ class RunData:
     @property
     def bands(self) -> dict[str, Array]:
         """Lower and upper end (2, n, 6) of the velocity's band, by model that has one."""
-        candidates = {model: by_run.get(self.run) for model, by_run in self.known.bands.items()}
+        candidates = {model: by_run.get(self.run) for model, by_run in self.study.bands.items()}
         return {model: band.nu for model, band in candidates.items() if band is not None}
 
     @property
     def budget(self) -> ForceBudget | None:
         """Forces of one model on the run; None if unknown."""
-        return self.known.budgets.get(self.run)
+        return self.study.budgets.get(self.run)
 
     @property
     def _motion(self) -> Motion:
-        return self.known.motions[self.run]
+        return self.study.motions[self.run]
 
     def _predicted(self, horizon: str, name: str) -> dict[str, Array]:
         return {
             model: getattr(by_run[self.run].horizons[horizon], name)
-            for model, by_run in self.known.replays.items()
+            for model, by_run in self.study.replays.items()
             if self.run in by_run
         }
 
 
 # How models were replayed for the predictions that a figure shows.
-REPLAYED = {
+REPLAY_KINDS = {
     "predicted_nu": f"{STANDARD_HORIZON} s windows",
     "predicted_nu_dot": f"{STANDARD_HORIZON} s windows",
     "predicted_position": "open loop",
@@ -253,7 +253,10 @@ def describe_figure(figure: str, run: str, data: ReportData | None = None) -> st
     if not run:
         return ""
     needs = find_figure(figure).needs
-    words = [f"run {run}", *dict.fromkeys(REPLAYED[name] for name in needs if name in REPLAYED)]
+    words = [
+        f"run {run}",
+        *dict.fromkeys(REPLAY_KINDS[name] for name in needs if name in REPLAY_KINDS),
+    ]
     if "budget" in needs and data and (budget := data.budgets.get(run)):
         words.append(f"model {title(budget.model)}")
     return ", ".join(words)

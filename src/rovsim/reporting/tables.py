@@ -14,15 +14,23 @@ from rovsim.core.horizons import STANDARD_HORIZON
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.evaluation.held_out.published_errors import METRICS
 from rovsim.reporting.figures.pooled import name_horizon, pool
-from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, fit, significant, title
+from rovsim.reporting.wording import (
+    ERROR_MEANING,
+    ERROR_NAME,
+    LADDER_NOTE,
+    LADDER_STEP,
+    fit,
+    significant,
+    title,
+)
 from rovsim.results.base import or_nan
 from rovsim.results.comparison import Comparison
 from rovsim.results.ladder import Ladder
 from rovsim.results.published_errors import PublishedErrors
 
-NEEDED = "% In the preamble: \\usepackage{booktabs,siunitx}\n"
+PREAMBLE_NOTE = "% In the preamble: \\usepackage{booktabs,siunitx}\n"
 # Of siunitx 3 (2021). Eight columns fit `article` on A4; bold stays bold, 0.00467 in one piece.
-SET_UP = (
+SISETUP = (
     "\\footnotesize\\setlength{\\tabcolsep}{2.5pt}\n"
     "\\sisetup{detect-weight=true,group-digits=none}\n"
 )
@@ -114,7 +122,7 @@ class Table:
                 siunitx=True,
             )
         )
-        return NEEDED + text.replace("\\begin{tabular}", SET_UP + "\\begin{tabular}")
+        return PREAMBLE_NOTE + text.replace("\\begin{tabular}", SISETUP + "\\begin{tabular}")
 
     def write(self, folder: Path, name: str) -> list[Path]:
         """Write `name`.csv and `name`.tex into `folder`."""
@@ -168,7 +176,7 @@ def tabulate_errors(
 def tabulate_ladder(ladder: Ladder) -> Table:
     """Return the table of a ladder, a row for each step; velocity MAE is only in the CSV."""
     columns = [
-        Column("windows_2s", ERROR, "–"),
+        Column("windows_2s", ERROR_NAME, "–"),
         Column("fit", "fit", "%", high_is_good=True),
     ]
     for quantity, printed in (("acceleration_rmse", True), ("velocity_mae", False)):
@@ -186,7 +194,9 @@ def tabulate_ladder(ladder: Ladder) -> Table:
         ]
         for step in ladder.steps
     }
-    built_up = f" {LADDER}" if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
+    built_up = (
+        f" {LADDER_NOTE}" if any(LADDER_STEP.fullmatch(step.model) for step in ladder.steps) else ""
+    )
     remark = "; the noise floor is a bound, not a model" if ladder.noise_floor is not None else ""
     return Table(
         caption=f"Models on the test runs, all samples alike.{built_up} {ERROR_MEANING}. Fit: 1 "

@@ -17,7 +17,7 @@ from rovsim.core.signs import minus
 if TYPE_CHECKING:
     from rovsim.learning.learner import Learner
 
-LONGEST = 40  # letters of a name before its middle is left out
+MAX_NAME_LETTERS = 40  # of a name before its middle is left out
 # The study's own models; a user's keep the name of their file.
 TITLES = {
     ZERO_ACCELERATION: "constant velocity",
@@ -32,22 +32,23 @@ MEANINGS = {
     EFFECTS: "nominal, and the effects that the diagnosis selected",
     NOISE_FLOOR: "what a perfect model would show, because the measurement is noisy",
 }
-CONTROLS = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
-STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder
+CONTROL_TITLES = {"3dof": "3-DoF", "6dof": "6-DoF", "all": "all runs"}
+LADDER_STEP = re.compile(r"\+(\w+)")  # of a diagnosis' ladder
 # The one error by which models are ranked (`windows_2s` in files), wherever it is shown.
-ERROR = "2 s error"
+ERROR_NAME = "2 s error"
 ERROR_MEANING = (
     "The 2 s error is the RMSE of the predicted velocity, the model restarted from the measured "
     "state every 2 s, in standard deviations of the measured velocity, averaged over the axes "
     "that moved"
 )
-LADDER = "Rows stand side by side; only a row that begins with + builds on the row above it."
+LADDER_NOTE = "Rows stand side by side; only a row that begins with + builds on the row above it."
 FLOOR_COUNTS_ALL = (
     "The noise floor, {}, counts what is unexplained as noise: a model that knew it could be below."
 )
-LEAST = 0.01  # share of the error below which an effect by itself is not shown
-IMPROBABLE = 0.001  # a probability below this, or as near to one, is told as no more than that
-MOST = 8  # names told of many: a line of run ids
+MIN_SHOWN_SHARE = 0.01  # share of the error below which an effect by itself is not shown
+# a probability below this, or as near to one, is told as no more than that
+MIN_TOLD_PROBABILITY = 0.001
+MAX_LISTED_NAMES = 8  # a line of run ids
 
 
 def list_learners() -> Mapping[str, "Learner"]:
@@ -59,23 +60,23 @@ def list_learners() -> Mapping[str, "Learner"]:
 
 def _learned() -> re.Pattern[str]:
     """Return the pattern of names of the study's models with a residual: BASE+KIND_CONTROL."""
-    return re.compile(rf"(?:(.*)\+)?({'|'.join(list_learners())})_({'|'.join(CONTROLS)})")
+    return re.compile(rf"(?:(.*)\+)?({'|'.join(list_learners())})_({'|'.join(CONTROL_TITLES)})")
 
 
-def short(name: str, length: int = LONGEST) -> str:
+def short(name: str, length: int = MAX_NAME_LETTERS) -> str:
     """Return `name`, its middle left out where it is longer than `length` letters."""
     if len(name) <= length:
         return name
     return f"{name[: length // 2]}…{name[-(length // 2 - 1) :]}"
 
 
-def title(model: str, length: int = LONGEST) -> str:
+def title(model: str, length: int = MAX_NAME_LETTERS) -> str:
     """Return a model's name as people say it: `effects+knn_6dof` is "effects + KNN (6-DoF)"."""
     if learned := _learned().fullmatch(model):
         base, kind, control = learned.groups()
-        learner = f"{list_learners()[kind].title} ({CONTROLS[control]})"
+        learner = f"{list_learners()[kind].title} ({CONTROL_TITLES[control]})"
         return short(f"{base} + {learner}" if base else learner, length)
-    if effect := STEP.fullmatch(model):
+    if effect := LADDER_STEP.fullmatch(model):
         return short(f"+ {effect[1]}", length)
     return short(TITLES.get(model, model), length)
 
@@ -84,7 +85,7 @@ def explain_model(model: str) -> str:
     """Say what a model of the study is; empty for a model that its user made."""
     if learned := _learned().fullmatch(model):
         base, kind, control = learned.groups()
-        condition = "" if control == "all" else f" under {CONTROLS[control]} control"
+        condition = "" if control == "all" else f" under {CONTROL_TITLES[control]} control"
         meaning = list_learners()[kind].meaning
         return (
             f"{title(base or 'nominal')}, and {meaning} that learned the rest of the acceleration "
@@ -92,7 +93,7 @@ def explain_model(model: str) -> str:
         )
     if model == f"+{PROPOSED}":
         return "the proposed equation, and the effects that act beside it"
-    if STEP.fullmatch(model):
+    if LADDER_STEP.fullmatch(model):
         return "the step above, and this effect"
     return MEANINGS.get(model, "")
 
@@ -103,10 +104,10 @@ def percent(share: float | None) -> str:
 
 
 def several(names: Sequence[str]) -> str:
-    """Return names as text; of very many the first `MOST`, and how many more there are."""
-    if len(names) <= MOST + 1:
+    """Return names as text; of very many the first few, and how many more there are."""
+    if len(names) <= MAX_LISTED_NAMES + 1:
         return ", ".join(names)
-    return f"{', '.join(names[:MOST])} and {len(names) - MOST} more"
+    return f"{', '.join(names[:MAX_LISTED_NAMES])} and {len(names) - MAX_LISTED_NAMES} more"
 
 
 def listed(names: Iterable[str]) -> str:
@@ -120,7 +121,7 @@ def fit(error: float) -> float:
     return 100.0 * (1.0 - error)
 
 
-def known(value: float | None) -> str:
+def number_or_dash(value: float | None) -> str:
     """Return a number as `significant` writes it, and a dash for None."""
     return "–" if value is None else significant(value)
 
@@ -129,9 +130,9 @@ def tell_probability(probability: float | None) -> str:
     """Return a probability to three decimals; near 0 or 1 as "below 0.001" or "above 0.999"."""
     if probability is None:
         return "–"
-    if probability < IMPROBABLE:
-        return f"below {IMPROBABLE:g}"
-    certain = 1 - IMPROBABLE
+    if probability < MIN_TOLD_PROBABILITY:
+        return f"below {MIN_TOLD_PROBABILITY:g}"
+    certain = 1 - MIN_TOLD_PROBABILITY
     return f"above {certain:g}" if probability > certain else f"{probability:.3f}"
 
 

@@ -154,7 +154,7 @@ class ParameterRow:
     def _told(self, value: float) -> str:
         body = self.effects.bench.base.body
         total = tell_total(body, self.effect, self.parameter.name, value, self.unit)
-        return f"{escape(total.told)} {alarm(total.wrong)}".strip()
+        return f"{escape(total.text)} {alarm(total.wrong)}".strip()
 
     async def _moved(self, event: Any) -> None:
         self.number.set_value(rounded(event.args))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
-from rovsim.reporting.figures.palette import SHADE, Look, looks
+from rovsim.reporting.figures.palette import AREA_OPACITY, Look, looks
 from rovsim.reporting.wording import title
 
 POINTS = 800  # a curve shows at most: each takes its time to send and to draw
@@ -209,7 +209,7 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
         look: of that curve.
         ready: points of every series by id.
     """
-    shade = {"color": look.color, "opacity": SHADE if end == WIDTH else 0.0}
+    shade = {"color": look.color, "opacity": AREA_OPACITY if end == WIDTH else 0.0}
     return {
         "id": f"{k}/{name}{end}",
         "name": told(name),

@@ -19,7 +19,14 @@ from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.learning.learner import learners
 from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
-from rovsim.reporting.wording import ERROR, ERROR_MEANING, LADDER, STEP, significant, title
+from rovsim.reporting.wording import (
+    ERROR_MEANING,
+    ERROR_NAME,
+    LADDER_NOTE,
+    LADDER_STEP,
+    significant,
+    title,
+)
 from rovsim.results.base import or_none
 from rovsim.results.ladder import Ladder
 
@@ -34,7 +41,7 @@ async def show(bench: Workbench, place: Place) -> None:
     remarks = _remarks(ladder)
     if remarks:
         text(remarks, "soft")
-    about = f"{ERROR} of each model, the noise floor as a line"
+    about = f"{ERROR_NAME} of each model, the noise floor as a line"
     names = {"names": ("model", "error (standard deviations of the measured velocity)")}
     chart(chart_of(ladder), about, 80 + 36 * len(ladder.steps), columns=names)
     _table(ladder)
@@ -44,7 +51,7 @@ async def show(bench: Workbench, place: Place) -> None:
 
 def _remarks(ladder: Ladder) -> str:
     """Say which rows build on each other, and which bar is cut."""
-    rows = LADDER if any(STEP.fullmatch(step.model) for step in ladder.steps) else ""
+    rows = LADDER_NOTE if any(LADDER_STEP.fullmatch(step.model) for step in ladder.steps) else ""
     return " ".join(filter(None, (rows, tell_beyond(chart_ladder(ladder).beyond))))
 
 
@@ -62,7 +69,9 @@ def _table(ladder: Ladder) -> None:
     ]
     heads = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
     groups = [("in standard deviations", 1), ("mean absolute error of the velocity", len(AXES))]
-    table("Models on the test runs, restarted every 2 s", ["model", ERROR, *heads], rows, groups)
+    table(
+        "Models on the test runs, restarted every 2 s", ["model", ERROR_NAME, *heads], rows, groups
+    )
 
 
 def _train(bench: Workbench) -> None:
@@ -120,7 +129,7 @@ def chart_of(ladder: Ladder) -> Options:
             "type": "value",
             "min": 0,
             "max": ladder_chart.end,
-            **named_below(f"{ERROR} (standard deviations)", 26),
+            **named_below(f"{ERROR_NAME} (standard deviations)", 26),
             "axisLabel": {"color": SOFT, "showMaxLabel": False},
             "splitLine": {"lineStyle": {"color": GRID}},
         },

@@ -29,7 +29,13 @@ from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import AXES, FORCE_UNITS
 from rovsim.core.errors import RovsimError
-from rovsim.reporting.wording import ERROR, IMPROBABLE, percent, significant, tell_probability
+from rovsim.reporting.wording import (
+    ERROR_NAME,
+    MIN_TOLD_PROBABILITY,
+    percent,
+    significant,
+    tell_probability,
+)
 from rovsim.reporting.words.verdict import Missing, explain, interval
 from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ConditionShare
@@ -93,7 +99,7 @@ def _ask(bench: Workbench) -> None:
 def _errors(found: Diagnosis) -> None:
     error = found.error
     with ui.row().classes("tiles"):
-        tile(f"{ERROR} of the model", error.nominal, "error/nominal", "test runs")
+        tile(f"{ERROR_NAME} of the model", error.nominal, "error/nominal", "test runs")
         if found.selected:
             tile("With the effects", error.with_effects, "error/with_effects", "test runs")
         tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
@@ -212,7 +218,7 @@ def list_worth_showing(ranking: Sequence[FittedEffect]) -> list[FittedEffect]:
 
     In all `SHOWN`, unless more are likely.
     """
-    likely = [r for r in ranking if (r.probability or 0.0) >= IMPROBABLE]
+    likely = [r for r in ranking if (r.probability or 0.0) >= MIN_TOLD_PROBABILITY]
     likely.sort(key=lambda r: -(r.probability or 0.0))
     rest = [r for r in ranking if r not in likely and (r.error_reduction or 0.0) > 0.0]
     rest.sort(key=lambda r: -(r.error_reduction or 0.0))

@@ -28,8 +28,8 @@ from rovsim.reporting.units import unit
 from rovsim.reporting.words.symbols import explain_symbols
 
 PAGE, PICTURES = "catalogue.md", "images/effects"
-LONG = 8  # rows of a table that is folded away
-KINDS = {
+MAX_OPEN_ROWS = 8  # rows of a table that is folded away
+CHAPTERS = {
     "What the vehicle weighs and displaces, and what pushes it": (
         Coefficients,
         StochasticCurrent,
@@ -83,11 +83,11 @@ def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect
 
     Effects of an autopilot or of thrusters belong to the chapter on commands.
     """
-    command = list(KINDS)[1]
-    chapters: dict[str, list[type[Effect]]] = {title: [] for title in KINDS}
+    command = list(CHAPTERS)[1]
+    chapters: dict[str, list[type[Effect]]] = {title: [] for title in CHAPTERS}
     for _, cls in sorted(effects.items()):
         # a filter of poses also shifts the clock of the commands: the last that fits counts
-        title = next(t for t, kinds in reversed(KINDS.items()) if issubclass(cls, kinds))
+        title = next(t for t, kinds in reversed(CHAPTERS.items()) if issubclass(cls, kinds))
         on_the_way = issubclass(cls, Autopilot) or cls.__module__.endswith(".thrusters")
         chapters[command if on_the_way else title].append(cls)
     return chapters
@@ -150,7 +150,7 @@ def _table(parameters: Iterable[Parameter]) -> str:
         columns = [names, _symbols(row), unit(si) or "–", _range(low, high), default, f"{scale:g}"]
         rows.append(f"| {' | '.join(columns)} |")
     text = "\n".join(rows)
-    if len(rows) <= LONG:
+    if len(rows) <= MAX_OPEN_ROWS:
         return text
     return f"<details><summary>Parameters</summary>\n\n{text}\n\n</details>"
 

@@ -38,7 +38,7 @@ from rovsim.simulation.synthetic_tank.settings import (
     Turbulence,
 )
 
-RUN = TankRun(id="run", control="6dof", split="train")
+TANK_RUN = TankRun(id="run", control="6dof", split="train")
 
 
 def settings(cls: type[Effect], signature: Signature) -> TankSettings:
@@ -49,7 +49,7 @@ def settings(cls: type[Effect], signature: Signature) -> TankSettings:
     """
     calm = TankSettings(
         seed=3,
-        runs=(RUN,),
+        runs=(TANK_RUN,),
         tank=Box(x=(0.0, 4.0), y=(0.0, 2.2), z=(0.0, 2.0)),
         duration=120.0,
         camera=Camera(
@@ -70,7 +70,7 @@ def fly(tank: TankSettings, catalogue: Catalogue) -> Motion:
     with tempfile.TemporaryDirectory() as folder:
         make_campaign(tank, Path(folder) / "raw", catalogue)
         campaign = mark_angles(load_campaign(Path(folder) / "raw"), load_vehicle(tank.vehicle))
-        recording, _ = read_run(campaign, RUN.id)
+        recording, _ = read_run(campaign, TANK_RUN.id)
     return clean(recording, SignalSettings())
 
 

@@ -26,8 +26,8 @@ from rovsim.core.files import read_text
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-GUIDE = "The docstring of rovsim.reporting.figures says what a figure declares."
-DRAW = "def draw(*, …)"
+REMEDY = "The docstring of rovsim.reporting.figures says what a figure declares."
+DRAW_SIGNATURE = "def draw(*, …)"
 SECTIONS = ("verdict", "where", "compare", "ladder", "published", "timing", "quality")
 
 
@@ -99,7 +99,7 @@ def read_kind(path: Path) -> FigureKind | None:
                 consts[name] = _constant(node.value, path, name)
     if draw is None and len(consts) > 1:
         raise _refused(
-            path, f"{' and '.join(sorted({*consts} - {'PLACE'}))} without a 'draw'", DRAW
+            path, f"{' and '.join(sorted({*consts} - {'PLACE'}))} without a 'draw'", DRAW_SIGNATURE
         )
     if draw is None:
         return None
@@ -130,30 +130,34 @@ def _constant(node: ast.expr | None, path: Path, name: str) -> Any:
         raise _refused(path, f"{name} is no plain constant", "a text or number as it is") from None
 
 
-def _check(path: Path, told: Mapping[str, Any], takes: ast.arguments) -> None:
+def _check(path: Path, constants: Mapping[str, Any], takes: ast.arguments) -> None:
     """Refuse a figure that does not declare section, caption and parameters as it should."""
-    if told.get("SECTION") not in SECTIONS:
-        problem = f"SECTION is {told['SECTION']!r}" if "SECTION" in told else "there is no SECTION"
+    if constants.get("SECTION") not in SECTIONS:
+        problem = (
+            f"SECTION is {constants['SECTION']!r}"
+            if "SECTION" in constants
+            else "there is no SECTION"
+        )
         raise _refused(path, problem, f"one of {', '.join(SECTIONS)}")
-    if not (isinstance(told.get("CAPTION"), str) and told["CAPTION"]):
+    if not (isinstance(constants.get("CAPTION"), str) and constants["CAPTION"]):
         raise _refused(path, "there is no CAPTION", "one or two sentences")
-    if not isinstance(told["PLACE"], (int, float)):
-        raise _refused(path, f"PLACE is {told['PLACE']!r}", "a number")
+    if not isinstance(constants["PLACE"], (int, float)):
+        raise _refused(path, f"PLACE is {constants['PLACE']!r}", "a number")
     if takes.args or takes.posonlyargs:
-        raise _refused(path, "'draw' takes what it asks for by place", DRAW)
+        raise _refused(path, "'draw' takes what it asks for by place", DRAW_SIGNATURE)
 
 
-def refuse_unknown(figure: FigureKind, known: Iterable[str]) -> None:
-    """Refuse a figure that needs something other than the `known` names.
+def refuse_unknown(figure: FigureKind, known_names: Iterable[str]) -> None:
+    """Refuse a figure that needs something other than the `known_names` names.
 
     Raises:
         BadInput: it does.
     """
-    if unknown := [name for name in figure.needs if name not in (known := set(known))]:
+    if unknown := [name for name in figure.needs if name not in (known_names := set(known_names))]:
         path = Path(__file__).with_name(f"{figure.name}.py")
         problem = f"'draw' asks for {', '.join(unknown)}"
-        raise _refused(path, problem, f"some of {', '.join(sorted(known))}")
+        raise _refused(path, problem, f"some of {', '.join(sorted(known_names))}")
 
 
-def _refused(path: Path, found: str, expected: str) -> BadInput:
-    return BadInput(found, where=path, expected=expected, remedy=GUIDE)
+def _refused(path: Path, problem: str, expected: str) -> BadInput:
+    return BadInput(problem, where=path, expected=expected, remedy=REMEDY)

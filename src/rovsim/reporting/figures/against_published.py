@@ -23,10 +23,10 @@ CAPTION = (
     "whose demand never moved. Models of every fold, residuals on top of effects only; the table "
     "has all."
 )
-LABELS = {"acceleration_rmse": "acceleration RMSE", "velocity_mae": "velocity MAE"}
-SHAPES = "osD^vP*hX<>"
-LOWEST, HIGHEST = 0.25, 4.0  # a ratio beyond is drawn on the upper edge
-TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
+METRIC_LABELS = {"acceleration_rmse": "acceleration RMSE", "velocity_mae": "velocity MAE"}
+MARKERS = "osD^vP*hX<>"
+MIN_RATIO, MAX_RATIO = 0.25, 4.0  # a ratio beyond is drawn on the upper edge
+RATIO_TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 
 
 @styled()
@@ -38,12 +38,12 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
     for axes, metric in zip(figure.subplots(len(JUDGED_METRICS), 1), JUDGED_METRICS, strict=True):
         cells = [cell for cell in published_errors.cells if cell.metric == metric]
         _draw_panel(axes, cells, style)
-        axes.set_ylabel(f"{LABELS[metric]} / mark (–)")
+        axes.set_ylabel(f"{METRIC_LABELS[metric]} / mark (–)")
     add_legend(
         figure, [Line2D([], [], label=title(n), **_look(k, style[n])) for k, n in enumerate(names)]
     )
-    beyond = any(_ratio(c, n) > HIGHEST for c in published_errors.cells for n in names)
-    note(figure, [f"On the upper edge: {HIGHEST:g} or more, or no value." if beyond else ""])
+    beyond = any(_ratio(c, n) > MAX_RATIO for c in published_errors.cells for n in names)
+    note(figure, [f"On the upper edge: {MAX_RATIO:g} or more, or no value." if beyond else ""])
     return figure
 
 
@@ -66,9 +66,9 @@ def _draw_panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, 
     places = np.array([k + runs.index(cell.run) for k, cell in enumerate(cells)])
     ratios = np.array([[_ratio(cell, name) for name in style] for cell in cells])
     for k, name in enumerate(style):
-        axes.plot(places, np.minimum(ratios[:, k], HIGHEST), **_look(k, style[name]))
+        axes.plot(places, np.minimum(ratios[:, k], MAX_RATIO), **_look(k, style[name]))
     axes.axhline(1.0, color="#444444", linewidth=0.8)
-    _set_vertical(axes, float(np.nanmin(ratios, initial=LOWEST)))
+    _set_vertical(axes, float(np.nanmin(ratios, initial=MIN_RATIO)))
     axes.set_xticks(places, [_label(cell) for cell in cells], rotation=90)
     axes.tick_params(axis="x", length=0)
     for run in runs:
@@ -86,10 +86,10 @@ def _draw_panel(axes: Axes, cells: Sequence[PublishedCell], style: Mapping[str, 
 
 def _set_vertical(axes: Axes, lowest: float) -> None:
     axes.set_yscale("log")
-    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
-    axes.set_yticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * MAX_RATIO)
+    axes.set_yticks(RATIO_TICKS, [f"{tick:g}" for tick in RATIO_TICKS])
     axes.set_yticks([], minor=True)
-    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * HIGHEST)
+    axes.set_ylim(0.9 * max(lowest, 0.01), 1.1 * MAX_RATIO)
 
 
 def _ratio(cell: PublishedCell, name: str) -> float:
@@ -108,7 +108,7 @@ def _look(k: int, look: Look) -> Style:
     """Return the style of model number k, with a marker of its own."""
     return {
         "color": look.color,
-        "marker": SHAPES[k % len(SHAPES)],
+        "marker": MARKERS[k % len(MARKERS)],
         "linestyle": "",
         "markersize": 3.6,
         "markeredgewidth": 0.3,

@@ -19,7 +19,7 @@ from rovsim.reporting.figures.palette import (
     VERMILION,
     Look,
 )
-from rovsim.reporting.figures.panels import SHARED, plot_all, share_scales, six_panels
+from rovsim.reporting.figures.panels import SHARED_SCALE_NOTE, plot_all, share_scales, six_panels
 from rovsim.reporting.figures.series import excerpt
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.wording import significant
@@ -31,10 +31,10 @@ CAPTION = (
     "(M a_res, black). Where a part looks like the missing force, turned over or not, the model "
     "has too much or too little of it."
 )
-SHOWN = 7  # parts drawn
-LENGTH = 20.0  # s: forces change faster than velocities
-SMOOTH = 0.5  # s: the missing force is twice differentiated noise before
-KNOWN = {
+MAX_PARTS = 7
+EXCERPT_S = 20.0  # forces change faster than velocities
+SMOOTHING_S = 0.5  # the missing force is twice differentiated noise before
+PART_LOOKS = {
     "thrusters": Look(BLUE, "-"),
     "quadratic damping": Look(VERMILION, (0, (4, 1.5))),
     "linear damping": Look(BROWN, (0, (2, 0.8))),
@@ -42,7 +42,7 @@ KNOWN = {
     "Coriolis": Look(GREY, (0, (1, 1.2))),
     "added-mass Coriolis": Look(GREY, (0, (5, 2))),
 }
-ADDED = (Look(PURPLE, "-"), Look(OLIVE, "-"), Look(PURPLE, (0, (4, 1.5))))
+ADDED_PART_LOOKS = (Look(PURPLE, "-"), Look(OLIVE, "-"), Look(PURPLE, (0, (4, 1.5))))
 
 
 @styled()
@@ -53,7 +53,9 @@ def draw(*, budget: ForceBudget) -> Figure:
     names = _largest(parts, valid)
     curves = {"missing": _smoothed(time, missing), **{n: parts[n] for n in names}}
     curves = {n: np.where(valid[:, None], v, np.nan) for n, v in curves.items()}
-    part = excerpt(time, np.where(valid[:, None], parts.get("thrusters", missing), np.nan), LENGTH)
+    part = excerpt(
+        time, np.where(valid[:, None], parts.get("thrusters", missing), np.nan), EXCERPT_S
+    )
     style = {"missing": Look(BLACK, "-", width=1.5), **_looks(names)}
     figure, axes = six_panels(FORCE, FORCE_UNITS)
     excerpts = {n: v[part] for n, v in curves.items()}
@@ -68,10 +70,10 @@ def draw(*, budget: ForceBudget) -> Figure:
     note(
         figure,
         [
-            f"Missing: mean over {significant(SMOOTH, 1)} s.",
+            f"Missing: mean over {significant(SMOOTHING_S, 1)} s.",
             f"Too small to be drawn: {', '.join(omitted)}." if omitted else "",
             _excerpt_told(time, part),
-            SHARED,
+            SHARED_SCALE_NOTE,
             *(r for r in remarks if r.startswith("No values")),
         ],
     )
@@ -80,8 +82,11 @@ def draw(*, budget: ForceBudget) -> Figure:
 
 def _looks(names: list[str]) -> dict[str, Look]:
     """Return a look for each part, the same in every figure; added effects share the others."""
-    added = [n for n in names if n not in KNOWN]
-    return {n: KNOWN.get(n) or ADDED[added.index(n) % len(ADDED)] for n in names}
+    added = [n for n in names if n not in PART_LOOKS]
+    return {
+        n: PART_LOOKS.get(n) or ADDED_PART_LOOKS[added.index(n) % len(ADDED_PART_LOOKS)]
+        for n in names
+    }
 
 
 def _excerpt_told(time: Array, at: slice) -> str:
@@ -89,23 +94,25 @@ def _excerpt_told(time: Array, at: slice) -> str:
     return "" if whole else f"Excerpt of a run of {time[-1] - time[0]:.0f} s."
 
 
-def _largest(parts: Mapping[str, Array], known: Array) -> list[str]:
-    """List the parts with the largest share on some axis, at most `SHOWN`, in the order given.
+def _largest(parts: Mapping[str, Array], measured: Array) -> list[str]:
+    """List the parts with the largest share on some axis, at most `MAX_PARTS`, in the order given.
 
     Args:
         parts: wrench (n, 6) of each, N and N m.
-        known: at which of the n samples the missing force is known.
+        measured: at which of the n samples the missing force is known.
     """
-    size = {n: np.sqrt(np.mean(f[known] ** 2, axis=0)) for n, f in parts.items() if known.any()}
+    size = {
+        n: np.sqrt(np.mean(f[measured] ** 2, axis=0)) for n, f in parts.items() if measured.any()
+    }
     whole = np.sqrt(sum((s**2 for s in size.values()), np.zeros(6)))
     share = {n: float(np.max(s / np.where(whole > 0, whole, 1.0))) for n, s in size.items()}
-    largest = sorted((n for n in share if share[n] > 0.02), key=lambda n: -share[n])[:SHOWN]
+    largest = sorted((n for n in share if share[n] > 0.02), key=lambda n: -share[n])[:MAX_PARTS]
     return [n for n in parts if n in largest]
 
 
 def _smoothed(time: Array, values: Array) -> Array:
-    """Return the running mean over `SMOOTH` s of values (n, 6), NaN left out."""
-    count = max(round(SMOOTH / float(np.median(np.diff(time)))), 1)
+    """Return the running mean over `SMOOTHING_S` s of values (n, 6), NaN left out."""
+    count = max(round(SMOOTHING_S / float(np.median(np.diff(time)))), 1)
     valid, window = np.isfinite(values), np.ones(count)
     total = [
         np.convolve(np.where(k, v, 0.0), window, "same")

@@ -25,9 +25,10 @@ CAPTION = (
     "without what pushes all the time: what swings or turns makes a peak. Above some 1 Hz it "
     "is stronger than shown, since the noise of the measurement hides it."
 )
-COLORS = "cividis"  # as bright in grey as in colour
-DECADES, TINY = 1e-5, 1e-12  # of the highest peak, below which a spectrum is not shown; N²/Hz
-BETWEEN = 0.2  # s: lines of a force are as far apart
+COLOR_MAP = "cividis"  # as bright in grey as in colour
+# of the highest peak, below which a spectrum is not shown; N²/Hz
+SPECTRUM_RANGE, MIN_POWER = 1e-5, 1e-12
+MAX_LINE_GAP_S = 0.2  # lines of a force are as far apart
 
 
 @styled()
@@ -48,7 +49,7 @@ def draw(*, disturbance: Disturbance | None) -> Figure:
         _draw_time(time, run, i, most, force)
     panels[-1][1].set_xlabel("time (s)")
     figure.colorbar(
-        ScalarMappable(scale, COLORS),
+        ScalarMappable(scale, COLOR_MAP),
         ax=panels[:, 0],
         label=f"{axis} ({FORCE_UNITS[i]})",
         shrink=0.7,
@@ -87,8 +88,8 @@ def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> Non
     for i, look in zip(family, styles.values(), strict=True):
         axes.plot(frequency[1:], density[1:, i], label=AXES[i], **look.line())
     set_log_scale(axes, "xy")
-    most = max(float(np.max(density[1:, family])), TINY)
-    axes.set_ylim(DECADES * most, 3.0 * most)
+    most = max(float(np.max(density[1:, family])), MIN_POWER)
+    axes.set_ylim(SPECTRUM_RANGE * most, 3.0 * most)
     axes.legend(loc="lower left")
     axes.set_xlabel("frequency (Hz)")
     axes.set_ylabel(f"power ({DENSITY_UNITS[family[0]]})")
@@ -97,7 +98,7 @@ def _draw_spectrum(axes: Axes, family: Sequence[int], force: Disturbance) -> Non
 def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Disturbance) -> None:
     x, y, _ = np.array(run.place_m).T
     axes.plot(x, y, color="#BBBBBB", linewidth=0.6, zorder=1)
-    axes.scatter(x, y, c=np.array(run.force)[:, i], cmap=COLORS, norm=scale, s=8, zorder=2)
+    axes.scatter(x, y, c=np.array(run.force)[:, i], cmap=COLOR_MAP, norm=scale, s=8, zorder=2)
     _circle(axes, [p.place_m[:2] for p in _list_strong(run, force)])
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x (m)")
@@ -106,7 +107,7 @@ def _draw_path(axes: Any, run: ForceOfRun, i: int, scale: Normalize, force: Dist
 
 def _list_strong(run: ForceOfRun, force: Disturbance) -> list[StrongMoment]:
     """List the strongest moments within this part of a run; a long run may have several parts."""
-    first, last = run.time_s[0] - BETWEEN, run.time_s[-1] + BETWEEN
+    first, last = run.time_s[0] - MAX_LINE_GAP_S, run.time_s[-1] + MAX_LINE_GAP_S
     return [p for p in force.strongest if p.run == run.run and first <= p.time_s <= last]
 
 

@@ -28,13 +28,13 @@ CAPTION = (
     "several models also, below, divided by the nominal model's error (1 = as good as nominal, "
     "lower is better). Thin lines reach from the lowest to the highest run."
 )
-QUANTITIES = (
+PLOTTED_QUANTITIES = (
     ("velocity_rmse", "velocity RMSE", VELOCITY_UNITS),
     ("acceleration_rmse", "acceleration RMSE", ACCELERATION_UNITS),
 )
-HALVES = (slice(0, 3), slice(3, 6))
-ROOM = 1.06  # above the highest whisker
-TALLEST = 2.5  # times nominal; a higher bar is cut there and its value written above it
+AXIS_HALVES = (slice(0, 3), slice(3, 6))
+HEADROOM_RATIO = 1.06  # above the highest whisker
+MAX_BAR_RATIO = 2.5  # times nominal; a higher bar is cut there and its value written above it
 
 
 @styled()
@@ -46,14 +46,14 @@ def draw(*, comparison: Comparison, horizon: str = STANDARD_HORIZON, split: str 
     figure = sheet(105 * step)
     rows = figure.subplots(2 * step, 2)
     remarks = []
-    for k, (quantity, label, units) in enumerate(QUANTITIES):
+    for k, (quantity, label, units) in enumerate(PLOTTED_QUANTITIES):
         errors = pool(comparison, quantity, horizon, split)
         ratios, ends = relate(errors), between_runs(comparison, quantity, horizon, split)
-        for half, axes in zip(HALVES, rows[step * k], strict=True):
+        for half, axes in zip(AXIS_HALVES, rows[step * k], strict=True):
             _draw_bars(axes, errors[list(AXES[half])], style)
             _draw_whiskers(axes, *(end[list(AXES[half])] for end in ends))
             axes.set_ylabel(f"{label} ({units[half][0]})")
-        for half, axes in zip(HALVES, rows[step * k + 1], strict=True) if several else ():
+        for half, axes in zip(AXIS_HALVES, rows[step * k + 1], strict=True) if several else ():
             _draw_bars(axes, ratios[list(AXES[half])], style)
             _compare_with_nominal(axes, ratios[list(AXES[half])])
         remarks.append(name_gaps(errors))
@@ -96,18 +96,18 @@ def _draw_whiskers(axes: Axes, low: DataFrame, high: DataFrame) -> None:
         places = np.arange(len(least)) + (k + 0.5) * width - 0.4
         axes.vlines(places, least, most, color="#222222", linewidth=0.8)
     highest = float(np.nan_to_num(high.to_numpy()).max(initial=0.0))
-    axes.set_ylim(0, max(axes.get_ylim()[1], ROOM * highest))
+    axes.set_ylim(0, max(axes.get_ylim()[1], HEADROOM_RATIO * highest))
 
 
 def _compare_with_nominal(axes: Axes, ratios: DataFrame) -> None:
     axes.set_ylabel("error / nominal (–)")
     axes.axhline(1.0, color="#444444", linewidth=0.8)
     top = float(np.nanmax(ratios.to_numpy(), initial=1.0))
-    axes.set_ylim(0, min(top, TALLEST) * 1.12)
+    axes.set_ylim(0, min(top, MAX_BAR_RATIO) * 1.12)
     width = 0.8 / max(len(ratios), 1)
     for k, row in enumerate(ratios.to_numpy()):
-        for x in np.flatnonzero(row > TALLEST):
-            place = (x + (k + 0.5) * width - 0.4, TALLEST * 1.12)
+        for x in np.flatnonzero(row > MAX_BAR_RATIO):
+            place = (x + (k + 0.5) * width - 0.4, MAX_BAR_RATIO * 1.12)
             box = {"facecolor": "white", "pad": 0.5, "lw": 0}
             text: Style = {
                 "ha": "center",

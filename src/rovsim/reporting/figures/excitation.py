@@ -20,7 +20,7 @@ CAPTION = (
     "cannot be judged), and the stretches in which the motion capture lost the vehicle. An empty "
     "stretch was left out of the campaign."
 )
-MOST = 40  # runs: what fits on a page
+MAX_RUNS = 40  # what fits on a page
 EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
 
 
@@ -63,7 +63,7 @@ def _choose(quality: Mapping[str, Quality]) -> list[str]:
     """Choose the runs that fit on a page: all, or those with most missing frames."""
     runs = list(quality)
     lacking = [-q.not_found / q.frames - (q.unusable is not None) for q in quality.values()]
-    return [runs[k] for k in sorted(np.argsort(lacking, kind="stable")[:MOST].tolist())]
+    return [runs[k] for k in sorted(np.argsort(lacking, kind="stable")[:MAX_RUNS].tolist())]
 
 
 def _draw_excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation]) -> None:

@@ -17,7 +17,7 @@ CAPTION = (
     "Time of one prediction, one call at a time after warm-up: median, 99th and 99.9th percentile "
     "of the library's own call and of the exported predictor, against the periods of control loops."
 )
-WAYS = {"library": (VERMILION, 0.17), "exported": (BLUE, -0.17)}
+WAY_STYLES = {"library": (VERMILION, 0.17), "exported": (BLUE, -0.17)}
 MARKERS = {"median_us": ("o", "median"), "p99_us": ("|", "p99"), "p999_us": (">", "p99.9")}
 
 
@@ -29,7 +29,7 @@ def draw(*, timing: Timing) -> Figure:
     axes = figure.subplots()
     set_log_scale(axes)
     for row, timings in enumerate(timing.inference.values()):
-        for way, (color, shift) in WAYS.items():
+        for way, (color, shift) in WAY_STYLES.items():
             _draw_line(axes, len(names) - 1 - row + shift, getattr(timings, way), color)
     axes.set_yticks(range(len(names)), [title(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
@@ -75,7 +75,7 @@ def _draw_deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
 
 
 def _entries() -> list[Line2D]:
-    ways = [Line2D([], [], color=color, label=way) for way, (color, _) in WAYS.items()]
+    ways = [Line2D([], [], color=color, label=way) for way, (color, _) in WAY_STYLES.items()]
     marks = [
         Line2D([], [], color="#444444", linestyle="", marker=marker, label=label)
         for marker, label in MARKERS.values()

@@ -12,7 +12,7 @@ from rovsim.reporting.charts import LadderBar, chart_ladder, tell_beyond
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import ERROR, LADDER, STEP, significant
+from rovsim.reporting.wording import ERROR_NAME, LADDER_NOTE, LADDER_STEP, significant
 from rovsim.results.ladder import Ladder
 
 SECTION = "ladder"
@@ -38,7 +38,7 @@ def draw(*, ladder: Ladder) -> Figure:
     axes.set_xlim(0, chart.end)
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
-    axes.set_xlabel(f"{ERROR} (velocity RMSE / standard deviation)")
+    axes.set_xlabel(f"{ERROR_NAME} (velocity RMSE / standard deviation)")
     if not bars:
         explain_empty(axes, "no steps")
     if np.isfinite(floor):
@@ -71,6 +71,6 @@ def _remarks(ladder: Ladder, beyond: Sequence[LadderBar]) -> list[str]:
     splits = sorted({step.split for step in ladder.steps})
     return [
         f"Runs of the {' and '.join(splits)} split." if splits else "",
-        LADDER if any(STEP.fullmatch(step.model) for step in ladder.steps) else "",
+        LADDER_NOTE if any(LADDER_STEP.fullmatch(step.model) for step in ladder.steps) else "",
         tell_beyond(beyond),
     ]

@@ -13,10 +13,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter
 
 from rovsim.reporting.figures.palette import Look
-from rovsim.reporting.figures.style import FONT_SIZE, MM, WIDTH
+from rovsim.reporting.figures.style import FONT_SIZE_PT, MM, WIDTH_MM
 from rovsim.reporting.wording import title
 
-EM = FONT_SIZE / 72  # inches
+EM_INCHES = FONT_SIZE_PT / 72
 
 
 def lines(looks: dict[str, Look]) -> list[Artist]:
@@ -39,7 +39,7 @@ def add_legend(figure: Figure, handles: Sequence[Any]) -> None:
     if not handles:
         return
     lengths = [len(str(handle.get_label())) for handle in handles]
-    rows = next(r for r in range(1, len(handles) + 1) if _width(lengths, r) < 0.96 * WIDTH * MM)
+    rows = next(r for r in range(1, len(handles) + 1) if _width(lengths, r) < 0.96 * WIDTH_MM * MM)
     figure.legend(
         handles=list(handles),
         loc="outside upper center",
@@ -62,15 +62,15 @@ def _width(lengths: Sequence[int], rows: int) -> float:
     full, longer = divmod(len(lengths), columns)
     ends = np.cumsum([full + (k < longer) for k in range(columns)])
     widest = [max(part) for part in np.split(np.asarray(lengths), ends[:-1])]
-    return EM * sum(0.5 * length + 4.8 for length in widest) if rows < len(lengths) else 0.0
+    return EM_INCHES * sum(0.5 * length + 4.8 for length in widest) if rows < len(lengths) else 0.0
 
 
 def note(figure: Figure, remarks: Iterable[str]) -> None:
     """Write remarks under the figure, each a sentence of its own."""
     text = " ".join(r for r in remarks if r)
     if text:
-        wrapped = "\n".join(textwrap.wrap(text, int(WIDTH * MM / EM / 0.47)))
-        figure.supxlabel(wrapped, fontsize=FONT_SIZE - 1, color="#444444")
+        wrapped = "\n".join(textwrap.wrap(text, int(WIDTH_MM * MM / EM_INCHES / 0.47)))
+        figure.supxlabel(wrapped, fontsize=FONT_SIZE_PT - 1, color="#444444")
 
 
 def explain_empty(axes: Axes, text: str) -> None:

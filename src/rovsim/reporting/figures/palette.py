@@ -15,12 +15,12 @@ Dash = str | tuple[float, tuple[float, ...]]
 Style = dict[str, Any]  # keyword arguments of a Matplotlib artist
 
 
-SHADE = 0.25  # of an area: what lies behind it can still be read
-LEAST = 3.0  # contrast on white of all that is drawn (WCAG 2.1, criterion 1.4.11)
+AREA_OPACITY = 0.25  # of an area: what lies behind it can still be read
+MIN_CONTRAST = 3.0  # contrast on white of all that is drawn (WCAG 2.1, criterion 1.4.11)
 BLACK, GREY = "#000000", "#949494"
 BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 BROWN, SKY, OLIVE = "#7A2E00", "#3A93CE", "#8C7A00"
-STEP = 0.05  # of lightness, until a colour has that
+LIGHTNESS_STEP = 0.05  # of lightness, until a colour has that
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Look:
 
     def area(self) -> Style:
         """Keyword arguments for an area behind lines."""
-        return {"facecolor": self.color, "alpha": SHADE, "linewidth": 0}
+        return {"facecolor": self.color, "alpha": AREA_OPACITY, "linewidth": 0}
 
     def bar(self) -> Style:
         """Keyword arguments for a bar; the hatch is white on the colour."""
@@ -58,11 +58,11 @@ FAMILIES = {
     "noise_floor": Look("#555555", (0, (8, 3))),
 }
 # For learners that have no colour of their own, in the order of their names.
-FURTHER = (Look(SKY, (0, (5, 1, 1, 1))), Look(OLIVE, (0, (4, 1, 2, 1))))
+FURTHER_LOOKS = (Look(SKY, (0, (5, 1, 1, 1))), Look(OLIVE, (0, (4, 1, 2, 1))))
 
 # Members of a family differ by lightness, dash and hatch: (share of white or black, dash, hatch).
 # A share of white is less where the colour would be too light to be seen.
-_MEMBERS: list[tuple[float, Dash | None, str]] = [
+_MEMBER_VARIATIONS: list[tuple[float, Dash | None, str]] = [
     (0.0, None, ""),
     (0.45, (0, (10, 2, 2, 2)), "////"),
     (-0.4, (0, (9, 1.5)), "...."),
@@ -93,7 +93,7 @@ def family_look(name: str) -> Look:
     if kind in FAMILIES:
         return FAMILIES[kind]
     further = sorted(set(list_learners()) - set(FAMILIES))
-    return FURTHER[further.index(kind) % len(FURTHER)]
+    return FURTHER_LOOKS[further.index(kind) % len(FURTHER_LOOKS)]
 
 
 def looks(names: Iterable[str]) -> dict[str, Look]:
@@ -119,9 +119,9 @@ def _member(name: str) -> int:
 
 
 def _variant(look: Look, member: int) -> Look:
-    shade, dash, hatch = _MEMBERS[member % len(_MEMBERS)]
-    while shade > 0.0 and contrast(_mix(look.color, shade)) < LEAST:
-        shade -= STEP
+    shade, dash, hatch = _MEMBER_VARIATIONS[member % len(_MEMBER_VARIATIONS)]
+    while shade > 0.0 and contrast(_mix(look.color, shade)) < MIN_CONTRAST:
+        shade -= LIGHTNESS_STEP
     return replace(look, color=_mix(look.color, shade), dash=dash or look.dash, hatch=hatch)
 
 

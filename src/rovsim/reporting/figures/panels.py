@@ -14,7 +14,7 @@ from rovsim.reporting.figures.series import broken, limits
 from rovsim.reporting.figures.style import sheet
 from rovsim.reporting.wording import listed, title
 
-SHARED = "Axes of one unit share their scale."
+SHARED_SCALE_NOTE = "Axes of one unit share their scale."
 
 
 def six_panels(letters: Sequence[str], units: Sequence[str]) -> tuple[Figure, list[Axes]]:
@@ -71,7 +71,7 @@ def plot_all(
         f"Nothing was measured of {listed(silent)}." if silent else "",
         f"Partly beyond the axes: {listed(map(title, sorted(leaving)))}." if leaving else "",
         f"No values: {listed(map(title, empty))}." if empty else "",
-        SHARED if shared else "",
+        SHARED_SCALE_NOTE if shared else "",
     ]
 
 

@@ -24,8 +24,8 @@ CAPTION = (
 )
 ELEVATION, AZIMUTH = 25, 60  # degrees
 FILL_HEIGHT, FILL_WIDTH = 0.75, 1.25  # found by eye: no label is cut at any shape of box
-ROOM = 0.5  # m shown around the measured path where the tank is unknown
-CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+MARGIN_M = 0.5  # shown around the measured path where the tank is unknown
+BOX_CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 
 
 @styled()
@@ -78,8 +78,8 @@ def _view(measured: Array, tank: Array | None) -> tuple[Array, Array]:
     points = measured[np.isfinite(measured).all(axis=1)]
     if not len(points):
         points = np.array([[-1.0] * 3, [1.0] * 3])
-    low = np.where(np.isfinite(walls[:, 0]), walls[:, 0], points.min(axis=0) - ROOM)
-    high = np.where(np.isfinite(walls[:, 1]), walls[:, 1], points.max(axis=0) + ROOM)
+    low = np.where(np.isfinite(walls[:, 0]), walls[:, 0], points.min(axis=0) - MARGIN_M)
+    high = np.where(np.isfinite(walls[:, 1]), walls[:, 1], points.max(axis=0) + MARGIN_M)
     return np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
 
 
@@ -102,10 +102,10 @@ def _draw_ends(axes: Axes3D, path: Array, color: str) -> None:
 
 
 def _draw_box(axes: Axes3D, low: Array, high: Array) -> None:
-    corners = low + CORNERS * (high - low)
+    corners = low + BOX_CORNERS * (high - low)
     for a in range(8):
         for b in range(a + 1, 8):
-            if abs(CORNERS[a] - CORNERS[b]).sum() == 1:
+            if abs(BOX_CORNERS[a] - BOX_CORNERS[b]).sum() == 1:
                 axes.plot(*corners[[a, b]].T, color="#999999", linewidth=0.6)
 
 

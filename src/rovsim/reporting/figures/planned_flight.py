@@ -28,10 +28,10 @@ from rovsim.reporting.figures.palette import (
 from rovsim.reporting.figures.style import sheet, styled
 
 PATH, CHANCE = VERMILION, GREY
-START: Style = {"marker": "o", "color": PATH, "markersize": 4, "markeredgecolor": "white"}
-COLORS = (BLUE, BROWN, GREEN, PURPLE, BLACK, OLIVE, GREY)  # of commands; then dashed
-DASHES: tuple[Dash, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
-ROOM = 0.3  # m shown around the paths where no wall is known
+START_MARKER: Style = {"marker": "o", "color": PATH, "markersize": 4, "markeredgecolor": "white"}
+COMMAND_COLORS = (BLUE, BROWN, GREEN, PURPLE, BLACK, OLIVE, GREY)  # then dashed
+COMMAND_DASHES: tuple[Dash, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
+MARGIN_M = 0.3  # shown around the paths where no wall is known
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     _draw_view(figure.add_subplot(grid[0, 1]), paths, tank, (0, 2), ("north (m)", "up (m)"))
     axes = figure.add_subplot(grid[1, :])
     steps = max(1, len(planned_flight.time) // 2000)  # more points than the paper shows
-    looks = list(product(DASHES, COLORS))
+    looks = list(product(COMMAND_DASHES, COMMAND_COLORS))
     for k, (name, column) in enumerate(
         zip(planned_flight.names, planned_flight.values.T, strict=True)
     ):
@@ -87,7 +87,7 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
         [
             Line2D([], [], color=PATH, label="likeliest path"),
             Line2D([], [], color=CHANCE, label="where else it may lead"),
-            Line2D([], [], linestyle="none", label="start", **START),
+            Line2D([], [], linestyle="none", label="start", **START_MARKER),
         ],
     )
     return figure
@@ -100,12 +100,12 @@ def _draw_view(
     for path in paths[:0:-1]:
         axes.plot(path[:, a], path[:, b], color=CHANCE, linewidth=0.3, alpha=0.5)
     axes.plot(paths[0, :, a], paths[0, :, b], color=PATH, linewidth=0.9)
-    axes.plot(*paths[0, :1, [a, b]], linestyle="none", **START)
+    axes.plot(*paths[0, :1, [a, b]], linestyle="none", **START_MARKER)
     low, high = np.sort(tank[[a, b]], axis=1).T
     if np.isfinite([low, high]).all():
         axes.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor="#444444"))
     reached = paths[:, :, [a, b]].reshape(-1, 2)
-    least, most = reached.min(axis=0) - ROOM, reached.max(axis=0) + ROOM
+    least, most = reached.min(axis=0) - MARGIN_M, reached.max(axis=0) + MARGIN_M
     least, most = np.fmin(low, least), np.fmax(high, most)
     axes.set(xlim=(least[0], most[0]), ylim=(least[1], most[1]), aspect="equal")
     axes.set_xlabel(labels[0])

@@ -13,7 +13,7 @@ from rovsim.core.signs import minus
 from rovsim.reporting.figures.legends import add_legend, explain_empty, note
 from rovsim.reporting.figures.palette import FAMILIES, Style
 from rovsim.reporting.figures.style import sheet, styled
-from rovsim.reporting.wording import LEAST, short
+from rovsim.reporting.wording import MIN_SHOWN_SHARE, short
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 
@@ -23,8 +23,8 @@ CAPTION = (
     "estimate; for the selected ones, above, also what each adds in the final model, fitted "
     "together. Effects that remove less than 1 % are left out."
 )
-OTHER = "#BBBBBB"
-LOWEST, HIGHEST = -0.2, 1.0  # a share outside is drawn as an arrow at that end
+OTHER_COLOR = "#BBBBBB"
+MIN_SHARE, MAX_SHARE = -0.2, 1.0  # a share outside is drawn as an arrow at that end
 
 
 @styled()
@@ -37,12 +37,14 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
     """
     alone = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.ranking}
     selected = {fit.effect: or_nan(fit.error_reduction) for fit in diagnosis.selected}
-    others = [name for name, share in alone.items() if share >= LEAST and name not in selected]
+    others = [
+        name for name, share in alone.items() if share >= MIN_SHOWN_SHARE and name not in selected
+    ]
     names = [*selected, *sorted(others, key=lambda name: -alone[name])]
     figure = sheet(28 + 6.0 * max(len(names), 3))
     axes = figure.subplots()
     for y, name in enumerate(names):
-        color = FAMILIES["effects"].color if name in selected else OTHER
+        color = FAMILIES["effects"].color if name in selected else OTHER_COLOR
         _draw_row(axes, y, alone.get(name, np.nan), selected.get(name, np.nan), color)
     axes.set_yticks(range(len(names)), [short(name, 28) for name in names])
     for label in axes.get_yticklabels():
@@ -65,15 +67,15 @@ def draw(*, diagnosis: Diagnosis) -> Figure:
 
 def _scale(axes: Axes, shares: Sequence[float], harm: bool) -> None:
     """Set the axis as wide as the largest share and its number need, with no tick above 100 %."""
-    most = 100 * float(np.clip(np.nan_to_num([*shares, 0.1]).max(), 0.0, HIGHEST))
+    most = 100 * float(np.clip(np.nan_to_num([*shares, 0.1]).max(), 0.0, MAX_SHARE))
     axes.set_xlim(-25 if harm else 0, 1.25 * most)
-    marks = MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(100 * LOWEST if harm else 0, most)
-    axes.set_xticks([mark for mark in marks if 100 * LOWEST <= mark <= most])
+    marks = MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(100 * MIN_SHARE if harm else 0, most)
+    axes.set_xticks([mark for mark in marks if 100 * MIN_SHARE <= mark <= most])
 
 
 def _draw_row(axes: Axes, y: int, alone: float, together: float, color: str) -> None:
     axes.barh(y, 100 * np.nan_to_num(alone), 0.66, color=color, linewidth=0)
-    clipped = float(np.clip(together, LOWEST, HIGHEST))
+    clipped = float(np.clip(together, MIN_SHARE, MAX_SHARE))
     if np.isfinite(together):
         marker = "D" if clipped == together else "<" if together < clipped else ">"
         axes.plot(100 * clipped, y, marker, color="black", markersize=4, clip_on=False)
@@ -97,7 +99,7 @@ def _text(alone: float, together: float) -> str:
 
 
 def _handles(chosen: bool) -> list[Line2D | Patch]:
-    others = Patch(color=OTHER, linewidth=0, label="alone")
+    others = Patch(color=OTHER_COLOR, linewidth=0, label="alone")
     if not chosen:
         return [others]
     mark: Style = {

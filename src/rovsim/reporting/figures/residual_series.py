@@ -20,7 +20,7 @@ CAPTION = (
     "short times, which noise does not hide. A perfect model would leave only a little noise "
     "around zero."
 )
-LETTERS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
+AXIS_SYMBOLS = ("Δu̇", "Δv̇", "Δẇ", "Δṗ", "Δq̇", "Δṙ")
 
 
 @styled()
@@ -48,7 +48,7 @@ def draw(
         for name, values in predicted_nu_dot.items()
     }
     style = looks(curves)
-    figure, axes = six_panels(LETTERS, ACCELERATION_UNITS)
+    figure, axes = six_panels(AXIS_SYMBOLS, ACCELERATION_UNITS)
     remarks = plot_all(axes, time[part], curves, style, True) if curves else ["No model was given."]
     remarks.append(f"Means over {BLOCK_S:g} s.")
     for axis in axes:

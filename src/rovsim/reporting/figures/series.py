@@ -5,9 +5,9 @@ from typing import Iterable
 import numpy as np
 from numpy import ndarray as Array
 
-EXCERPT = 60.0  # s: at 150 mm width still 0.4 s per millimetre
-GAP = 3.0  # a step longer than this many median steps is a gap
-HEADROOM = 2.5  # a diverging model may use this many times the measured range, no more
+EXCERPT_S = 60.0  # at 150 mm width still 0.4 s per millimetre
+GAP_STEPS = 3.0  # a step longer than this many median steps is a gap
+HEADROOM_RATIO = 2.5  # a diverging model may use this many times the measured range, no more
 
 
 def broken(time: Array, values: Array) -> tuple[Array, Array]:
@@ -15,7 +15,7 @@ def broken(time: Array, values: Array) -> tuple[Array, Array]:
     steps = np.diff(time)
     if not len(steps):
         return time, values
-    jumps = np.flatnonzero(steps > GAP * np.median(steps)) + 1
+    jumps = np.flatnonzero(steps > GAP_STEPS * np.median(steps)) + 1
     middle = 0.5 * (time[jumps] + time[jumps - 1])
     return np.insert(time, jumps, middle), np.insert(values, jumps, np.nan, axis=0)
 
@@ -45,7 +45,7 @@ def averaged(time: Array, values: Array, seconds: float) -> Array:
     )
 
 
-def excerpt(time: Array, values: Array, length: float = EXCERPT) -> slice:
+def excerpt(time: Array, values: Array, length: float = EXCERPT_S) -> slice:
     """Return the samples of the excerpt of `length` s with most motion; all of a shorter run.
 
     Motion is the sum of the absolute values, each axis divided by its own RMS; NaN counts nothing.
@@ -74,7 +74,7 @@ def limits(reference: Array, others: Iterable[Array]) -> tuple[float, float]:
         return -1.0, 1.0
     base = stacked[0] if len(stacked[0]) else everything
     low, high = float(base.min()), float(base.max())
-    room = max(high - low, 1e-6) * (HEADROOM - 1) / 2
+    room = max(high - low, 1e-6) * (HEADROOM_RATIO - 1) / 2
     visible = everything[(everything >= low - room) & (everything <= high + room)]
     margin = 0.05 * max(float(np.ptp(visible)), 1e-6)
     return float(visible.min()) - margin, float(visible.max()) + margin

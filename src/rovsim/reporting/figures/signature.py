@@ -19,15 +19,15 @@ from rovsim.core.files import write_bytes
 from rovsim.dynamics.effects.base import Signature
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.reporting.figures.palette import FAMILIES, Style
-from rovsim.reporting.figures.style import MM, WIDTH, styled
+from rovsim.reporting.figures.style import MM, WIDTH_MM, styled
 
-HEIGHT = 56.0  # mm
-PIXELS = 700
-COLORS = 64  # in the file: black, orange and greys
-EXCERPT = 20.0  # s
-MISSED, EFFECT = "what the model misses", "what the effect adds to the model"
+HEIGHT_MM = 56.0
+WIDTH_PIXELS = 700
+PNG_COLORS = 64  # in the file: black, orange and greys
+EXCERPT_S = 20.0
+MISSED_LABEL, EFFECT_LABEL = "what the model misses", "what the effect adds to the model"
 BLACK, ORANGE = FAMILIES["measured"].color, FAMILIES["nominal"].color
-LINE: Style = {"color": ORANGE, "linewidth": 1.8}
+EFFECT_LINE: Style = {"color": ORANGE, "linewidth": 1.8}
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,14 +56,14 @@ class Seen:
 @styled()
 def draw_signature(seen: Seen) -> Figure:
     """Draw the error over the condition on the left, over time on the right."""
-    figure = Figure(figsize=(WIDTH * MM, HEIGHT * MM), layout="constrained")
+    figure = Figure(figsize=(WIDTH_MM * MM, HEIGHT_MM * MM), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(0.85, 1.0), sharey=not seen.signature.size)
     _draw_bins(left, seen)
     _draw_trace(right, seen)
     figure.legend(
         handles=[
-            Line2D([], [], color=BLACK, marker="o", markersize=4, label=MISSED),
-            Line2D([], [], label=EFFECT, **LINE),
+            Line2D([], [], color=BLACK, marker="o", markersize=4, label=MISSED_LABEL),
+            Line2D([], [], label=EFFECT_LABEL, **EFFECT_LINE),
         ],
         loc="outside upper center",
         ncols=2,
@@ -76,8 +76,10 @@ def write(figure: Figure, path: Path) -> None:
     """Write a figure as a PNG of few colours; the same figure gives the same bytes."""
     buffer = io.BytesIO()
     with styled():
-        figure.savefig(buffer, format="png", dpi=PIXELS / (WIDTH * MM), metadata={"Software": None})
-    small = Image.open(buffer).convert("RGB").quantize(COLORS)
+        figure.savefig(
+            buffer, format="png", dpi=WIDTH_PIXELS / (WIDTH_MM * MM), metadata={"Software": None}
+        )
+    small = Image.open(buffer).convert("RGB").quantize(PNG_COLORS)
     compressed = io.BytesIO()
     small.save(compressed, format="PNG", optimize=True)
     write_bytes(path, compressed.getvalue())
@@ -94,7 +96,7 @@ def _draw_bins(axes: Axes, seen: Seen) -> None:
     y, added = _height(seen.missed, size), _height(seen.effect, size)
     error = None if size else 2 * seen.missed.error[filled]
     axes.errorbar(x[filled], y[filled], yerr=error, fmt="o", color=BLACK, markersize=4, zorder=3)
-    axes.plot(x[filled], added[filled], zorder=2.5, **LINE)
+    axes.plot(x[filled], added[filled], zorder=2.5, **EFFECT_LINE)
     unit = "deg" if binning.condition.unit == "rad" else binning.condition.unit
     axes.set_xlabel(f"{binning.condition.name} ({unit})")
     axis = seen.signature.axis
@@ -112,9 +114,9 @@ def _draw_trace(axes: Axes, seen: Seen) -> None:
     The whole run is drawn where time itself is the condition.
     """
     whole = seen.signature.condition == "time in the run"
-    part = slice(None) if whole else liveliest(seen.time, seen.added, EXCERPT)
+    part = slice(None) if whole else liveliest(seen.time, seen.added, EXCERPT_S)
     axes.axhline(0.0, color="#444444", linewidth=0.6)
-    axes.plot(seen.time[part], seen.added[part], zorder=2, **LINE)
+    axes.plot(seen.time[part], seen.added[part], zorder=2, **EFFECT_LINE)
     axes.plot(
         seen.time[part],
         seen.error[part],

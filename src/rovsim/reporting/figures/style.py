@@ -19,25 +19,25 @@ from matplotlib.figure import Figure
 from rovsim.core.errors import BadInput
 from rovsim.core.files import write_bytes
 
-WIDTH = 150.0  # mm: text width of an A4 page with 30 mm margins
-FONT_SIZE = 9.0  # pt: one step below 11 pt body text
+WIDTH_MM = 150.0  # text width of an A4 page with 30 mm margins
+FONT_SIZE_PT = 9.0  # one step below 11 pt body text
 DPI = 200  # PNG only; the PDF is drawn as lines
 MM = 1 / 25.4  # inches
 
 # STIX (Times-like) comes with matplotlib, so a figure looks the same on every machine;
 # DejaVu Serif steps in for letters STIX lacks.
-STYLE: dict[str, Any] = {
+RC_PARAMS: dict[str, Any] = {
     "font.family": ["STIXGeneral", "DejaVu Serif"],
     "mathtext.fontset": "stix",
     "text.parse_math": False,  # run and model names may hold a dollar sign
-    "font.size": FONT_SIZE,
-    "axes.labelsize": FONT_SIZE,
-    "axes.titlesize": FONT_SIZE,
-    "figure.labelsize": FONT_SIZE,
-    "figure.titlesize": FONT_SIZE,
-    "legend.fontsize": FONT_SIZE,
-    "xtick.labelsize": FONT_SIZE - 1,
-    "ytick.labelsize": FONT_SIZE - 1,
+    "font.size": FONT_SIZE_PT,
+    "axes.labelsize": FONT_SIZE_PT,
+    "axes.titlesize": FONT_SIZE_PT,
+    "figure.labelsize": FONT_SIZE_PT,
+    "figure.titlesize": FONT_SIZE_PT,
+    "legend.fontsize": FONT_SIZE_PT,
+    "xtick.labelsize": FONT_SIZE_PT - 1,
+    "ytick.labelsize": FONT_SIZE_PT - 1,
     "axes.grid": True,
     "axes.axisbelow": True,
     "grid.color": "#dddddd",
@@ -63,7 +63,7 @@ _lock = threading.RLock()
 @contextmanager
 def styled() -> Iterator[None]:
     """Draw in the thesis style; usable as `@styled()` on a function."""
-    with _lock, matplotlib.rc_context(STYLE), warnings.catch_warnings():
+    with _lock, matplotlib.rc_context(RC_PARAMS), warnings.catch_warnings():
         # a run whose name has letters that neither font has is drawn with boxes
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
@@ -71,7 +71,7 @@ def styled() -> Iterator[None]:
 
 def sheet(height: float) -> Figure:
     """Return an empty figure of the page's text width and `height` in mm."""
-    return Figure(figsize=(WIDTH * MM, height * MM), layout="constrained")
+    return Figure(figsize=(WIDTH_MM * MM, height * MM), layout="constrained")
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[Path]:
@@ -89,7 +89,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[Path]:
         )
     with styled():
         _lay_out(figure)
-        return [_save(figure, folder / f"{name}.{kind}") for kind in _KINDS]
+        return [_save(figure, folder / f"{name}.{kind}") for kind in _WRITERS]
 
 
 def _lay_out(figure: Figure) -> None:
@@ -114,11 +114,11 @@ def _draw_png(figure: Figure, content: BytesIO) -> None:
     FigureCanvasAgg(figure).print_png(content)
 
 
-_KINDS = {"pdf": _draw_pdf, "png": _draw_png}
+_WRITERS = {"pdf": _draw_pdf, "png": _draw_png}
 
 
 def _save(figure: Figure, path: Path) -> Path:
     content = BytesIO()  # an error while writing to a file would leave the PDF's canvas in disorder
-    _KINDS[path.suffix[1:]](figure, content)
+    _WRITERS[path.suffix[1:]](figure, content)
     write_bytes(path, content.getvalue())
     return path

@@ -21,13 +21,13 @@ CAPTION = (
     "samples to judge, grey below: how often the vehicle was there."
 )
 COLUMNS = 3
-SHOWN = 4  # models in one panel
+MAX_MODELS = 4  # in one panel
 
 
 @styled()
 def draw(*, where: ErrorConditions) -> Figure:
     """Draw `where.json`: for each axis the conditions that explain most of some model's error."""
-    models = dict(list(where.models.items())[-SHOWN:])
+    models = dict(list(where.models.items())[-MAX_MODELS:])
     style = looks(models)
     searched = [axis for axis in AXES if any(m.axes[axis] for m in models.values())] or AXES
     figure = sheet(40 * len(searched))

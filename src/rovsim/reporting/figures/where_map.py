@@ -17,7 +17,7 @@ CAPTION = (
     'together with them is high as well. An error that is constant is in the row "throughout" and '
     "taken out of the others."
 )
-BLUES = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
+SHARE_COLORS = LinearSegmentedColormap.from_list("shares", ["#ffffff", "#0072B2"])
 
 
 @styled()
@@ -32,7 +32,7 @@ def draw(*, where: ErrorConditions) -> Figure:
     if model is None or chart is None or not rows:
         explain_empty(axes, "nothing was searched")
         return figure
-    axes.imshow(chart.share, cmap=BLUES, vmin=0, vmax=1, aspect="auto")
+    axes.imshow(chart.share, cmap=SHARE_COLORS, vmin=0, vmax=1, aspect="auto")
     for y, row in enumerate(rows):
         for x, axis in enumerate(chart.axes):
             _draw_cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.found)

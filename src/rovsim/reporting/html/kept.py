@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Iterable, Sequence
 
 # What only the report of a command contains; that of a study contains both.
-SECTIONS = {"compare": 'id="compare"', "diagnose": 'id="verdict"'}
-FOLDER = re.compile(r'<meta name="campaign" content="([^"]*)">')
+SECTION_MARKS = {"compare": 'id="compare"', "diagnose": 'id="verdict"'}
+CAMPAIGN_PATTERN = re.compile(r'<meta name="campaign" content="([^"]*)">')
 
 
 def keep_other(page: Path, command: str) -> str:
@@ -38,12 +38,12 @@ class Outdated:
     Attributes:
         figures: PNG files that the earlier reports of this command show.
         pages: earlier reports that the new one does not overwrite.
-        told: a sentence if the earlier reports are of another campaign; else empty.
+        notice: a sentence if the earlier reports are of another campaign; else empty.
     """
 
     figures: tuple[Path, ...] = ()
     pages: tuple[Path, ...] = ()
-    told: str = ""
+    notice: str = ""
 
     def remove(self, drawn: Iterable[Path]) -> None:
         """Remove all that the new report did not overwrite; `drawn` are its figures."""
@@ -86,7 +86,7 @@ def _shows(texts: Sequence[str], picture: bytes) -> bool:
 
 def _tell_other(out: Path, text: str, campaign: str | None) -> str:
     """Say that results of another campaign were replaced; empty if that is the same or is gone."""
-    match = FOLDER.search(text)
+    match = CAMPAIGN_PATTERN.search(text)
     other = Path(unescape(match[1])) if match else Path()
     if not match or campaign is None or not other.exists():
         return ""
@@ -107,5 +107,5 @@ def _find_kind(page: Path) -> str:
     if not page.is_file():
         return ""
     text = page.read_text(encoding="utf-8", errors="replace")
-    kinds = [command for command, section in SECTIONS.items() if section in text]
+    kinds = [command for command, section in SECTION_MARKS.items() if section in text]
     return "study" if len(kinds) > 1 else kinds[0] if kinds else ""

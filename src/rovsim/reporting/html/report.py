@@ -33,7 +33,7 @@ from rovsim.results.published_errors import PublishedErrors
 from rovsim.results.timing import CONTROL_RATES_HZ
 
 # What the Compare section tabulates: horizon and quantity.
-COMPARED = (
+COMPARED_METRICS = (
     (STANDARD_HORIZON, "velocity_rmse"),
     (STANDARD_HORIZON, "acceleration_rmse"),
     (STANDARD_HORIZON, "velocity_mae"),
@@ -156,7 +156,7 @@ def _text(value: object) -> str:
 
 
 def _tabulate_errors(comparison: Comparison) -> list[Table]:
-    return [tabulate_errors(comparison, h, "test", quantity) for h, quantity in COMPARED]
+    return [tabulate_errors(comparison, h, "test", quantity) for h, quantity in COMPARED_METRICS]
 
 
 def _explained(data: ReportData) -> dict[str, str]:

@@ -8,7 +8,7 @@ from rovsim.evaluation.held_out.published_errors import (
 )
 from rovsim.reporting.pages.marked import table
 from rovsim.reporting.tables import QUANTITIES
-from rovsim.reporting.wording import known, significant
+from rovsim.reporting.wording import number_or_dash, significant
 from rovsim.reporting.words.published_errors import tell_standings
 from rovsim.results.published_errors import PublishedErrors
 
@@ -36,8 +36,8 @@ def _tabulate_standings(published_errors: PublishedErrors) -> str:
         [
             name,
             f"{standing.below} of {standing.cells}",
-            known(standing.geometric_mean),
-            *(known(standing.by_metric[m].geometric_mean) for m in METRICS),
+            number_or_dash(standing.geometric_mean),
+            *(number_or_dash(standing.by_metric[m].geometric_mean) for m in METRICS),
         ]
         for name, standing in published_errors.models.items()
     ]
@@ -52,7 +52,13 @@ def _on_one_baseline(published_errors: PublishedErrors) -> list[str]:
     if SIMULATOR not in published_errors.models:
         return []
     rows = [
-        [name, *(known(_against_simulator(published_errors, name, metric)) for metric in METRICS)]
+        [
+            name,
+            *(
+                number_or_dash(_against_simulator(published_errors, name, metric))
+                for metric in METRICS
+            ),
+        ]
         for name in published_errors.models
     ]
     return [
@@ -80,7 +86,7 @@ def _cells(published_errors: PublishedErrors, metric: str) -> list[str]:
             cell.axis if cell.demanded else f"({cell.axis})",
             significant(cell.mark),
             f"{cell.best.model}, {cell.best.variant}",
-            *(known(cell.ratios.get(name)) for name in own_models),
+            *(number_or_dash(cell.ratios.get(name)) for name in own_models),
         ]
         for cell in published_errors.cells
         if cell.metric == metric

@@ -8,31 +8,31 @@ from rovsim.reporting.wording import listed, percent, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, RivalEffect, ScaleOfForces
 
-MANY = 1e6  # odds that need no number
+MAX_TOLD_ODDS = 1e6  # odds that need no number
 
 
-def apart_sentences(found: Diagnosis) -> list[str]:
+def apart_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say which effects and parameters the runs cannot tell apart, and how likely rivals are."""
     sentences = [
-        f"These runs cannot tell {listed(group)} apart." for group in found.indistinguishable
+        f"These runs cannot tell {listed(group)} apart." for group in diagnosis.indistinguishable
     ]
     sentences += [
-        f"Known only together, not one by one: {', '.join(_named(group, found))}."
-        for group in found.known_together
+        f"Known only together, not one by one: {', '.join(_named(group, diagnosis))}."
+        for group in diagnosis.known_together
     ]
-    return sentences + _runner_up_sentences(_list_runners_up(found))
+    return sentences + _runner_up_sentences(_list_runners_up(diagnosis))
 
 
-def _named(group: Sequence[str], found: Diagnosis) -> list[str]:
-    return with_thruster_names(group, found.thrusters)
+def _named(group: Sequence[str], diagnosis: Diagnosis) -> list[str]:
+    return with_thruster_names(group, diagnosis.thrusters)
 
 
-def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
+def _list_runners_up(diagnosis: Diagnosis) -> list[RivalEffect]:
     """List the likeliest rival of each selected effect among those that can be told from it."""
     best = []
-    for fit in found.selected:
-        rivals = [r for r in found.rivals if r.instead_of == fit.effect]
-        alike = (group for group in found.indistinguishable if fit.effect in group)
+    for fit in diagnosis.selected:
+        rivals = [r for r in diagnosis.rivals if r.instead_of == fit.effect]
+        alike = (group for group in diagnosis.indistinguishable if fit.effect in group)
         alike_names = {name for group in alike for name in group}
         behind = [r for r in rivals if r.effect not in alike_names]
         if behind:
@@ -43,8 +43,8 @@ def _list_runners_up(found: Diagnosis) -> list[RivalEffect]:
 def _runner_up_sentences(best: Sequence[RivalEffect]) -> list[str]:
     """Say how much less likely the rivals are; one sentence for all that are quite improbable."""
     odds = [(r, odds_of(or_nan(r.deficit))) for r in best]
-    near = [(r, significant(times, 2)) for r, times in odds if times <= MANY]
-    far = [r for r, times in odds if times > MANY]
+    near = [(r, significant(times, 2)) for r, times in odds if times <= MAX_TOLD_ODDS]
+    far = [r for r, times in odds if times > MAX_TOLD_ODDS]
     if len(far) == 1:
         near, far = [*near, (far[0], "more than a million")], []
     sentences = [

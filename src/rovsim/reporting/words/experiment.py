@@ -9,26 +9,30 @@ from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
 from rovsim.results.experiment import Experiment, RivalOdds, Surer, UsualManoeuvre
 
-SURE = 1e6
+MAX_TOLD_ODDS = 1e6
 
 
-def tell_experiment(found: Experiment, thrusters: Sequence[str] = ()) -> str:
+def tell_experiment(experiment: Experiment, thrusters: Sequence[str] = ()) -> str:
     """Say what a flight is expected to tell, compared with usual manoeuvres, and its limits.
 
     Args:
-        found: the designed flight.
+        experiment: the designed flight.
         thrusters: names of the thrusters in the vehicle file.
     """
-    lines = ["", f"A flight of {found.seconds:g} s ({found.manoeuvre}) is expected to give", ""]
-    lines += [_tell_odds(name, item) for name, item in found.expects.odds.items()]
-    names = with_thruster_names(list(found.expects.std), thrusters)
-    lines += map(_tell_std, names, found.expects.std.values())
-    if found.expects.std:
+    lines = [
+        "",
+        f"A flight of {experiment.seconds:g} s ({experiment.manoeuvre}) is expected to give",
+        "",
+    ]
+    lines += [_tell_odds(name, item) for name, item in experiment.expects.odds.items()]
+    names = with_thruster_names(list(experiment.expects.std), thrusters)
+    lines += map(_tell_std, names, experiment.expects.std.values())
+    if experiment.expects.std:
         lines += ["", "± is the 95 % interval."]
     lines += ["", "of usual manoeuvres, on the same seconds and at their best amplitudes:", ""]
-    lines += [f"  {name:<11}{tell_share(item)}" for name, item in found.baselines.items()]
-    warnings = [line for item in found.warnings for line in ("", f"Warning: {item}")]
-    return "\n".join([*lines, "", tell_limits(found), *warnings])
+    lines += [f"  {name:<11}{tell_share(item)}" for name, item in experiment.baselines.items()]
+    warnings = [line for item in experiment.warnings for line in ("", f"Warning: {item}")]
+    return "\n".join([*lines, "", tell_limits(experiment), *warnings])
 
 
 def tell_share(usual: UsualManoeuvre) -> str:
@@ -44,9 +48,9 @@ def _tell_odds(name: str, one: RivalOdds) -> str:
 
 def size_of_odds(odds: float) -> str:
     """Return odds as text; beyond a million to one without a number."""
-    if odds > SURE:
+    if odds > MAX_TOLD_ODDS:
         return "over a million"
-    return significant(odds) if odds > 1.0 / SURE else "under one in a million"
+    return significant(odds) if odds > 1.0 / MAX_TOLD_ODDS else "under one in a million"
 
 
 def _tell_std(name: str, one: Surer) -> str:
@@ -58,9 +62,9 @@ def _tell_std(name: str, one: Surer) -> str:
     return f"  {name}: {then} (now {now})"
 
 
-def tell_limits(found: Experiment) -> str:
+def tell_limits(experiment: Experiment) -> str:
     """Say how near the flight comes to walls, and its largest speed, turn rate and tilt."""
-    limits = found.keeps
+    limits = experiment.keeps
     wall = "" if limits.nearest_wall_m is None else f"{limits.nearest_wall_m:.2f} m from any wall, "
     return (
         f"It stays {wall}below {limits.speed_m_s:.2f} m/s, {limits.turn_rate_rad_s:.2f} rad/s and "

@@ -4,7 +4,7 @@ from typing import Mapping
 
 from rovsim.core.model_names import EFFECTS
 from rovsim.reporting.tables import QUANTITIES
-from rovsim.reporting.wording import known, title
+from rovsim.reporting.wording import number_or_dash, title
 from rovsim.results.pitfalls import PITFALLS, Cost, Pitfalls
 from rovsim.results.published_errors import ModelStanding, PublishedErrors
 
@@ -15,13 +15,15 @@ def tell_standings(published_errors: PublishedErrors) -> list[str]:
     return [_sentence(n, standing) for n, standing in models.items() if n.startswith(f"{EFFECTS}+")]
 
 
-def _sentence(name: str, found: ModelStanding) -> str:
+def _sentence(name: str, standing: ModelStanding) -> str:
     missed = ", ".join(
-        f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({known(c.ratio)})" for c in found.not_below
+        f"{c.run} {c.axis} {QUANTITIES[c.metric][0]} ({number_or_dash(c.ratio)})"
+        for c in standing.not_below
     )
     return (
-        f"{title(name)}: {found.below} of {found.cells} cells below the mark, geometric mean of "
-        f"the ratios {known(found.geometric_mean)}. " + (f"Not below: {missed}." if missed else "")
+        f"{title(name)}: {standing.below} of {standing.cells} cells below the mark, geometric "
+        f"mean of the ratios {number_or_dash(standing.geometric_mean)}. "
+        + (f"Not below: {missed}." if missed else "")
     ).strip()
 
 
@@ -36,7 +38,7 @@ def tell_pitfalls(pitfalls: Pitfalls) -> list[str]:
 
 def _tell_costs(runs: Mapping[str, Mapping[str, Cost]], name: str) -> str:
     return ", ".join(
-        f"{known(costs[name].right)} becomes {known(costs[name].wrong)} ({run})"
+        f"{number_or_dash(costs[name].right)} becomes {number_or_dash(costs[name].wrong)} ({run})"
         for run, costs in runs.items()
         if name in costs
     )

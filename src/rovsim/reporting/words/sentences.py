@@ -13,9 +13,9 @@ from rovsim.reporting.figures.palette import family, is_learned
 from rovsim.reporting.figures.pooled import pool, relate
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.wording import (
-    ERROR,
+    ERROR_NAME,
     FLOOR_COUNTS_ALL,
-    STEP,
+    LADDER_STEP,
     listed,
     several,
     significant,
@@ -27,8 +27,8 @@ from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.ladder import Ladder
 from rovsim.results.quality import Quality
 
-EQUAL = 0.01  # share: a smaller change is called none
-REACHED = 0.05  # the noise floor is an estimate itself
+CHANGE_TOLERANCE = 0.01  # share: a smaller change is called none
+FLOOR_TOLERANCE = 0.05  # the noise floor is an estimate itself
 
 
 def summarize(data: ReportData) -> list[str]:
@@ -121,7 +121,7 @@ def _against_nothing(errors: DataFrame) -> list[str]:
     ratio = relate(errors, ZERO_ACCELERATION).loc[NOMINAL]
     if ratio.isna().all():
         return []
-    beaten = ratio.index[ratio >= 1 - EQUAL]
+    beaten = ratio.index[ratio >= 1 - CHANGE_TOLERANCE]
     if len(beaten):
         return [f"In {listed(beaten)} it is no better than a vehicle that keeps its velocity."]
     axes = "every axis with a value" if ratio.isna().any() else "every axis"
@@ -169,7 +169,7 @@ def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, f
     """Return the error of each model divided by that of nominal, and what that error measures."""
     if steps.get(NOMINAL) and any(is_learned(name) for name in steps):
         ratios = {name: value / steps[NOMINAL] for name, value in steps.items()}
-        return ratios, f"the {ERROR}"
+        return ratios, f"the {ERROR_NAME}"
     rows = relate(errors)
     has_value = rows.reindex([NOMINAL]).loc[NOMINAL].notna()
     if not has_value.any():
@@ -182,7 +182,7 @@ def _overall(errors: DataFrame, steps: Mapping[str, float]) -> tuple[dict[str, f
 
 def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
     subject = "The learned residual" if count == 1 else f"Of {count} learned residuals,"
-    if ratio < 1 - EQUAL:
+    if ratio < 1 - CHANGE_TOLERANCE:
         verb = "lowers" if count == 1 else "lowers the error most:"
         tail = (
             f" {measure} by {_percent(1 - ratio)}" if count == 1 else f" by {_percent(1 - ratio)}"
@@ -191,7 +191,7 @@ def _best_sentence(best: str, ratio: float, count: int, measure: str) -> str:
         return f"{text}." if count == 1 else f"{text} ({measure})."
     change = (
         "leaves the error as it is"
-        if ratio <= 1 + EQUAL
+        if ratio <= 1 + CHANGE_TOLERANCE
         else f"raises the error by {_percent(ratio - 1)}"
     )
     if count == 1:
@@ -207,7 +207,9 @@ def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
         learned: the lowest ratio of a model with a residual.
     """
     # in a ladder each effect is added to those above; the last step may be a proposed equation
-    steps = {name: r for name, r in ratios.items() if name == EFFECTS or STEP.fullmatch(name)}
+    steps = {
+        name: r for name, r in ratios.items() if name == EFFECTS or LADDER_STEP.fullmatch(name)
+    }
     alone = [r for name, r in steps.items() if name != f"+{PROPOSED}"][-1:]
     if alone:
         return [
@@ -223,9 +225,9 @@ def _effects_alone(ratios: Mapping[str, float], learned: float) -> list[str]:
 def _per_axis(row: Series) -> list[str]:
     if row.isna().all():
         return []
-    lower = [f"{a} (−{_percent(1 - r)})" for a, r in row.items() if r < 1 - EQUAL]
-    equal = [a for a, r in row.items() if abs(r - 1) <= EQUAL]
-    worse = [f"{a} (+{_percent(r - 1)})" for a, r in row.items() if r > 1 + EQUAL]
+    lower = [f"{a} (−{_percent(1 - r)})" for a, r in row.items() if r < 1 - CHANGE_TOLERANCE]
+    equal = [a for a, r in row.items() if abs(r - 1) <= CHANGE_TOLERANCE]
+    worse = [f"{a} (+{_percent(r - 1)})" for a, r in row.items() if r > 1 + CHANGE_TOLERANCE]
     groups = (("lower in", lower), ("the same in", equal), ("higher in", worse))
     parts = [f"{phrase} {listed(axes)}" for phrase, axes in groups if axes]
     return [f"Axis by axis its velocity RMSE is {'; '.join(parts)}."]
@@ -233,9 +235,11 @@ def _per_axis(row: Series) -> list[str]:
 
 def _tell_others(learned: Mapping[str, float], best: str) -> list[str]:
     failing = [
-        f"{title(name)} (+{_percent(r - 1)})" if r > 1 + EQUAL else f"{title(name)} (no change)"
+        f"{title(name)} (+{_percent(r - 1)})"
+        if r > 1 + CHANGE_TOLERANCE
+        else f"{title(name)} (no change)"
         for name, r in learned.items()
-        if name != best and r >= 1 - EQUAL
+        if name != best and r >= 1 - CHANGE_TOLERANCE
     ]
     return [f"Not better than nominal: {listed(failing)}."] if failing else []
 
@@ -251,7 +255,7 @@ def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]
     if len(models) < 2:
         return []
     best = min(models, key=lambda name: models[name])
-    text = f"The lowest {ERROR} is {significant(models[best])}, that of {title(best)}"
+    text = f"The lowest {ERROR_NAME} is {significant(models[best])}, that of {title(best)}"
     others = [
         f"{title(n)} has {significant(models[n])}"
         for n in (NOMINAL, ZERO_ACCELERATION)
@@ -267,7 +271,7 @@ def ladder_sentences(steps: Mapping[str, float], unexplained: bool) -> list[str]
 
 
 def _floor_sentence(ratio: float, floor: float) -> str:
-    if ratio <= 1 + REACHED:
+    if ratio <= 1 + FLOOR_TOLERANCE:
         return (
             f"It reaches the noise floor, {significant(floor)}. With these recordings no model can "
             "be shown to be better."

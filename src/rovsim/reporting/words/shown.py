@@ -7,15 +7,15 @@ from rovsim.reporting.wording import listed, significant
 from rovsim.results.diagnosis import Diagnosis, LookedAt, Standstill
 
 
-def shown_sentences(found: Diagnosis) -> list[str]:
+def shown_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say all that the recordings could not show, and which parts of them were not used."""
     return [
-        *held_sentences(found.standstills),
-        *still_sentences(found.not_excited),
-        *idle_sentences(found.not_commanded),
-        *silent_sentences(found),
-        *part_sentences(found.looked_at),
-        *lost_sentences(found.not_followed_from_s),
+        *held_sentences(diagnosis.standstills),
+        *still_sentences(diagnosis.not_excited),
+        *idle_sentences(diagnosis.not_commanded),
+        *silent_sentences(diagnosis),
+        *part_sentences(diagnosis.looked_at),
+        *lost_sentences(diagnosis.not_followed_from_s),
     ]
 
 
@@ -47,9 +47,9 @@ def idle_sentences(names: Sequence[str]) -> list[str]:
     return [f"Never commanded in a train run, and so not judged: {listed(names)}."]
 
 
-def silent_sentences(found: Diagnosis) -> list[str]:
+def silent_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say which axes were not measured, and which effects the recordings could not show."""
-    axes, effects = found.not_measured, found.not_observable
+    axes, effects = diagnosis.not_measured, diagnosis.not_observable
     unmeasured = f"Not measured, and so without errors: {listed(axes)}."
     unseen = f"Even if present, these could not be seen in these recordings: {listed(effects)}."
     return [*([unmeasured] if axes else []), *([unseen] if effects else [])]

@@ -5,12 +5,12 @@ from typing import Mapping
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.wording import IMPROBABLE, listed, tell_probability
+from rovsim.reporting.wording import MIN_TOLD_PROBABILITY, listed, tell_probability
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
 
-DOUBTS: dict[Doubt | None, str] = {
+DOUBT_REASONS: dict[Doubt | None, str] = {
     None: "no other name was tried",
     "law": "the proposed equation does without it",
     "stand_in": "an equation that was tried takes most of its place",
@@ -26,18 +26,18 @@ def tell_sureness(one: SelectedEffect) -> str:
     """Say the probability of a selected effect's name, or why none is given."""
     if one.probability is not None:
         return f"probability {tell_probability(one.probability)}"
-    return f"no probability: {DOUBTS[one.doubt]}"
+    return f"no probability: {DOUBT_REASONS[one.doubt]}"
 
 
-def unsure_sentences(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
+def unsure_sentences(diagnosis: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> list[str]:
     """Say which effects surely act although some of their values may be those of no effect."""
     sentences = []
-    for fit in found.selected:
+    for fit in diagnosis.selected:
         cls = catalogue.get(fit.effect)
         absence = {p.name: p.neutral_value for p in cls.parameters} if cls else {}
         unsure = [name for name, v in fit.parameters.items() if _holds(v, absence.get(name, 0.0))]
-        if unsure and (fit.probability or 0.0) > 1.0 - IMPROBABLE:
-            names = [name_parameter(fit.effect, name, found.thrusters) for name in unsure]
+        if unsure and (fit.probability or 0.0) > 1.0 - MIN_TOLD_PROBABILITY:
+            names = [name_parameter(fit.effect, name, diagnosis.thrusters) for name in unsure]
             values = dict.fromkeys(f"{absence.get(name, 0.0):g}" for name in unsure)
             hold = "intervals of {} hold" if len(names) > 1 else "interval of {} holds"
             sentences.append(

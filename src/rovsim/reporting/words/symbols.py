@@ -6,7 +6,7 @@ from typing import Collection, Iterator
 from rovsim.dynamics.effects.base import Effect, Parameter
 
 # Symbols that effects share; an effect that uses one otherwise declares it (`Effect.symbols`).
-COMMON = {
+COMMON_SYMBOLS = {
     r"\tau_i": "force or moment on the vehicle along axis i",
     r"\tau": "force and moment on the vehicle",
     r"\nu_{r,i}": "velocity through the water along axis i",
@@ -20,8 +20,8 @@ COMMON = {
     "t": "time",
     "u": "command",
 }
-WORDS = re.compile(r"(?<!_)\\text\{[^}]*\}|\\mathrm\{[^}]*\}")  # no symbols inside
-INDEXED = re.compile(r"(.+)_\{(.+)\}")  # a parameter for each axis, pair or thruster
+WORD_PATTERN = re.compile(r"(?<!_)\\text\{[^}]*\}|\\mathrm\{[^}]*\}")  # no symbols inside
+INDEXED_PATTERN = re.compile(r"(.+)_\{(.+)\}")  # a parameter for each axis, pair or thruster
 Meaning = tuple[str, str]  # symbol in LaTeX, what it is
 
 
@@ -33,8 +33,8 @@ def explain_symbols(effect: type[Effect], values: Collection[str] | None = None)
         values: names of the parameters that have a value. For all others the explanation states
             their neutral value. None: for no parameter.
     """
-    meanings = COMMON | dict(effect.symbols) | dict(_name_parameters(effect, values))
-    remaining, by_place = WORDS.sub(lambda words: " " * len(words[0]), effect.equation), {}
+    meanings = COMMON_SYMBOLS | dict(effect.symbols) | dict(_name_parameters(effect, values))
+    remaining, by_place = WORD_PATTERN.sub(lambda words: " " * len(words[0]), effect.equation), {}
     for symbol in sorted(meanings, key=len, reverse=True):
         begin = "" if symbol.startswith("\\") else r"(?<![A-Za-z\\])"
         pattern = rf"{begin}{re.escape(symbol)}(?![A-Za-z_])"
@@ -52,7 +52,7 @@ def _name_parameters(effect: type[Effect], values: Collection[str] | None) -> It
     together: dict[str, list[str]] = {}
     for parameter in effect.parameters:
         yield parameter.symbol, _name(parameter, values)
-        if indexed := INDEXED.fullmatch(parameter.symbol):
+        if indexed := INDEXED_PATTERN.fullmatch(parameter.symbol):
             base, index = indexed.groups()
             symbol = f"{base}_{{ij}}" if "," in index else f"{base}_i"
             together.setdefault(symbol, []).append(parameter.name)

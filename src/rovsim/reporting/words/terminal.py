@@ -7,7 +7,7 @@ from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.wording import (
     ERROR_MEANING,
-    LEAST,
+    MIN_SHOWN_SHARE,
     fit,
     listed,
     percent,
@@ -16,7 +16,7 @@ from rovsim.reporting.wording import (
     title,
 )
 from rovsim.reporting.words.sentences import band_sentences, doubt_sentences
-from rovsim.reporting.words.verdict import NO_TEST, Missing, explain
+from rovsim.reporting.words.verdict import NO_TEST_RUN, Missing, explain
 from rovsim.results.bands import Bands
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
@@ -24,14 +24,14 @@ from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.fitted import FittedEffect
 from rovsim.results.quality import Quality
 
-BAR = 24  # letters
-MOST = 6  # findings printed; the report has them all
-RANKED = 5  # effects of the ranking printed
-NO_ERROR = (
+BAR_LETTERS = 24
+MAX_PRINTED_SENTENCES = 6  # the report has them all
+MAX_RANKED_EFFECTS = 5
+NO_ERROR_SENTENCE = (
     "No error of {} on the test runs: there it runs away within 2 s of the measured state. Usually "
     "a total drag is negative, or a value has the wrong sign."
 )
-MEANING = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE fit)."
+ERROR_NOTE = f"{ERROR_MEANING}; here on the test runs. Fit is 100 % minus it (NRMSE fit)."
 
 
 def tell_comparison(
@@ -50,9 +50,9 @@ def tell_comparison(
         coverage: how much of the test runs lies inside the bands; None if unknown.
         away: models that diverge on the test runs.
     """
-    table = _tell_errors(errors) if tested else ["", *fold(NO_TEST)]
+    table = _tell_errors(errors) if tested else ["", *fold(NO_TEST_RUN)]
     if tested and away:
-        table += ["", *fold(NO_ERROR.format(listed([title(name) for name in away])))]
+        table += ["", *fold(NO_ERROR_SENTENCE.format(listed([title(name) for name in away])))]
     sentences = band_sentences(coverage) if coverage else []
     bands = [line for sentence in sentences for line in ("", *fold(sentence))]
     return "\n".join([*table, *bands, *_tell_findings(where)])
@@ -75,16 +75,17 @@ def tell_residual(without: float | None, corrected: float | None) -> str:
 
 
 def _tell_errors(errors: Mapping[str, float | None]) -> list[str]:
-    lines = ["", *fold(MEANING), ""]
+    lines = ["", *fold(ERROR_NOTE), ""]
     width = max((len(title(name)) for name in errors), default=0)
     most = max((e for e in errors.values() if e is not None), default=0.0) or 1.0
     lines += [
-        f"  {title(n):<{width}}  {_bar((e or 0.0) / most)} {_told(e)}" for n, e in errors.items()
+        f"  {title(n):<{width}}  {_bar((e or 0.0) / most)} {_format_error(e)}"
+        for n, e in errors.items()
     ]
     return lines
 
 
-def _told(error: float | None) -> str:
+def _format_error(error: float | None) -> str:
     return significant(or_nan(error)) + (
         f", fit {minus(f'{fit(error):.0f}')} %" if error is not None else ""
     )
@@ -93,7 +94,7 @@ def _told(error: float | None) -> str:
 def tell_doubts(quality: Mapping[str, Quality]) -> str:
     """Say what to check in the recordings before results are trusted; empty without doubts."""
     doubts = doubt_sentences(quality)
-    printed, hidden = doubts[:MOST], len(doubts) - MOST
+    printed, hidden = doubts[:MAX_PRINTED_SENTENCES], len(doubts) - MAX_PRINTED_SENTENCES
     lines = ["", "", "check the recordings first", ""] if doubts else []
     for doubt in printed:
         lines += fold(doubt, "  - ", "    ")
@@ -104,7 +105,10 @@ def _tell_findings(where: ErrorConditions) -> list[str]:
     if not where.models:
         return []
     name, model = list(where.models.items())[-1]
-    printed, hidden = model.sentences[:MOST], len(model.sentences) - MOST
+    printed, hidden = (
+        model.sentences[:MAX_PRINTED_SENTENCES],
+        len(model.sentences) - MAX_PRINTED_SENTENCES,
+    )
     head = f"where {title(name)} fails ({model.split} runs {several(model.runs)})"
     lines = ["", *fold(head), ""]
     for sentence in printed:
@@ -112,15 +116,15 @@ def _tell_findings(where: ErrorConditions) -> list[str]:
     return [*lines, f"  … and {hidden} more in the report"] if hidden > 0 else lines
 
 
-def tell_diagnosis(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
+def tell_diagnosis(diagnosis: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> str:
     """Return the verdict, the selected effects, and the best effects alone, with bars."""
-    verdict = explain(found, catalogue)
+    verdict = explain(diagnosis, catalogue)
     lines = ["", *fold(f"{verdict.sentence} (verdict: {verdict.name})")]
     lines += [""] if verdict.missing else []
-    for fitted, words in zip(found.selected, verdict.missing, strict=True):
+    for fitted, words in zip(diagnosis.selected, verdict.missing, strict=True):
         lines += _tell_effect(fitted.error_reduction or 0.0, words)
     lines += ["", *fold(verdict.key)] if verdict.key else []
-    lines += _tell_ranking(found.ranking)
+    lines += _tell_ranking(diagnosis.ranking)
     steps = [f"Next: {verdict.next}"] if verdict.next else []
     for remark in (*verdict.sentences, *steps):
         lines += ["", *fold(remark)]
@@ -144,7 +148,9 @@ def _tell_effect(share: float, words: Missing) -> list[str]:
 
 def _tell_ranking(ranking: Sequence[FittedEffect]) -> list[str]:
     helping = [(r.error_reduction or 0.0, r.effect) for r in ranking]
-    top = sorted((pair for pair in helping if pair[0] >= LEAST), reverse=True)[:RANKED]
+    top = sorted((pair for pair in helping if pair[0] >= MIN_SHOWN_SHARE), reverse=True)[
+        :MAX_RANKED_EFFECTS
+    ]
     if not top:
         return []
     rows = [f"  {effect:<22}{_bar(share)} {100 * share:.0f} %" for share, effect in top]
@@ -152,5 +158,5 @@ def _tell_ranking(ranking: Sequence[FittedEffect]) -> list[str]:
 
 
 def _bar(share: float) -> str:
-    full = max(0, min(BAR, round(BAR * share)))
-    return "█" * full + "·" * (BAR - full)
+    full = max(0, min(BAR_LETTERS, round(BAR_LETTERS * share)))
+    return "█" * full + "·" * (BAR_LETTERS - full)

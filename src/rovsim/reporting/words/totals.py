@@ -10,7 +10,7 @@ from rovsim.reporting.wording import listed, significant
 class Total(NamedTuple):
     """The total of a coefficient in words, and what is wrong with it; empty if nothing is."""
 
-    told: str
+    text: str
     wrong: str
 
 

@@ -12,8 +12,8 @@ from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.units import unit
 from rovsim.reporting.wording import (
-    ERROR,
     ERROR_MEANING,
+    ERROR_NAME,
     FLOOR_COUNTS_ALL,
     listed,
     percent,
@@ -27,23 +27,23 @@ from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect, FittedValue
 
-VERDICTS = {
+VERDICT_SENTENCES = {
     "missing_effects": "The model lacks physics that the catalogue knows.",
     "adequate": "Nothing is missing: what is left is noise.",
     "unexplained": "Something is missing that the catalogue does not know.",
     "insufficient_data": "The recordings cannot tell: too short, or some axis never moved.",
 }
-LOST = (
+LOST_SENTENCE = (
     "The recordings cannot tell: before they end the model runs away, although it is corrected at "
     "every reading."
 )
-MOST_PUSHES = 3  # moments of a disturbance that are told
-NO_TEST = (
+MAX_TOLD_PUSHES = 3  # moments of a disturbance that are told
+NO_TEST_RUN = (
     "No test run could be used, so there is no error to report. "
     "Write `split: test` for a run in campaign.yaml to hold it out."
 )
-NO_TRAIN = "Nothing could be judged: no train run could be used, and only those are looked at."
-AWAY = "The model cannot be judged: it runs away from the train runs."
+NO_TRAIN_RUN = "Nothing could be judged: no train run could be used, and only those are looked at."
+RUNS_AWAY = "The model cannot be judged: it runs away from the train runs."
 
 
 @dataclass(frozen=True)
@@ -97,46 +97,46 @@ class Verdict:
         return (self.error, *self.remarks)
 
 
-def explain(found: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
+def explain(diagnosis: Diagnosis, catalogue: Mapping[str, type[Effect]]) -> Verdict:
     """Say in words what a diagnosis found; the catalogue tells what its effects are."""
     remarks = [
-        *unsure_sentences(found, catalogue),
-        *apart_sentences(found),
-        *scale_sentences(found.common_scale),
-        *unexplained_sentences(found),
-        *shown_sentences(found),
+        *unsure_sentences(diagnosis, catalogue),
+        *apart_sentences(diagnosis),
+        *scale_sentences(diagnosis.common_scale),
+        *unexplained_sentences(diagnosis),
+        *shown_sentences(diagnosis),
     ]
     missing = tuple(
         _missing(
             fit,
             catalogue.get(fit.effect),
-            found.thrusters,
+            diagnosis.thrusters,
             tell_sureness(fit),
             above=bool(place),
         )
-        for place, fit in enumerate(found.selected)
+        for place, fit in enumerate(diagnosis.selected)
     )
     return Verdict(
-        found.verdict,
-        _sentence(found),
+        diagnosis.verdict,
+        _sentence(diagnosis),
         missing,
         _key(len(missing)),
-        error_sentence(found),
+        error_sentence(diagnosis),
         tuple(remarks),
-        found.next_experiment,
+        diagnosis.next_experiment,
     )
 
 
-def _sentence(found: Diagnosis) -> str:
+def _sentence(diagnosis: Diagnosis) -> str:
     """Return the sentence of the verdict; where nothing could be judged, one that says why."""
-    unjudged = found.verdict == "insufficient_data" and not found.ranking
-    if unjudged and found.not_followed_from_s:
-        return AWAY
-    if unjudged and found.looked_at is not None and not found.looked_at.of:
-        return NO_TRAIN
-    if found.verdict == "insufficient_data" and found.not_followed_from_s:
-        return LOST
-    return VERDICTS[found.verdict]
+    unjudged = diagnosis.verdict == "insufficient_data" and not diagnosis.ranking
+    if unjudged and diagnosis.not_followed_from_s:
+        return RUNS_AWAY
+    if unjudged and diagnosis.looked_at is not None and not diagnosis.looked_at.of:
+        return NO_TRAIN_RUN
+    if diagnosis.verdict == "insufficient_data" and diagnosis.not_followed_from_s:
+        return LOST_SENTENCE
+    return VERDICT_SENTENCES[diagnosis.verdict]
 
 
 def _key(effects: int) -> str:
@@ -154,22 +154,22 @@ def _key(effects: int) -> str:
 
 
 def _missing(
-    one: FittedEffect, known: type[Effect] | None, thrusters: Sequence[str], sure: str, above: bool
+    one: FittedEffect, cls: type[Effect] | None, thrusters: Sequence[str], sure: str, above: bool
 ) -> Missing:
     """Describe a selected effect.
 
-    `known` is its class, if it is in the catalogue, `sure` says how sure its name is, and `above`
+    `cls` is its class, if it is in the catalogue, `sure` says how sure its name is, and `above`
     whether the error that it removes is beyond that of effects above it.
     """
-    meaning = (known.__doc__ or "").split("\n")[0] if known else ""
-    equation, cause = (known.equation, known.cause) if known else ("", "")
-    symbols = explain_symbols(known, one.parameters) if known else []
+    meaning = (cls.__doc__ or "").split("\n")[0] if cls else ""
+    equation, cause = (cls.equation, cls.cause) if cls else ("", "")
+    symbols = explain_symbols(cls, one.parameters) if cls else []
     values = tuple(
         f"{name_parameter(one.effect, name, thrusters)} {_value(one.effect, v, thrusters)}"
         for name, v in one.parameters.items()
     )
     removed = _removed(one.error_reduction, above)
-    if known and issubclass(known, StochasticCurrent):
+    if cls and issubclass(cls, StochasticCurrent):
         removed = "cannot be foreseen"
     worth = f"{removed}, {sure}"
     return Missing(one.effect, meaning, values, worth, equation, tuple(symbols), cause)
@@ -205,22 +205,22 @@ def differs_from_zero(value: FittedValue) -> bool:
     return abs(or_nan(value.value)) > Z_95 * or_nan(value.std) > 0.0
 
 
-def error_sentence(found: Diagnosis) -> str:
+def error_sentence(diagnosis: Diagnosis) -> str:
     """Say the error on the test runs without and with the effects, and the noise floor."""
-    error = found.error
+    error = diagnosis.error
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
-    if found.runs_away_in:
-        return _away_sentence(found.runs_away_in, after)
+    if diagnosis.runs_away_in:
+        return _away_sentence(diagnosis.runs_away_in, after)
     if not math.isfinite(before):
-        return NO_TEST
-    now = _change(before, after) if found.selected else f"is {significant(before)}"
-    text = f"On the test runs the {ERROR} {now}."
+        return NO_TEST_RUN
+    now = _change(before, after) if diagnosis.selected else f"is {significant(before)}"
+    text = f"On the test runs the {ERROR_NAME} {now}."
     if not math.isfinite(floor):
         why = "not all that is left is noise, or only parts of the pose were measured"
-        if not found.noise.disturbance:
+        if not diagnosis.noise.disturbance:
             why = "nothing was learned of the noise of the train runs"
         text += f" What a perfect model would show cannot be estimated: {why}."
-    elif leaves_unexplained(found):
+    elif leaves_unexplained(diagnosis):
         text += f" {FLOOR_COUNTS_ALL.format(significant(floor))}"
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
@@ -247,34 +247,34 @@ def _away_sentence(runs: Sequence[str], after: float) -> str:
     )
     if not math.isfinite(after):
         return text
-    return f"{text} With the effects the {ERROR} is {significant(after)}. {ERROR_MEANING}."
+    return f"{text} With the effects the {ERROR_NAME} is {significant(after)}. {ERROR_MEANING}."
 
 
-def leaves_unexplained(found: Diagnosis) -> bool:
+def leaves_unexplained(diagnosis: Diagnosis) -> bool:
     """Whether significant physics without a law is left, which was then fitted as noise."""
-    return found.unexplained.significant and found.unexplained.proposal is None
+    return diagnosis.unexplained.significant and diagnosis.unexplained.proposal is None
 
 
-def unexplained_sentences(found: Diagnosis) -> list[str]:
+def unexplained_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say what no effect of the catalogue explains; empty if that is not significant."""
-    unexplained = found.unexplained
+    unexplained = diagnosis.unexplained
     return (
-        [f"Unexplained: {unexplained.hint}", *_law_sentences(found)]
+        [f"Unexplained: {unexplained.hint}", *_law_sentences(diagnosis)]
         if unexplained.significant
         else []
     )
 
 
-def _law_sentences(found: Diagnosis) -> list[str]:
+def _law_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say which law is proposed for what is unexplained, how good it is, and how to use it."""
-    law = found.unexplained.proposal
+    law = diagnosis.unexplained.proposal
     if law is None:
-        return _disturbance_sentences(found)
+        return _disturbance_sentences(diagnosis)
     values = ", ".join(f"{name} {interval(v)}" for name, v in law.parameters.items())
     sentence = f"It removes {percent(law.error_reduction)} of the error on the train runs"
-    step = next((s for s in found.ladder.models if s.model == f"+{law.effect}"), None)
+    step = next((s for s in diagnosis.ladder.models if s.model == f"+{law.effect}"), None)
     if step is not None and step.windows_2s is not None:
-        sentence += f"; with it the {ERROR} on the test runs is {significant(step.windows_2s)}"
+        sentence += f"; with it the {ERROR_NAME} on the test runs is {significant(step.windows_2s)}"
     return [
         f"A law for it: {law.meaning} {law.equation} with {values}. {sentence}.",
         f"It is in the file {law.file}. Read it, change it if you like, and add it with "
@@ -282,9 +282,9 @@ def _law_sentences(found: Diagnosis) -> list[str]:
     ]
 
 
-def _disturbance_sentences(found: Diagnosis) -> list[str]:
+def _disturbance_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say how large the force without a law is, how fast it changes, and when it is strongest."""
-    force = found.unexplained.disturbance
+    force = diagnosis.unexplained.disturbance
     if force is None:
         return []
     low, high = force.band_hz
@@ -294,5 +294,7 @@ def _disturbance_sentences(found: Diagnosis) -> list[str]:
     ]
     text = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
     text += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
-    times = [f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MOST_PUSHES]]
+    times = [
+        f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MAX_TOLD_PUSHES]
+    ]
     return [text + (f" It was strongest at {listed(times)}." if times else "")]

@@ -54,7 +54,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     tested = bool(data.runs.of("test"))
     text = tell_comparison(errors, results.where, tested, results.band_coverage, away)
     files = f"{out / 'comparison.json'}, {out / 'where.json'} and {out / 'report.html'}"
-    message = join_files(text + tell_doubts(data.quality), files, notice, outdated.told)
+    message = join_files(text + tell_doubts(data.quality), files, notice, outdated.notice)
     say(settings, message, results.comparison.to_json())
 
 

@@ -68,7 +68,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         result.write(out / "diagnosis.json")
         report_data = _data_to_show(result, data.quality)
         drawing.begin(report_data)
-        _tell(settings, out, result.diagnosis, data.quality, catalogue, outdated.told)
+        _tell(settings, out, result.diagnosis, data.quality, catalogue, outdated.notice)
         figures = drawing.finish()
         page = ShownDiagnosis(
             out=out,
