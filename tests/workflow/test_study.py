@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from rovsim.application.provenance import find_modules, imports_of
-from rovsim.application.study.dependencies import SURROUNDINGS
+from rovsim.application.study.dependencies import SURROUNDING_MODULES
 from small_study import ROOT, SMALL, copy_of
 
 COMMENT = {".css": "\n/* edited */\n", ".json": "\n"}  # by ending; else "# edited"
@@ -157,7 +157,7 @@ def test_a_rule_depends_on_what_its_own_script_imports():
 def _depends_on(script: str) -> set[str]:
     """Modules of rovsim whose edits run a script again."""
     path = ROOT / "workflow" / "scripts" / f"{script}.py"
-    return find_modules(*imports_of(path), aside=SURROUNDINGS)
+    return find_modules(*imports_of(path), aside=SURROUNDING_MODULES)
 
 
 def test_what_tells_of_results_depends_on_nothing_that_computes_them():

@@ -19,18 +19,28 @@ from rovsim.dynamics.vehicle import vehicle_file
 from rovsim.measurement.campaign import Campaign
 
 SOURCE = Path(rovsim.__file__).parent
-MODEL, VEHICLE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
-EFFECTS = "rovsim.dynamics.effects"
+MODEL_MODULE, VEHICLE_MODULE = "rovsim.dynamics.model", "rovsim.dynamics.vehicle.load"
+EFFECTS_PACKAGE = "rovsim.dynamics.effects"
 # Packages that a module depends on without importing them: it looks into their folders. A model may
 # hold any effect, and compiles its engine.
-LOOKED_INTO = {
-    MODEL: (EFFECTS, "rovsim.dynamics.engine"),
-    "rovsim.dynamics.catalogue": (EFFECTS,),
+DISCOVERED_PACKAGES = {
+    MODEL_MODULE: (EFFECTS_PACKAGE, "rovsim.dynamics.engine"),
+    "rovsim.dynamics.catalogue": (EFFECTS_PACKAGE,),
     "rovsim.measurement.recording": ("rovsim.measurement.recording",),
     "rovsim.learning.learners": ("rovsim.learning.learners",),
 }
-UNRELATED = ("command", "tracking", "timing", "blind", "bench", "out", "output", "port", "open")
-PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
+UNRELATED_SECTIONS = (
+    "command",
+    "tracking",
+    "timing",
+    "blind",
+    "bench",
+    "out",
+    "output",
+    "port",
+    "open",
+)
+RECORDED_PACKAGES = ("numpy", "scipy", "numba", "scikit-learn", "gpytorch", "torch", "pysindy")
 
 
 def digest(
@@ -56,7 +66,7 @@ def digest(
     if without:
         modules = {name for name in modules if not f"{name}.".startswith(f"{without}.")}
     files = (file for name in sorted(modules) for file in _files(name))
-    return _digest(files, described if modules & {MODEL, VEHICLE} else ())
+    return _digest(files, described if modules & {MODEL_MODULE, VEHICLE_MODULE} else ())
 
 
 def imports_of(script: Path) -> list[str]:
@@ -75,14 +85,16 @@ def find_modules(*names: str, aside: Collection[str] = ()) -> set[str]:
     """
     graph = _graph(frozenset(aside))
 
-    def found(packages: Iterable[str]) -> set[str]:
+    def expand(packages: Iterable[str]) -> set[str]:
         members = {
             name for package in packages for name in (package, *graph.find_descendants(package))
         }
         return members.union(*(graph.find_upstream_modules(name) for name in members))
 
-    modules = found(name for name in names if name not in aside)
-    return modules.union(*(found(LOOKED_INTO[name]) for name in LOOKED_INTO.keys() & modules))
+    modules = expand(name for name in names if name not in aside)
+    return modules.union(
+        *(expand(DISCOVERED_PACKAGES[name]) for name in DISCOVERED_PACKAGES.keys() & modules)
+    )
 
 
 def own_digest(package: str, described: Sequence[Path] = ()) -> str:
@@ -139,7 +151,7 @@ def _version(package: str) -> str | None:
 
 def describe_origin(catalogue: Catalogue) -> dict[str, Any]:
     """Describe the code, with the user's own effects, and the versions behind a result."""
-    packages = {name: installed for name in PACKAGES if (installed := _version(name))}
+    packages = {name: installed for name in RECORDED_PACKAGES if (installed := _version(name))}
     system = f"{platform.system()} {platform.machine()}"
     versions = {
         "rovsim": rovsim.__version__,
@@ -171,7 +183,9 @@ def describe_given(
     settings: Section, campaign: Campaign | None, recordings: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
     """Describe settings, recordings and vehicle file as `provenance` does, without the code."""
-    given: dict[str, Any] = {"settings": settings.model_dump(mode="json", exclude=set(UNRELATED))}
+    given: dict[str, Any] = {
+        "settings": settings.model_dump(mode="json", exclude=set(UNRELATED_SECTIONS))
+    }
     if campaign is None:
         return given
     vehicle = vehicle_file(campaign.vehicle, named_in=campaign.file)
@@ -184,17 +198,17 @@ def add_origin(given: Mapping[str, Any], catalogue: Catalogue) -> dict[str, Any]
     return {"settings": given["settings"], **describe_origin(catalogue), **given}
 
 
-def digest_files(campaign: Campaign, known: Mapping[str, str] | None = None) -> dict[str, str]:
+def digest_files(campaign: Campaign, computed: Mapping[str, str] | None = None) -> dict[str, str]:
     """Digest every file of a campaign: the first 16 hexadecimal digits of its SHA-256.
 
     Args:
         campaign: whose files are read.
-        known: digests that are not computed again.
+        computed: digests that are not computed again.
 
     Returns:
         Digests by path relative to the campaign's folder.
     """
-    return _digest_each(campaign, campaign.files, known or {})
+    return _digest_each(campaign, campaign.files, computed or {})
 
 
 def digest_recordings(campaign: Campaign) -> dict[str, str]:
@@ -203,10 +217,10 @@ def digest_recordings(campaign: Campaign) -> dict[str, str]:
 
 
 def _digest_each(
-    campaign: Campaign, files: Sequence[Path], known: Mapping[str, str]
+    campaign: Campaign, files: Sequence[Path], computed: Mapping[str, str]
 ) -> dict[str, str]:
     present = {relpath(path, campaign.folder): path for path in files if path.is_file()}
-    return {name: known.get(name) or sha256_of(path)[:16] for name, path in present.items()}
+    return {name: computed.get(name) or sha256_of(path)[:16] for name, path in present.items()}
 
 
 def sha256_of(path: Path) -> str:

@@ -21,19 +21,19 @@ from rovsim.dynamics.vehicle.file import HeldAxes
 from rovsim.dynamics.vehicle.thrusters import Thrusters
 
 # Ids of effects that are constants of the equation of motion, or part of a table of thrust.
-RIGID = ("rigid_body", "payload", "net_buoyancy", "buoyancy_center", "thrusters")
-DAMPING = ("linear_damping", "quadratic_damping", "coupled_damping")
-INERTIA = ("added_mass", "added_mass_coupling")
-STATIC = (
+RIGID_EFFECTS = ("rigid_body", "payload", "net_buoyancy", "buoyancy_center", "thrusters")
+DAMPING_EFFECTS = ("linear_damping", "quadratic_damping", "coupled_damping")
+INERTIA_EFFECTS = ("added_mass", "added_mass_coupling")
+STATIC_THRUST_EFFECTS = (
     "thruster_order",
     "thruster_deadband",
     "force_curve",
     "thruster_gain",
     "thrust_asymmetry",
 )
-RESIDUAL = "learned residual"
+RESIDUAL_NAME = "learned residual"
 
-WHY: tuple[tuple[type[Effect], str], ...] = (
+LEFT_OUT_REASONS: tuple[tuple[type[Effect], str], ...] = (
     (FrameMisalignment, "what the motion capture reports; no force"),
     (MeasurementFilter, "what the motion capture reports; no force"),
     (StochasticCurrent, "a model has its mean, still water; no force"),
@@ -77,7 +77,8 @@ def nothing(effect: Effect) -> tuple[Effect, str]:
     """Keep nothing of an effect: return it at values that do nothing, and why, by its kind."""
     neutral = HeldAxes() if isinstance(effect, HeldAxes) else effect.neutral()
     return neutral, next(
-        (reason for kind, reason in WHY if isinstance(effect, kind)), "it has no such term"
+        (reason for kind, reason in LEFT_OUT_REASONS if isinstance(effect, kind)),
+        "it has no such term",
     )
 
 
@@ -142,7 +143,7 @@ def leave_out(model: Model, hold: Hold) -> Iterator[OmittedPart]:
             yield OmittedPart(effect.id, reason, before, held)
     if model.residual is not None:
         yield OmittedPart(
-            RESIDUAL,
+            RESIDUAL_NAME,
             "a trained residual is arrays, no term",
             held,
             replace(held, residual=None),

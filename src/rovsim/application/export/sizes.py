@@ -34,9 +34,9 @@ from rovsim.simulation.synthetic_tank.settings import (
 )
 from rovsim.simulation.synthetic_tank.true_run import Flight, LeftTank, fly_run
 
-SEED = 20260101  # of the typical flight; any will do
-STRIDE = 10  # of its steps of 1 ms: samples at the 100 Hz of a motion capture
-ROOM = 30.0  # m each way, where the vehicle does not stay in the tank
+FLIGHT_SEED = 20260101  # of the typical flight; any will do
+SAMPLE_STRIDE = 10  # of its steps of 1 ms: samples at the 100 Hz of a motion capture
+FREE_SPACE_M = 30.0  # each way, where the vehicle does not stay in the tank
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def typical_flight(model: Model) -> Motion:
     try:
         return _fly(plant, settings)
     except LeftTank:
-        sides = {axis: (-ROOM, ROOM) for axis in "xyz"}
+        sides = {axis: (-FREE_SPACE_M, FREE_SPACE_M) for axis in "xyz"}
         return _fly(plant, settings.model_copy(update={"tank": Box(**sides)}))
 
 
@@ -107,8 +107,8 @@ def _calm(vehicle: Vehicle, demands: bool) -> TankSettings:
 
 
 def _fly(model: Model, settings: TankSettings) -> Motion:
-    truth = fly_run(model, settings, Flight("6dof"), np.random.default_rng(SEED))
-    state, time = truth.state[::STRIDE], np.round(truth.time[::STRIDE], 9)
+    truth = fly_run(model, settings, Flight("6dof"), np.random.default_rng(FLIGHT_SEED))
+    state, time = truth.state[::SAMPLE_STRIDE], np.round(truth.time[::SAMPLE_STRIDE], 9)
     tank = settings.tank.ned
     site = Site(tank, HALF_TURN_X, float(tank[2, 0]))
     return Motion(

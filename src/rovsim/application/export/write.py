@@ -14,8 +14,8 @@ from rovsim.core.files import require_replaceable, write_text
 from rovsim.dynamics.model import Model
 from rovsim.measurement.signals.motion import Motion
 
-TYPICAL = "a typical flight of a minute"
-WRITTEN = "written by rovsim for"  # stands in every file
+TYPICAL_FLIGHT = "a typical flight of a minute"
+WRITTEN_BY = "written by rovsim for"  # stands in every file
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def export_model(
     """
     reduced, parts = represent(model, target)
     sized = size_all(parts, flights()) if parts else []
-    notes = [f"{model.name}, {WRITTEN} {target.title}.", f"Model: {origin}"]
+    notes = [f"{model.name}, {WRITTEN_BY} {target.title}.", f"Model: {origin}"]
     notes += [f"Format: {target.source}.", target.takes, *_listed(sized, over)]
     return ExportedModel(target.text(Equation(reduced), notes), tuple(sized))
 
@@ -96,7 +96,7 @@ def write_export(export: ExportedModel, out: Path) -> None:
     Raises:
         BadInput: `out` is a file that rovsim did not write.
     """
-    require_replaceable(out, WRITTEN)
+    require_replaceable(out, WRITTEN_BY)
     write_text(out, export.text)
 
 

@@ -11,8 +11,8 @@ from rovsim.application.export.equation import Equation
 from rovsim.core.errors import one_line
 
 # characters that no document of XML 1.0 may hold (sec. 2.2)
-ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-TABLE = np.linspace(-1.0, 1.0, 11)  # commands
+ILLEGAL_LETTERS = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+TABLE_COMMANDS = np.linspace(-1.0, 1.0, 11)
 
 
 def document(root: ET.Element) -> str:
@@ -33,7 +33,7 @@ def comment(parent: ET.Element, lines: Sequence[str]) -> None:
 
 def _legal(text: str | None) -> str | None:
     """Replace characters that XML cannot hold, even escaped, by their Python escapes."""
-    return text and ILLEGAL.sub(lambda match: repr(match[0])[1:-1], text)
+    return text and ILLEGAL_LETTERS.sub(lambda match: repr(match[0])[1:-1], text)
 
 
 def numbers(values: Sequence[float] | Array) -> str:
@@ -51,8 +51,8 @@ def force_tables(equation: Equation) -> list[str]:
     count = len(equation.names)
     if not count:
         return []
-    force = equation.static_force(np.tile(TABLE[:, None], (1, count)))
-    head = "  ".join(f"{c:+.1f}" for c in TABLE)
+    force = equation.static_force(np.tile(TABLE_COMMANDS[:, None], (1, count)))
+    head = "  ".join(f"{c:+.1f}" for c in TABLE_COMMANDS)
     lines = ["Thrust in N at the commands", f"  {head}"]
     forces = (force * equation.reach).T
     for name, column, row in zip(equation.names, equation.columns, forces, strict=True):

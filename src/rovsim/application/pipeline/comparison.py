@@ -20,7 +20,7 @@ from rovsim.results.comparison import Comparison
 from rovsim.results.force_budget import BudgetTotals
 from rovsim.simulation.settings import SimulationSettings
 
-DRAWN = 12  # runs: a report of fifty figures can still be read
+MAX_DRAWN_RUNS = 12  # a report of fifty figures can still be read
 
 
 def compare(
@@ -62,20 +62,20 @@ def compare(
 
 
 def _choose_drawn(comparison: Comparison, model: str, runs: Sequence[str]) -> tuple[str, ...]:
-    """Choose runs to draw: all, or the `DRAWN` runs with the largest errors, in their order.
+    """Choose runs to draw: all, or the `MAX_DRAWN_RUNS` with the largest errors, in their order.
 
     Args:
         comparison: errors of all models.
         model: whose errors count, relative to the median over runs, averaged over axes.
         runs: to choose from.
     """
-    if len(runs) <= DRAWN:
+    if len(runs) <= MAX_DRAWN_RUNS:
         return tuple(runs)
     errors = comparison.models[model].runs
     rmse = np.array([errors[run].windows[STANDARD_HORIZON].velocity_rmse.array() for run in runs])
     rmse = np.nan_to_num(rmse[:, np.isfinite(rmse).any(axis=0)], nan=np.inf)  # diverged: the worst
     worst = np.argsort(-np.mean(rmse / np.median(rmse, axis=0), axis=1), kind="stable")
-    return tuple(runs[k] for k in sorted(worst[:DRAWN].tolist()))
+    return tuple(runs[k] for k in sorted(worst[:MAX_DRAWN_RUNS].tolist()))
 
 
 def _searches(

@@ -24,8 +24,8 @@ from rovsim.reporting.figures.style import save
 from rovsim.reporting.words.experiment import list_steps
 from rovsim.results.experiment import Experiment
 
-WIDTH = 96  # letters of a line of instructions
-UNITS = {"pwm": "µs", "normalized": "−1 to 1", "demand": "−1 to 1", "wrench": "N, N m"}
+LINE_LETTERS = 96  # of instructions
+COMMAND_UNITS = {"pwm": "µs", "normalized": "−1 to 1", "demand": "−1 to 1", "wrench": "N, N m"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,16 +78,16 @@ def design(
     return Designed(experiment, sent, _picture(flight_plan, commands, log))
 
 
-def write_flight(out: Path, found: Designed) -> None:
+def write_flight(out: Path, designed: Designed) -> None:
     """Write the log, the picture, the instructions and what to expect: all of them, or nothing.
 
     Raises:
         BadInput: `out` cannot be written to.
     """
-    experiment = found.experiment
+    experiment = designed.experiment
     with appearing_together(out, last="experiment.json") as folder:
-        write_text(folder / experiment.commands, found.log)
-        save(draw_flight(found.picture), folder, "experiment")
+        write_text(folder / experiment.commands, designed.log)
+        save(draw_flight(designed.picture), folder, "experiment")
         write_text(folder / "instructions.txt", format_instructions(experiment.instructions))
         experiment.write(folder / "experiment.json")
 
@@ -102,7 +102,7 @@ def format_instructions(instructions: Sequence[str]) -> str:
 
 
 def _fill(text: str, mark: str) -> str:
-    return textwrap.fill(text, WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark))
+    return textwrap.fill(text, LINE_LETTERS, initial_indent=mark, subsequent_indent=" " * len(mark))
 
 
 def _refuse(question: Question) -> None:
@@ -115,12 +115,12 @@ def _refuse(question: Question) -> None:
         )
 
 
-def _picture(found: Plan, commands: Commands, log: CommandLog) -> PlannedFlight:
+def _picture(plan: Plan, commands: Commands, log: CommandLog) -> PlannedFlight:
     return PlannedFlight(
-        found.best.paths[:, :, :3],
-        found.problem.setup.site.tank,
+        plan.best.paths[:, :, :3],
+        plan.problem.setup.site.tank,
         commands.time,
         as_logged(commands, log),
         tuple(log.names),
-        UNITS[log.kind],
+        COMMAND_UNITS[log.kind],
     )

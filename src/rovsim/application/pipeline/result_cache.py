@@ -14,7 +14,7 @@ from rovsim.dynamics.model_file import describe_model
 from rovsim.measurement.campaign import Campaign
 
 # with all that they import
-CODE, PLAN = "rovsim.diagnosis.campaign_diagnosis", "rovsim.design.plan"
+DIAGNOSIS_MODULE, PLAN_MODULE = "rovsim.diagnosis.campaign_diagnosis", "rovsim.design.plan"
 
 
 def kept_folder(out: str | None, campaign: Campaign) -> Path:
@@ -29,7 +29,7 @@ def kept_diagnosis(
 
     If one of them changes, the file is another, so that an outdated diagnosis is never found.
     """
-    key = _digest(campaign, settings, base, digest(CODE, described=catalogue.files))
+    key = _digest(campaign, settings, base, digest(DIAGNOSIS_MODULE, described=catalogue.files))
     return folder / key / "diagnosis.json"
 
 
@@ -37,7 +37,7 @@ def kept_flight(
     folder: Path, campaign: Campaign, question: Question, model: Model, catalogue: Catalogue
 ) -> Path:
     """Return the folder of a flight planned for these recordings, question, model and code."""
-    key = _digest(campaign, question, model, digest(PLAN, described=catalogue.files))
+    key = _digest(campaign, question, model, digest(PLAN_MODULE, described=catalogue.files))
     return folder / "flights" / key
 
 

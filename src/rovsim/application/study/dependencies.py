@@ -16,7 +16,9 @@ from rovsim.learning.learner import learner_settings
 from rovsim.measurement.campaign import Campaign
 
 # Left out of digests, with all that they alone import: settings are parameters of rules already.
-SURROUNDINGS = {f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")}
+SURROUNDING_MODULES = {
+    f"rovsim.application.{name}" for name in ("snakemake_job", "sections", "settings")
+}
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ class Dependencies:
             without: a package whose edits change nothing that the script writes.
         """
         names = (*imports_of(script), *more)
-        return digest(*names, without=without, aside=SURROUNDINGS, described=self._described)
+        return digest(*names, without=without, aside=SURROUNDING_MODULES, described=self._described)
 
     def own_code(self, package: str) -> str:
         """Digest a package without its imports.

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from rovsim.application.study.models import PHYSICS
+from rovsim.application.study.models import PHYSICS_MODELS
 from rovsim.application.study.study import Study
 from rovsim.core.errors import BadInput
 from rovsim.core.model_names import EFFECTS, NOMINAL, name_learned
@@ -68,7 +68,7 @@ class LeaveOneRunOut:
         controls = [c for c in settings.controls if self.train_runs(fold, c)]
         pairs = [(kind, control) for kind in settings.residuals for control in controls]
         trained = [name_learned(*pair, base) for base in (NOMINAL, EFFECTS) for pair in pairs]
-        return [*PHYSICS, *trained]
+        return [*PHYSICS_MODELS, *trained]
 
     @property
     def pitfalls(self) -> bool:

@@ -7,7 +7,7 @@ from filelock import FileLock, Timeout
 from rovsim.core.errors import BadInput
 from rovsim.core.files import make_folder, unwritable
 
-HELD: dict[Path, FileLock] = {}  # until the process ends
+HELD_LOCKS: dict[Path, FileLock] = {}  # until the process ends
 
 
 def hold(folder: Path) -> None:
@@ -19,9 +19,9 @@ def hold(folder: Path) -> None:
         BadInput: another process writes there, or the folder cannot be written to.
     """
     make_folder(folder)
-    HELD[folder] = FileLock(folder / ".study.lock", blocking=False)
+    HELD_LOCKS[folder] = FileLock(folder / ".study.lock", blocking=False)
     try:
-        HELD[folder].acquire()
+        HELD_LOCKS[folder].acquire()
     except Timeout:
         raise BadInput(
             "another study writes here",

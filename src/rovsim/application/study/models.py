@@ -7,8 +7,8 @@ from rovsim.application.study.study import Study
 from rovsim.core.model_names import EFFECTS, NOMINAL, REFITTED, name_learned
 from rovsim.dynamics.model import BASELINES
 
-PHYSICS = (REFITTED, EFFECTS)
-DRAWN = (NOMINAL, EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
+PHYSICS_MODELS = (REFITTED, EFFECTS)
+DRAWN_MODELS = (NOMINAL, EFFECTS, "gp_6dof")  # few enough to be told apart in a time series
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class StudyModels:
     @property
     def with_files(self) -> list[str]:
         """Models with a file of their own: all but the baselines."""
-        return [*PHYSICS, *self.trained, *self.on_effects]
+        return [*PHYSICS_MODELS, *self.trained, *self.on_effects]
 
     @property
     def all(self) -> list[str]:
@@ -48,4 +48,4 @@ class StudyModels:
     @property
     def drawn(self) -> list[str]:
         """Models drawn in time series."""
-        return [m for m in DRAWN if m in self.all] or self.all[:3]
+        return [m for m in DRAWN_MODELS if m in self.all] or self.all[:3]

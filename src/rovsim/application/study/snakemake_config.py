@@ -10,7 +10,7 @@ from rovsim.application.settings import Settings
 from rovsim.core.errors import unlisted
 from rovsim.dynamics.catalogue import Catalogue, load_catalogue
 
-KEYS = ("campaign", "overrides", "effects_file")  # keys of `snakemake --config`
+CONFIG_KEYS = ("campaign", "overrides", "effects_file")  # keys of `snakemake --config`
 
 
 @dataclass(frozen=True)
@@ -18,23 +18,23 @@ class SnakemakeConfig:
     """The configuration that Snakemake was given.
 
     Attributes:
-        told: Snakemake's `config`.
+        config: Snakemake's `config`.
         keys: that the workflow knows.
     """
 
-    told: Mapping[str, Any]
-    keys: Sequence[str] = KEYS
+    config: Mapping[str, Any]
+    keys: Sequence[str] = CONFIG_KEYS
 
     @cached_property
     def overrides(self) -> list[str]:
         """Hydra overrides of conf/, such as `residual=knn`."""
-        entry = self.told.get("overrides") or []
+        entry = self.config.get("overrides") or []
         return split_words(entry) if isinstance(entry, str) else [str(item) for item in entry]
 
     @cached_property
     def settings(self) -> Settings:
         """Settings of conf/, with the overrides and effect files given to Snakemake."""
-        base, effects_file = compose(self.overrides), self.told.get("effects_file")
+        base, effects_file = compose(self.overrides), self.config.get("effects_file")
         return base.model_copy(update={"effects_file": effects_file}) if effects_file else base
 
     @cached_property
@@ -49,7 +49,7 @@ class SnakemakeConfig:
     @cached_property
     def campaign_path(self) -> Path | None:
         """Path of the user's campaign; None for the synthetic one."""
-        path = self.told.get("campaign", self.settings.campaign)
+        path = self.config.get("campaign", self.settings.campaign)
         return None if path is None else Path(str(path))
 
     def check(self) -> None:
@@ -58,7 +58,7 @@ class SnakemakeConfig:
         Raises:
             BadInput: a key is not.
         """
-        for key in self.told:
+        for key in self.config:
             if key not in self.keys:
                 problem = f"unknown key '{key}'"
                 raise unlisted(key, self.keys, found=problem, where="snakemake --config")

@@ -9,7 +9,7 @@ from rovsim.core.mappings import leaves
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.ladder import LadderStep
 
-OF_STEPS = ("diagnosis", "ladder")  # files, without their endings, that say what a step is
+STEP_FILES = ("diagnosis", "ladder")  # files, without their endings, that say what a step is
 
 
 def track_diagnosis(
@@ -56,17 +56,17 @@ def track_diagnosis(
             name=step.model,
             parent=run_id,
             tags={"model": step.model, "residual": "none", "control": "none"},
-            files=[path for path in files if path.stem in OF_STEPS],
+            files=[path for path in files if path.stem in STEP_FILES],
             metrics=step_metrics(step),
         )
         runs[step.model] = track(settings, of_step)
     return runs
 
 
-def diagnosis_metrics(found: Diagnosis) -> dict[str, float]:
+def diagnosis_metrics(diagnosis: Diagnosis) -> dict[str, float]:
     """Return the errors of a diagnosis; of each selected effect its worth and fitted values."""
-    metrics = {f"error/{name}": value for name, value in found.error}
-    for selected in found.selected:
+    metrics = {f"error/{name}": value for name, value in diagnosis.error}
+    for selected in diagnosis.selected:
         name = selected.effect
         metrics[f"{name}/error_reduction"] = selected.error_reduction
         metrics[f"{name}/probability"] = selected.probability

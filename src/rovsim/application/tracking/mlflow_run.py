@@ -11,10 +11,10 @@ from filelock import FileLock
 
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.ranking_view import (
-    OF_BASE,
-    RANKED_BY,
-    SHOWN,
-    UI,
+    EXPERIMENT_TAGS,
+    RANKING_METRIC,
+    RELATIVE_METRIC,
+    UI_ADDRESS,
     address,
     tags_of,
 )
@@ -25,7 +25,8 @@ from rovsim.core.horizons import OPEN_LOOP
 from rovsim.results.base import ByAxis
 from rovsim.results.comparison import Metrics, RunErrors
 
-PATIENCE = {  # with a server that does not answer: MLflow's own is four minutes for each call
+# with a server that does not answer: MLflow's own is four minutes for each call
+SERVER_PATIENCE = {
     "MLFLOW_HTTP_REQUEST_MAX_RETRIES": "3",
     "MLFLOW_HTTP_REQUEST_TIMEOUT": "60",
 }
@@ -66,7 +67,7 @@ def track(settings: TrackingSettings, run: TrackedRun) -> str:
     Raises:
         BadInput: MLflow cannot keep the run there.
     """
-    with _told(settings.uri), FileLock(_lock(settings.uri)):
+    with _mlflow_errors(settings.uri), FileLock(_lock(settings.uri)):
         client = _client(settings)
         number = _experiment(client, settings, run.experiment)
         tags = {**run.tags, "mlflow.runName": run.name}
@@ -95,7 +96,7 @@ def ranking(errors: Mapping[str, float | None], model: str, base: str) -> dict[s
     error, base_error = errors[model], errors[base]
     if error is None or not base_error:
         return {}
-    return {RANKED_BY: error, OF_BASE: error / base_error}
+    return {RANKING_METRIC: error, RELATIVE_METRIC: error / base_error}
 
 
 def metrics_of(scores: Mapping[str, RunErrors]) -> dict[str, float]:
@@ -121,13 +122,13 @@ def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
 
 def tell_ranking(settings: TrackingSettings, experiment: str) -> str:
     """Say where the models of a campaign are ranked: what to start, and which link to open."""
-    with _told(settings.uri):
+    with _mlflow_errors(settings.uri):
         number = _found(_client(settings), settings, experiment)
     if _local(settings.uri) is None:
         return f"Ranking of the models: {address(number, settings.uri.rstrip('/') + '/')}"
     return (
         f"Ranking of the models: mlflow ui --backend-store-uri {settings.uri}\n"
-        f"  {address(number, UI)}"
+        f"  {address(number, UI_ADDRESS)}"
     )
 
 
@@ -144,14 +145,14 @@ def _log(client, run_id: str, params: Mapping, metrics: Mapping, files: Iterable
 
 
 @contextmanager
-def _told(uri: str) -> Iterator[None]:
+def _mlflow_errors(uri: str) -> Iterator[None]:
     """Turn MLflow's errors into one message.
 
     Raises:
         BadInput: MLflow cannot keep the run, or is not installed.
     """
     require("tracking", by="tracking.uri")
-    for name, value in {"MLFLOW_DISABLE_TELEMETRY": "true", **PATIENCE}.items():
+    for name, value in {"MLFLOW_DISABLE_TELEMETRY": "true", **SERVER_PATIENCE}.items():
         os.environ.setdefault(name, value)
     from mlflow.exceptions import MlflowException
     from sqlalchemy.exc import SQLAlchemyError
@@ -223,7 +224,7 @@ def _found(client, settings: TrackingSettings, name: str) -> str:
     from mlflow.exceptions import MlflowException
 
     try:
-        return client.create_experiment(name, artifact_location=place, tags=SHOWN)
+        return client.create_experiment(name, artifact_location=place, tags=EXPERIMENT_TAGS)
     except MlflowException:  # another machine was first: a file lock holds on one only
         experiment = client.get_experiment_by_name(name)
         if experiment is None:

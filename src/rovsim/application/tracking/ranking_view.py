@@ -8,21 +8,21 @@ error by which models are ranked, the best first, with columns of model, residua
 import json
 from typing import Any
 
-RANKED_BY = "windows_2s"
-OF_BASE = f"{RANKED_BY}/of_base"
-KEY = "ranking"
-UI = "http://127.0.0.1:5000/"  # of `mlflow ui`, unless told otherwise
+RANKING_METRIC = "windows_2s"
+RELATIVE_METRIC = f"{RANKING_METRIC}/of_base"
+VIEW_KEY = "ranking"
+UI_ADDRESS = "http://127.0.0.1:5000/"  # of `mlflow ui`, unless told otherwise
 # Tag by which MLflow shows an experiment on its page for models, not on that for prompts.
-SHOWN = {"mlflow.experimentKind": "custom_model_development"}
+EXPERIMENT_TAGS = {"mlflow.experimentKind": "custom_model_development"}
 COLUMNS = (
-    f"metrics.`{RANKED_BY}`",
-    f"metrics.`{OF_BASE}`",
+    f"metrics.`{RANKING_METRIC}`",
+    f"metrics.`{RELATIVE_METRIC}`",
     "tags.`model`",
     "tags.`residual`",
     "tags.`control`",
 )
 VIEW: dict[str, Any] = {
-    "searchFilter": f"metrics.{RANKED_BY} >= 0",
+    "searchFilter": f"metrics.{RANKING_METRIC} >= 0",
     "orderByKey": COLUMNS[0],
     "orderByAsc": True,
     "selectedColumns": COLUMNS,
@@ -31,15 +31,16 @@ VIEW: dict[str, Any] = {
 
 def address(number: str, server: str = "") -> str:
     """Return the link to the ranking of an experiment, by the experiment's number."""
-    return f"{server}#/experiments/{number}/runs?viewStateShareKey={KEY}"
+    return f"{server}#/experiments/{number}/runs?viewStateShareKey={VIEW_KEY}"
 
 
 def tags_of(number: str) -> dict[str, str]:
     """Return the tags of an experiment: its view, and a description with a link to it."""
     note = (
-        f"[Ranking of the models]({address(number)}) by `{RANKED_BY}`, the 2 s error on test runs"
+        f"[Ranking of the models]({address(number)}) by `{RANKING_METRIC}`, the 2 s error on test "
+        "runs"
     )
-    return SHOWN | {
-        f"mlflow.sharedViewState.{KEY}": json.dumps(VIEW),
+    return EXPERIMENT_TAGS | {
+        f"mlflow.sharedViewState.{VIEW_KEY}": json.dumps(VIEW),
         "mlflow.note.content": f"{note}: lower is better.",
     }

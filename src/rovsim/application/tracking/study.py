@@ -7,7 +7,7 @@ from typing import Any, Mapping, Sequence
 from rovsim.application.settings import TrackingSettings
 from rovsim.application.tracking.diagnosis import track_diagnosis
 from rovsim.application.tracking.mlflow_run import TrackedRun, track
-from rovsim.application.tracking.ranking_view import RANKED_BY
+from rovsim.application.tracking.ranking_view import RANKING_METRIC
 from rovsim.core.model_names import NOMINAL
 from rovsim.core.yaml_files import read_yaml
 from rovsim.results.comparison import Comparison
@@ -74,7 +74,7 @@ def track_study(
             name=name,
             parent=parent,
             scores=entry.runs,
-            metrics={RANKED_BY: errors[name]} if name in errors else {},
+            metrics={RANKING_METRIC: errors[name]} if name in errors else {},
             **_described(name, by_model.get(name), figures),
         )
         runs[name] = track(settings, of_model)

@@ -18,10 +18,10 @@ from numpy import ndarray as Array
 
 from rovsim.application.export.equation import Equation, RigidInertia
 from rovsim.application.export.holding import (
-    DAMPING,
-    INERTIA,
-    RIGID,
-    STATIC,
+    DAMPING_EFFECTS,
+    INERTIA_EFFECTS,
+    RIGID_EFFECTS,
+    STATIC_THRUST_EFFECTS,
     OmittedPart,
     fixed,
     nothing,
@@ -44,12 +44,20 @@ SOURCE = (
 )
 TAKES = "Thrusters take newtons, on the topics /model/NAME/joint/THRUSTER/cmd_thrust."
 
-WHOLE = {*RIGID, *DAMPING, *INERTIA, *STATIC, "lift", "current"}
-TURN = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # FRD to FLU, NED to z up
-FORCES, SPEEDS = "xyzkmn", "UVWPQR"  # SNAME, as the plugin writes them
-LINKS = "xyzpqr"  # as SDFormat writes rows and columns of the added mass
-PROPELLER = 1e-4  # share of the mass in each propeller: a joint needs a link, and a link a mass
-RADIUS = 0.03  # m of gyration of that link: a propeller's size
+WHOLE_EFFECTS = {
+    *RIGID_EFFECTS,
+    *DAMPING_EFFECTS,
+    *INERTIA_EFFECTS,
+    *STATIC_THRUST_EFFECTS,
+    "lift",
+    "current",
+}
+AXIS_SIGNS = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])  # FRD to FLU, NED to z up
+FORCE_AXES, SPEED_AXES = "xyzkmn", "UVWPQR"  # SNAME, as the plugin writes them
+MASS_AXES = "xyzpqr"  # as SDFormat writes rows and columns of the added mass
+# share of the mass in each propeller: a joint needs a link, and a link a mass
+PROPELLER_MASS_SHARE = 1e-4
+PROPELLER_RADIUS_M = 0.03  # of gyration of that link: a propeller's size
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
@@ -58,7 +66,7 @@ def hold(effect: Effect) -> tuple[Effect, str]:
         return fixed(effect)
     if isinstance(effect, CrossFlow):
         return _split(effect)
-    return whole(effect) if effect.id in WHOLE else nothing(effect)
+    return whole(effect) if effect.id in WHOLE_EFFECTS else nothing(effect)
 
 
 def further(model: Model) -> Sequence[OmittedPart]:
@@ -118,8 +126,8 @@ def _element(name: str) -> tuple[str, float] | None:
     sizes = first < 6 <= second
     i, j = first % 6, second % 6
     # |v| keeps its sign between the axes; v |v| changes it as v does, and |v| |v| does not
-    sign = TURN[axis] * TURN[i] * (1.0 if sizes else TURN[j])
-    return f"{FORCES[axis]}{SPEEDS[i]}{'abs' if sizes else ''}{SPEEDS[j]}", float(sign)
+    sign = AXIS_SIGNS[axis] * AXIS_SIGNS[i] * (1.0 if sizes else AXIS_SIGNS[j])
+    return f"{FORCE_AXES[axis]}{SPEED_AXES[i]}{'abs' if sizes else ''}{SPEED_AXES[j]}", float(sign)
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
@@ -140,8 +148,8 @@ def _vehicle(equation: Equation) -> ET.Element:
     vehicle = ET.Element("model", name=equation.model.name)
     inertia = np.array(equation.body.M_RB)
     units = equation.model.vehicle.thrusters.units
-    share = PROPELLER * equation.rigid.mass
-    propeller = share * RADIUS**2 * np.eye(3)
+    share = PROPELLER_MASS_SHARE * equation.rigid.mass
+    propeller = share * PROPELLER_RADIUS_M**2 * np.eye(3)
     for unit in units:
         inertia -= inertia_at(share, np.array(unit.position), propeller)
     base = ET.SubElement(vehicle, "link", name="base_link")
@@ -165,7 +173,7 @@ def _vehicle(equation: Equation) -> ET.Element:
             {
                 "namespace": equation.model.name,
                 "joint_name": unit.name,
-                "propeller_diameter": number(unit.diameter or 2.0 * RADIUS),
+                "propeller_diameter": number(unit.diameter or 2.0 * PROPELLER_RADIUS_M),
                 "velocity_control": "true",
                 "max_thrust_cmd": number(force),
                 "min_thrust_cmd": number(-force),
@@ -183,7 +191,7 @@ def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
         rigid: in FRD.
         added: added mass (6, 6) in FRD, if any.
     """
-    turn = TURN[:3]
+    turn = AXIS_SIGNS[:3]
     moments = turn[:, None] * rigid.inertia * turn
     part = ET.Element("inertial")
     _tree(part, {"mass": number(rigid.mass), "pose": numbers([*_turned(rigid.center), 0, 0, 0])})
@@ -191,9 +199,9 @@ def _inertial(rigid: RigidInertia, added: Array | None = None) -> ET.Element:
     names = {f"i{'xyz'[i]}{'xyz'[j]}": number(moments[i, j]) for i, j in pairs}
     _tree(ET.SubElement(part, "inertia"), names)
     if added is not None:
-        added_mass = TURN[:, None] * added * TURN
+        added_mass = AXIS_SIGNS[:, None] * added * AXIS_SIGNS
         rows = [(i, j) for i in range(6) for j in range(i, 6)]
-        water = {f"{LINKS[i]}{LINKS[j]}": number(added_mass[i, j]) for i, j in rows}
+        water = {f"{MASS_AXES[i]}{MASS_AXES[j]}": number(added_mass[i, j]) for i, j in rows}
         _tree(ET.SubElement(part, "fluid_added_mass"), water)
     return part
 
@@ -219,8 +227,8 @@ def _water(equation: Equation) -> dict[str, str]:
     elements: defaultdict[str, float] = defaultdict(float)  # damping and a product may share one
     for size, D in ((False, equation.linear), (True, equation.quadratic)):
         for i, j in zip(*np.nonzero(D), strict=True):
-            name = f"{FORCES[i]}{SPEEDS[j]}" + (f"abs{SPEEDS[j]}" if size else "")
-            elements[name] -= TURN[i] * TURN[j] * D[i, j]
+            name = f"{FORCE_AXES[i]}{SPEED_AXES[j]}" + (f"abs{SPEED_AXES[j]}" if size else "")
+            elements[name] -= AXIS_SIGNS[i] * AXIS_SIGNS[j] * D[i, j]
     for product, c in equation.products.items():
         element = _element(product)
         assert element is not None  # `_split` left out the others
@@ -243,4 +251,4 @@ def _tree(parent: ET.Element, content: Mapping[str, str]) -> None:
 
 def _turned(place: Sequence[float] | Array) -> Array:
     """Turn a position or direction (3,) from FRD or NED into Gazebo's axes."""
-    return np.asarray(place, dtype=float) * TURN[:3]
+    return np.asarray(place, dtype=float) * AXIS_SIGNS[:3]

@@ -14,10 +14,10 @@ from numpy import ndarray as Array
 
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import (
-    DAMPING,
-    INERTIA,
-    RIGID,
-    STATIC,
+    DAMPING_EFFECTS,
+    INERTIA_EFFECTS,
+    RIGID_EFFECTS,
+    STATIC_THRUST_EFFECTS,
     nothing,
     unpowered,
     whole,
@@ -33,7 +33,7 @@ SUFFIX = ".m"
 SOURCE = "MSS (Marine Systems Simulator), CRAFT/AUV/models: states, inputs and signs"
 TAKES = "ui are the commands of the thrusters in [-1, 1]; after that of one that turns, its angle."
 
-MORE = (
+MSS_EFFECTS = (
     "current",
     "waterplane_stiffness",
     "cross_flow",
@@ -45,9 +45,15 @@ MORE = (
     "propeller_torque",
     "held_axes",
 )
-WHOLE = {*RIGID, *DAMPING, *INERTIA, *STATIC, *MORE}
+WHOLE_EFFECTS = {
+    *RIGID_EFFECTS,
+    *DAMPING_EFFECTS,
+    *INERTIA_EFFECTS,
+    *STATIC_THRUST_EFFECTS,
+    *MSS_EFFECTS,
+}
 
-LONGEST = 63  # characters of a name (namelengthmax)
+MAX_NAME_LETTERS = 63  # namelengthmax
 
 KINEMATICS = """
 function [R, T] = attitude(a)
@@ -85,7 +91,7 @@ def hold(effect: Effect) -> tuple[Effect, str]:
     """Return what the function can hold of an effect, and why not the rest."""
     if isinstance(effect, Thrusters):
         return unpowered(effect)
-    return whole(effect) if effect.id in WHOLE else nothing(effect)
+    return whole(effect) if effect.id in WHOLE_EFFECTS else nothing(effect)
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
@@ -118,7 +124,7 @@ def _comment(text: str) -> str:
 def _identifier(name: str) -> str:
     """Make a name that MATLAB accepts."""
     identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return (identifier if identifier[:1].isalpha() else f"vehicle_{identifier}")[:LONGEST]
+    return (identifier if identifier[:1].isalpha() else f"vehicle_{identifier}")[:MAX_NAME_LETTERS]
 
 
 def _constants(equation: Equation) -> list[str]:

@@ -14,10 +14,10 @@ from numpy import ndarray as Array
 
 from rovsim.application.export.equation import Equation
 from rovsim.application.export.holding import (
-    DAMPING,
-    INERTIA,
-    RIGID,
-    STATIC,
+    DAMPING_EFFECTS,
+    INERTIA_EFFECTS,
+    RIGID_EFFECTS,
+    STATIC_THRUST_EFFECTS,
     fixed,
     nothing,
     whole,
@@ -32,20 +32,25 @@ SUFFIX = ".scn"
 SOURCE = "Stonefish 1.x, documentation of scenarios, dynamic bodies, robots and actuators"
 TAKES = "Thrusters are `push` actuators and take newtons."
 
-WHOLE = {*RIGID, *STATIC, "current"}
-OWN = {*DAMPING, *INERTIA, "cross_flow", "lift", "cubic_damping"}
+WHOLE_EFFECTS = {*RIGID_EFFECTS, *STATIC_THRUST_EFFECTS, "current"}
+BODY_SHAPE_EFFECTS = {*DAMPING_EFFECTS, *INERTIA_EFFECTS, "cross_flow", "lift", "cubic_damping"}
 GRAVITY = 9.81  # m/s2, of every scenario (its SimulationManager)
-DEEP = 2.0  # m, where the vehicle starts: under water
+START_DEPTH_M = 2.0  # under water
 
 
 def hold(effect: Effect) -> tuple[Effect, str]:
     """Return what Stonefish can hold of an effect, and why not the rest."""
     if isinstance(effect, Thrusters):
         return fixed(effect)
-    if effect.id in WHOLE:
+    if effect.id in WHOLE_EFFECTS:
         return whole(effect)
     neutral, reason = nothing(effect)
-    return neutral, "it computes its own from the shape of the body" if effect.id in OWN else reason
+    return (
+        neutral,
+        "it computes its own from the shape of the body"
+        if effect.id in BODY_SHAPE_EFFECTS
+        else reason,
+    )
 
 
 def text(equation: Equation, notes: Sequence[str]) -> str:
@@ -95,7 +100,7 @@ def _robot(scenario: ET.Element, equation: Equation) -> None:
         _tag(push, "specs", **limits)
         _tag(push, "origin", xyz=numbers(unit.position), rpy=numbers(_along(unit.direction)))
         _tag(push, "link", name="Vehicle")
-    _tag(robot, "world_transform", xyz=numbers([0.0, 0.0, DEEP]), rpy="0.0 0.0 0.0")
+    _tag(robot, "world_transform", xyz=numbers([0.0, 0.0, START_DEPTH_M]), rpy="0.0 0.0 0.0")
 
 
 def _displaced(equation: Equation) -> tuple[float, Array]:

@@ -14,7 +14,7 @@ from typing import Sequence
 
 from rovsim.application.export.sizes import Sized, flights
 from rovsim.application.export.targets import Target, target, targets
-from rovsim.application.export.write import TYPICAL, export_model, model_parts, write_export
+from rovsim.application.export.write import TYPICAL_FLIGHT, export_model, model_parts, write_export
 from rovsim.application.pipeline.measured_campaign import measure, open_campaign
 from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
 from rovsim.application.settings import CampaignSettings
@@ -42,7 +42,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     chosen = _target(settings)
     model = _model(settings, catalogue)
     out = Path(settings.out or f"{model.name}{chosen.suffix}")
-    over = f"the runs of {settings.campaign}" if settings.campaign else TYPICAL
+    over = f"the runs of {settings.campaign}" if settings.campaign else TYPICAL_FLIGHT
     export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
     warning = warn_totals(model.body)
