@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from chromium import DESK, Tab, started
-from rovsim.apps.workbench.folders import MOST
+from rovsim.apps.workbench.folders import MAX_FOLDERS
 
 pytestmark = pytest.mark.browser
 DATA = ".chart canvas"  # there once the Data screen is drawn
@@ -50,7 +50,7 @@ def test_a_campaign_is_found_by_walking_through_folders(tab, campaign, tmp_path)
     page = tab.page
     own = tmp_path / "lab" / "hidden lag"
     shutil.copytree(campaign, own)
-    for number in range(MOST):  # a crowd that comes before it by name
+    for number in range(MAX_FOLDERS):  # a crowd that comes before it by name
         (own.parent / f"run {number}").mkdir()
         (own.parent / f"a{number}").mkdir()
     tab.go("compare")  # read, and so among those opened last

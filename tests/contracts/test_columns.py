@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from rovsim.apps.cli.complaint import complain
-from rovsim.apps.cli.main import COMMANDS, main
+from rovsim.apps.cli.main import COMMANDS_FOLDER, main
 from rovsim.core.columns import fold, fold_page
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.extras import EXTRA_PACKAGES
 
-ALL = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
+ALL = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS_FOLDER)]))
 ROOT = Path(__file__).parents[2]
 
 

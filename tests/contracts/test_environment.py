@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from rovsim.apps.gymnasium import ID, VehicleEnv
+from rovsim.apps.gymnasium import ENVIRONMENT_ID, VehicleEnv
 from rovsim.simulation.stepper import Stepper
 from worlds import model
 
@@ -19,7 +19,7 @@ def test_gymnasium_s_checker_finds_no_fault():
 
 @pytest.mark.filterwarnings(UNBOUNDED)
 def test_it_is_made_by_its_name():
-    env = gymnasium.make(f"rovsim.apps.gymnasium:{ID}", seconds=0.2)
+    env = gymnasium.make(f"rovsim.apps.gymnasium:{ENVIRONMENT_ID}", seconds=0.2)
     env.reset(seed=0)
     ends = [env.step(np.zeros(8))[3] for _ in range(4)]
     assert ends == [False, False, False, True]

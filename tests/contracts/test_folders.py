@@ -55,17 +55,17 @@ def test_circles_secrets_odd_names_and_crowds_are_no_trouble(tmp_path, monkeypat
     if os.getuid():  # root may look into everything
         assert look(shut).problem
     shut.chmod(0o700)
-    monkeypatch.setattr(folders, "MOST", 1)
+    monkeypatch.setattr(folders, "MAX_FOLDERS", 1)
     assert (len(look(tmp_path).inside), look(tmp_path).more) == (1, len(found.inside) - 1)
     assert [one.path.name for one in look(tmp_path, "HUT").inside] == ["shut"]
     assert look(tmp_path, "HUT").more == 0
 
 
 def test_campaigns_are_remembered_the_last_first_while_they_are_there(tmp_path):
-    made = [campaign(tmp_path / f"c{k}") for k in range(folders.KEPT + 2)]
+    made = [campaign(tmp_path / f"c{k}") for k in range(folders.MAX_KEPT_CAMPAIGNS + 2)]
     for one in (*made, made[-2]):
         remember(one)
-    expected = [made[-2], made[-1], *reversed(made[:-2])][: folders.KEPT]
+    expected = [made[-2], made[-1], *reversed(made[:-2])][: folders.MAX_KEPT_CAMPAIGNS]
     assert folders.list_recent() == expected
     (made[-2] / "campaign.yaml").unlink()
     assert folders.list_recent() == expected[1:]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rovsim.apps.workbench.new_campaign import TOPICS, tell_unanswered
+from rovsim.apps.workbench.new_campaign import TOPIC_TITLES, tell_unanswered
 from rovsim.intake.guesses import list_guesses
 from rovsim.intake.proposal import ANSWER, CampaignProposal, OpenQuestion
 from rovsim.intake.survey.timing import RowTiming
@@ -19,7 +19,7 @@ def test_a_guess_says_which_run_it_is_of_and_what_a_key_means():
         "runs": ("guess: kept for the test is none",),
         "mocap.velocity": ("guess: a line's velocity is the mean up to the next line",),
     }
-    assert list_guesses(CampaignProposal(content, comments), TOPICS) == [
+    assert list_guesses(CampaignProposal(content, comments), TOPIC_TITLES) == [
         "Runs: kept for the test is none",
         "Velocities: mean; a line's velocity is the mean up to the next line",
         "Run run_1: 3dof, by how much its commands turn it",

@@ -61,7 +61,7 @@ def test_a_disturbance_is_drawn(tmp_path):
 def test_likely_effects_are_shown_however_little_they_remove_alone():
     shown = [r.effect for r in why.list_worth_showing(synthetic_study.several_effects().ranking)]
     assert shown[:3] == ["thrust_asymmetry", "voltage_sag", "quadratic_damping"]
-    assert len(shown) == why.SHOWN
+    assert len(shown) == why.MAX_RANKED_EFFECTS
     assert "input_delay" not in shown  # neither likely nor of any use
 
 
@@ -90,7 +90,7 @@ def test_a_law_is_run_only_when_it_is_taken_in(bench):
     content = synthetic_study.a_lag().to_json()
     content["unexplained"] |= {"proposal": law}
     own = Workbench(bench.settings, bench.catalogue, bench.data, bench.models, bench.paths)
-    own.found(Diagnosis.model_validate(content))
+    own.replace_diagnosis(Diagnosis.model_validate(content))
     assert own.draft.ticked == ["thruster_lag"]
     with pytest.raises(BadInput):
         own.take_law()
@@ -216,13 +216,13 @@ def ended(work):
 def test_work_tells_how_far_it_is_and_ends_as_it_should():
     busy = Work.start("counting", print, counting, 40, 0.02)
     state, shares = ended(busy)
-    assert (state, busy.said) == ("done", 40)
+    assert (state, busy.outcome) == ("done", 40)
     assert len(shares) > 5
     poor, gone = Work.start("failing", print, failing), Work.start("dying", print, dying)
     assert ended(poor)[0] == "failed"
-    assert "Mend it" in poor.said
+    assert "Mend it" in poor.outcome
     assert ended(gone)[0] == "failed"
-    assert "unexpectedly" in gone.said
+    assert "unexpectedly" in gone.outcome
 
 
 def test_a_process_that_has_ended_is_let_go():

@@ -92,7 +92,7 @@ def test_a_path_is_drawn_through_its_points_and_keeps_its_gaps():
     time = np.linspace(0.0, 10.0, 1001)
     points = np.stack([np.cos(time), np.sin(time), 0.1 * time], axis=1)
     curves = np.array(path.bends(np.where(time[:, None] > 5.0, np.nan, points)))
-    assert 0.4 * path.PIECES < len(curves) <= 0.5 * path.PIECES
+    assert 0.4 * path.MAX_CURVES < len(curves) <= 0.5 * path.MAX_CURVES
     middle = 0.25 * curves[:, 0] + 0.5 * curves[:, 1] + 0.25 * curves[:, 2]
     for drawn in (curves[:, 0], middle, curves[:, 2]):
         away = np.linalg.norm(drawn[:, None] - points, axis=2).min(axis=1)
@@ -171,7 +171,7 @@ def test_curves_are_thinned_and_keep_their_gaps():
     time = np.linspace(0, 60, 6001)
     values = np.where(time > 30, np.nan, time)
     found = np.array(charts.points(time, values))
-    assert len(found) <= 2 * charts.POINTS
+    assert len(found) <= 2 * charts.MAX_POINTS
     np.testing.assert_array_equal(np.isnan(found[:, 1]), found[:, 0] > 30)
 
 
@@ -246,11 +246,11 @@ def test_a_room_is_seen_whole_whatever_its_shape():
         )
         seen = corners.reshape(3, -1).T - eye
         depth = seen @ ahead
-        slope = np.tan(np.radians(0.5 * path.ANGLE))
-        up, aside = np.abs(seen @ above) / depth, np.abs(seen @ right) / depth / path.WIDE
+        slope = np.tan(np.radians(0.5 * path.EYE_ANGLE_DEG))
+        up, aside = np.abs(seen @ above) / depth, np.abs(seen @ right) / depth / path.ASPECT_RATIO
         assert depth.min() > 0.0
         assert 0.8 * slope < max(up.max(), aside.max()) < 0.9 * slope
 
 
 def test_names_of_the_tank_hide_the_edges_behind_them():
-    assert f"background: {path.PAPER}" in path.NAME
+    assert f"background: {path.PAPER_COLOR}" in path.NAME_STYLE

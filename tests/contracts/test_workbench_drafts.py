@@ -89,11 +89,11 @@ def test_what_was_found_stays_whatever_is_ticked_or_moved():
     draft = Draft(model(), synthetic_study.a_lag(), built_in())
     draft.move("thruster_lag", "time_constant", 0.9)
     draft.tick("thruster_lag", False)
-    (lag,) = draft.found().added
+    (lag,) = draft.fitted_model().added
     assert lag.id == "thruster_lag"
     assert lag["time_constant"] != 0.9
-    assert not draft.found(but="thruster_lag").added
-    assert draft.found() is draft.found()  # what is computed of it is found again
+    assert not draft.fitted_model(but="thruster_lag").added
+    assert draft.fitted_model() is draft.fitted_model()  # what is computed of it is found again
 
 
 def test_a_value_moved_again_later_is_another_change(monkeypatch):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from rovsim.apps.workbench.charts import MARK, styles
-from rovsim.apps.workbench.where import FAINT
+from rovsim.apps.workbench.charts import MARK_COLOR, styles
+from rovsim.apps.workbench.where import FAINT_COLOR
 from rovsim.reporting.figures.palette import BLUE
 
 TOGETHER = ["measured", "nominal", "repaired", "knn_6dof", "gp_6dof", "zero_acceleration"]
@@ -52,6 +52,6 @@ def test_curves_shown_together_are_told_apart(who):
 
 
 @pytest.mark.parametrize("who", SEEN)
-@pytest.mark.parametrize("marked", [BLUE, MARK])
+@pytest.mark.parametrize("marked", [BLUE, MARK_COLOR])
 def test_what_is_marked_stands_out_from_the_rest(who, marked):
-    assert np.linalg.norm(lab(marked, SEEN[who]) - lab(FAINT, SEEN[who])) > 10 * NOTICED
+    assert np.linalg.norm(lab(marked, SEEN[who]) - lab(FAINT_COLOR, SEEN[who])) > 10 * NOTICED

@@ -20,7 +20,7 @@ from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.rest import rest_state
 from rovsim.simulation.stepper import Stepper
 
-ID = "rovsim/Vehicle-v0"
+ENVIRONMENT_ID = "rovsim/Vehicle-v0"
 
 
 class VehicleEnv(gymnasium.Env[Array, Array]):
@@ -99,4 +99,4 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         return np.concatenate([self.state, self.goal])
 
 
-gymnasium.register(ID, entry_point=f"{__name__}:VehicleEnv")
+gymnasium.register(ENVIRONMENT_ID, entry_point=f"{__name__}:VehicleEnv")

@@ -5,7 +5,7 @@ from typing import NoReturn
 
 from rovsim.core.columns import fold
 
-NAMELESS = "a file of $ROVSIM_CACHE or $TMPDIR"  # those of results are named by `core.files`
+NAMELESS_FILE = "a file of $ROVSIM_CACHE or $TMPDIR"  # those of results are named by `core.files`
 
 
 def complain(message: str) -> NoReturn:
@@ -22,4 +22,4 @@ def warn(message: str) -> None:
 
 def describe_os_error(error: OSError) -> str:
     """Return which file the system refused and why, for instance since the disk is full."""
-    return f"{error.filename or NAMELESS}: {error.strerror or error}"
+    return f"{error.filename or NAMELESS_FILE}: {error.strerror or error}"

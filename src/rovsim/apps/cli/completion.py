@@ -17,19 +17,22 @@ from rovsim.core.errors import BadInput, nearest
 from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
 from rovsim.core.shipped import conf_file, conf_names
 
-INSIDE = Path(rovsim.__file__).parent
-EFFECTS, TARGETS = INSIDE / "dynamics/effects", INSIDE / "application/export/targets"
-COMMANDS = Path(__file__).with_name("commands")
-NOT_SETTINGS = ("defaults", "hydra")
-MODELS = (NOMINAL, ZERO_ACCELERATION)
+PACKAGE_FOLDER = Path(rovsim.__file__).parent
+EFFECTS_FOLDER, TARGETS_FOLDER = (
+    PACKAGE_FOLDER / "dynamics/effects",
+    PACKAGE_FOLDER / "application/export/targets",
+)
+COMMANDS_FOLDER = Path(__file__).with_name("commands")
+HYDRA_KEYS = ("defaults", "hydra")
+BUILT_IN_MODELS = (NOMINAL, ZERO_ACCELERATION)
 OPTIONS = ("--help", "--quiet", "--json", "--multirun")
 # Keys whose values are files: how such a file ends, after "/" for folders alone.
-FILES = {
+FILE_ENDINGS = {
     "campaign": "/", "out": "/", "model": ".yaml", "to": ".yaml", "diagnosis": ".json",
     "effects_file": ".py", "fly": ".csv", "folds.published": ".csv",
 }  # fmt: skip
-UNLISTED = "    listed = False"  # in a class: no effect of the catalogue
-OF_EFFECTS = ("effects", "between", "know")
+UNLISTED_LINE = "    listed = False"  # in a class: no effect of the catalogue
+EFFECT_KEYS = ("effects", "between", "know")
 HELP = """\
 The Tab key finds commands, keys, options, effects and files.
 
@@ -105,20 +108,20 @@ def _answer(shell: str, line: str) -> list[str]:
     return [_as(shell, last, value) for value in values]
 
 
-def _as(shell: str, word: Word, found: str) -> str:
+def _as(shell: str, word: Word, value: str) -> str:
     """Return a suggestion as a shell expects it: a finished word ends in a blank, but for fish.
 
     Args:
         shell: its name.
         word: that is being typed.
-        found: value that the word may become.
+        value: value that the word may become.
     """
-    typed = word.typed(found)
+    typed = word.typed(value)
     if shell == "bash" and not word.quote:  # it takes a word to begin after the last = or :
         typed = typed[max(word.raw.rfind(mark) for mark in "=:") + 1 :]
     elif shell == "bash":
         typed = typed[1:]
-    finished = not found.endswith(("=", "/", ".")) and "=[" not in found
+    finished = not value.endswith(("=", "/", ".")) and "=[" not in value
     if shell == "fish" or not finished:
         return typed
     return typed + word.quote + " "
@@ -167,7 +170,7 @@ def suggest(given: Sequence[str], word: str) -> list[str]:
 
 def commands() -> list[str]:
     """List the names of the commands."""
-    return sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
+    return sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS_FOLDER)]))
 
 
 def _beginning(word: str, names: Iterable[str]) -> list[str]:
@@ -190,7 +193,7 @@ def _keys(command: str, word: str, taken: set[str]) -> list[str]:
 
 def own_keys(command: str) -> list[str]:
     """List the dotted keys that the help of a command names, in its order."""
-    source = (COMMANDS / f"{command}.py").read_text(encoding="utf-8")
+    source = (COMMANDS_FOLDER / f"{command}.py").read_text(encoding="utf-8")
     return re.findall(r"(?<![\w.])([a-z_]+(?:\.\w+)*)=", source.split('"""')[1])
 
 
@@ -203,13 +206,15 @@ def _step(end: str) -> str:
 def _values(command: str, key: str, value: str) -> list[str]:
     """List what a value may become: names first, then files."""
     if key == "to" and command == "export":
-        return _beginning(value, [module.name for module in pkgutil.iter_modules([str(TARGETS)])])
+        return _beginning(
+            value, [module.name for module in pkgutil.iter_modules([str(TARGETS_FOLDER)])]
+        )
     names = [*conf_names(key), *settings().get(key, ())]
-    if key in OF_EFFECTS:
+    if key in EFFECT_KEYS:
         names += effects()
     elif key in ("model", "to"):
-        names += MODELS
-    files = _files(value, FILES[key]) if key in FILES else []
+        names += BUILT_IN_MODELS
+    files = _files(value, FILE_ENDINGS[key]) if key in FILE_ENDINGS else []
     return [*_beginning(value, names), *files]
 
 
@@ -233,8 +238,10 @@ def _files(start: str, ending: str) -> list[str]:
 
 def effects() -> list[str]:
     """List the ids of the built-in effects, as their files declare them."""
-    texts = (path.read_text(encoding="utf-8") for path in EFFECTS.glob("*.py"))
-    classes = (body for text in texts for body in text.split("\nclass ") if UNLISTED not in body)
+    texts = (path.read_text(encoding="utf-8") for path in EFFECTS_FOLDER.glob("*.py"))
+    classes = (
+        body for text in texts for body in text.split("\nclass ") if UNLISTED_LINE not in body
+    )
     return sorted(name for body in classes for name in re.findall(r'^    id = "(\w+)"', body, re.M))
 
 
@@ -268,7 +275,7 @@ def _listed(text: str, before: str) -> dict[str, tuple[str, ...]]:
         name = "".join(f"{outer}." for _, outer in above) + key
         if not value.split("#")[0].strip():
             above.append((len(space), key))
-        elif name.split(".")[0] not in NOT_SETTINGS:
+        elif name.split(".")[0] not in HYDRA_KEYS:
             choices[before + name] = _choices(value)
     return choices
 

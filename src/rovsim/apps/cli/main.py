@@ -16,12 +16,13 @@ from rovsim.core.model_names import BUILT_IN
 from rovsim.core.termination import SIGTERM_EXIT, Terminated, heeding_termination
 
 # Values taken as they are typed, whatever characters they hold; the rest are Hydra overrides.
-PLAIN = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
-FILES = {"init": "files"}  # commands that take files by themselves, and the key they become
-FLAGS = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
-OPTIONS = (*FLAGS, "-m", "--multirun", "-h", "--help")
-COMMANDS = Path(__file__).with_name("commands")
-SWEPT = ("campaign", "model", "effects_file", "fly")  # of these: paths, of which -m takes several
+QUOTED_KEYS = ("campaign", "model", "effects", "effects_file", "out", "diagnosis", "to", "fly")
+FILE_COMMANDS = {"init": "files"}  # commands that take files, and the key they become
+FLAG_OVERRIDES = {"--quiet": "output=quiet", "-q": "output=quiet", "--json": "output=json"}
+OPTIONS = (*FLAG_OVERRIDES, "-m", "--multirun", "-h", "--help")
+COMMANDS_FOLDER = Path(__file__).with_name("commands")
+# of these: paths, of which -m takes several
+SWEPT_PATH_KEYS = ("campaign", "model", "effects_file", "fly")
 LISTS = ("model", "effects", "effects_file")  # of these: lists, in brackets
 
 
@@ -47,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _main(words: list[str]) -> None:
-    names = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS)]))
+    names = sorted(module.name for module in pkgutil.iter_modules([str(COMMANDS_FOLDER)]))
     if not words or words[0] in ("-h", "--help", "help"):
         print(_help(names))
         return
@@ -66,12 +67,12 @@ def _main(words: list[str]) -> None:
         print(fold_page(_doc(command)))
         return
     sweep = bool({"-m", "--multirun"} & set(rest))
-    words = [FLAGS.get(word, word) for word in rest if word not in ("-m", "--multirun")]
-    files = [word for word in words if command in FILES and is_file(word)]
+    words = [FLAG_OVERRIDES.get(word, word) for word in rest if word not in ("-m", "--multirun")]
+    files = [word for word in words if command in FILE_COMMANDS and is_file(word)]
     overrides = [override(word, sweep) for word in words if word not in files]
     _require_distinct(overrides)
     if files:
-        overrides.append(f"{FILES[command]}=[{','.join(map(quoted, files))}]")
+        overrides.append(f"{FILE_COMMANDS[command]}=[{','.join(map(quoted, files))}]")
     _run(command, overrides, sweep)
 
 
@@ -126,7 +127,7 @@ def _doc(name: str) -> str:
     """Return the docstring of a command without importing it, which would take seconds."""
     import ast
 
-    source = (COMMANDS / f"{name}.py").read_text(encoding="utf-8")
+    source = (COMMANDS_FOLDER / f"{name}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
 
 
@@ -136,7 +137,7 @@ def is_file(word: str) -> bool:
 
 
 def override(word: str, sweep: bool = False) -> str:
-    """Return a word of the command line as a Hydra override; values of `PLAIN` keys are quoted.
+    """Return a word of the command line as a Hydra override; values of `QUOTED_KEYS` are quoted.
 
     In a sweep, existing files and folders with commas between them are one value each.
 
@@ -153,11 +154,11 @@ def override(word: str, sweep: bool = False) -> str:
             expected="key=value",
             remedy="Quote values that hold spaces, for example campaign='my tank'.",
         )
-    if key not in PLAIN:
+    if key not in QUOTED_KEYS:
         return word
     if value.startswith("[") and value.endswith("]"):
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
-    if key in SWEPT and not os.path.exists(value):
+    if key in SWEPT_PATH_KEYS and not os.path.exists(value):
         paths = listed(value)
         if all(os.path.exists(path) or path in BUILT_IN for path in paths):
             if len(paths) > 1 and not sweep:

@@ -20,11 +20,11 @@ from rovsim.core.files import make_folder, write_text
 from rovsim.core.model_names import name_learned
 from rovsim.measurement.loading import load_campaign
 
-SLURM = "hydra/launcher=submitit_slurm"
-FOLDER = "hydra.sweep.dir"
-FAILED = "failed.txt"
+SLURM_LAUNCHER = "hydra/launcher=submitit_slurm"
+SWEEP_FOLDER_KEY = "hydra.sweep.dir"
+FAILURE_FILE = "failed.txt"
 # What a run's name has without this, or what is the same in all of them.
-NAMED = ("command", "campaign", "residual", "control", "out", "output")
+NAMED_KEYS = ("command", "campaign", "residual", "control", "out", "output")
 
 
 def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
@@ -40,9 +40,9 @@ def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
     """
     check_launcher(overrides)
     check_campaigns(campaigns)
-    words = [word for word in overrides if not word.startswith(f"{FOLDER}=")]
+    words = [word for word in overrides if not word.startswith(f"{SWEEP_FOLDER_KEY}=")]
     folder = choose_sweep_folder(sweep_folder(first_values(overrides)), given=words != [*overrides])
-    for path in folder.rglob(FAILED):
+    for path in folder.rglob(FAILURE_FILE):
         path.unlink()
     try:
         _run_all(words, folder)
@@ -61,7 +61,7 @@ def _run_all(words: Sequence[str], folder: Path) -> None:
 
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # errors come here, as they are
     literal = str(folder).replace("\\", "\\\\").replace("'", "\\'")
-    sys.argv = ["rovsim", "--multirun", *words, f"{FOLDER}='{literal}'"]
+    sys.argv = ["rovsim", "--multirun", *words, f"{SWEEP_FOLDER_KEY}='{literal}'"]
     hydra.main(version_base="1.3", config_path=first_folder(), config_name="config")(job)()
 
 
@@ -94,15 +94,15 @@ def refuse_failed(folder: Path) -> None:
     Raises:
         BadInput: some did.
     """
-    failed = sorted(folder.rglob(FAILED), key=lambda path: (len(path.parent.name), path))
+    failed = sorted(folder.rglob(FAILURE_FILE), key=lambda path: (len(path.parent.name), path))
     if failed:
         numbers = ", ".join(path.parent.name for path in failed)
         raise BadInput(
             f"{len(failed)} of the runs failed ({numbers})",
             where=folder,
             expected="runs that all end",
-            remedy=f"The others are kept. Why it failed stands in the {FAILED} of each: mend that, "
-            "and sweep over its values alone.",
+            remedy=f"The others are kept. Why it failed stands in the {FAILURE_FILE} of each: mend "
+            "that, and sweep over its values alone.",
         )
 
 
@@ -125,7 +125,7 @@ def job(composed: Any) -> None:
         words = " ".join(hydra.overrides.task[1:])  # without the command
         message = f"run {hydra.job.num} of the sweep ({words}): {reason}"
         warn(message)
-        write_text(Path(hydra.runtime.output_dir, FAILED), f"{message}\n")
+        write_text(Path(hydra.runtime.output_dir, FAILURE_FILE), f"{message}\n")
 
 
 def first_values(overrides: Sequence[str]) -> list[str]:
@@ -176,10 +176,10 @@ def check_launcher(overrides: Sequence[str]) -> None:
     Raises:
         BadInput: it is not.
     """
-    if SLURM in overrides and which("srun") is None:
+    if SLURM_LAUNCHER in overrides and which("srun") is None:
         raise BadInput(
             "no Slurm is on this machine (there is no 'srun')",
-            where=SLURM,
+            where=SLURM_LAUNCHER,
             expected="a node from which jobs can be sent",
             remedy="Run it there, or leave that out: the sweep then runs here.",
         )
@@ -204,7 +204,7 @@ def choose_out(given: str | None, own: str, name: str) -> str:
 
 def name_run(settings: Settings, overrides: Sequence[str]) -> Settings:
     """Return the settings with a name by which MLflow distinguishes the runs of a sweep."""
-    words = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED]
+    words = [word for word in overrides if word.partition("=")[0].lstrip("+") not in NAMED_KEYS]
     if settings.tracking.name or not words:
         return settings
     name = " ".join([name_learned(settings.learner.kind, settings.control), *words])

@@ -10,8 +10,8 @@ from rovsim.core.errors import BadInput
 from rovsim.core.shipped import conf_file, conf_names
 
 # Sections that may stand beside any command: a sweep's, and what scripts give to all alike.
-EVERYWHERE = ("command", "hydra", "experiment", "seed", "tracking")
-FEW = 3  # commands that are asked for; of a key that most take, none can be meant
+COMMON_SECTIONS = ("command", "hydra", "experiment", "seed", "tracking")
+MAX_NAMED_COMMANDS = 3  # asked for; of a key that most take, none can be meant
 
 
 def require_taken(command: str, overrides: Sequence[str]) -> None:
@@ -24,7 +24,7 @@ def require_taken(command: str, overrides: Sequence[str]) -> None:
     for word in overrides:
         key = word.lstrip("+~").partition("=")[0]
         name = section(key)
-        if name in Settings.model_fields and name not in (*fields, *EVERYWHERE):
+        if name in Settings.model_fields and name not in (*fields, *COMMON_SECTIONS):
             raise BadInput(
                 f"`rovsim {command}` does not use '{key}'",
                 where="command line",
@@ -45,7 +45,7 @@ def section(key: str) -> str:
 def _remedy(name: str) -> str:
     """Suggest the commands whose help names a section."""
     users = [user for user in commands() if name in {section(key) for key in own_keys(user)}]
-    if not 0 < len(users) <= FEW:
+    if not 0 < len(users) <= MAX_NAMED_COMMANDS:
         return "Leave it out."
     names = ", ".join(f"`rovsim {user}`" for user in users)
     return f"Leave it out, or did you mean {names}?"

@@ -10,8 +10,8 @@ from rovsim.dynamics.catalogue import load_catalogue
 from rovsim.dynamics.model_file import read_model
 from rovsim.simulation.stepper import Stepper
 
-STATE = ("x", "y", "z", "q0", "q1", "q2", "q3", "u", "v", "w", "p", "q", "r")
-MODEL = "model.yaml"  # among the unit's resources
+STATE_NAMES = ("x", "y", "z", "q0", "q1", "q2", "q3", "u", "v", "w", "p", "q", "r")
+MODEL_FILE = "model.yaml"  # among the unit's resources
 
 
 class Vehicle(Fmi2Slave):
@@ -24,16 +24,16 @@ class Vehicle(Fmi2Slave):
     def __init__(self, **given):
         super().__init__(**given)
         self.description = "An underwater vehicle simulated by rovsim"
-        self.stepper = Stepper(read_model(Path(self.resources, MODEL), load_catalogue()))
+        self.stepper = Stepper(read_model(Path(self.resources, MODEL_FILE), load_catalogue()))
         self.state = np.zeros(13)
-        self.start = np.array([float(name == "q0") for name in STATE])
+        self.start = np.array([float(name == "q0") for name in STATE_NAMES])
         self.command = np.zeros(self.stepper.columns)
         for i in range(self.stepper.columns):
             self._real(f"command_{i + 1}", Fmi2Causality.input, self.command, i)
-        for i, name in enumerate(STATE):
+        for i, name in enumerate(STATE_NAMES):
             fixed = Fmi2Variability.tunable
             self._real(f"start_{name}", Fmi2Causality.parameter, self.start, i, variability=fixed)
-        for i, name in enumerate(STATE):
+        for i, name in enumerate(STATE_NAMES):
             begins = Fmi2Initial.calculated
             self._real(name, Fmi2Causality.output, self.state, i, initial=begins)
 

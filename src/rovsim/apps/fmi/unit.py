@@ -11,7 +11,7 @@ from rovsim.core.yaml_files import read_yaml
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.model_file import write_model
 
-SLAVE, MODEL = "slave.py", "model.yaml"
+SLAVE_FILE, MODEL_FILE = "slave.py", "model.yaml"
 
 
 def write_unit(model: Model, source: Path | None, out: Path) -> None:
@@ -38,7 +38,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
         inside = Path(folder, "inside")
         inside.mkdir()
         files = _packed(model, source, inside)
-        script = Path(shutil.copy(Path(__file__).with_name(SLAVE), folder))
+        script = Path(shutil.copy(Path(__file__).with_name(SLAVE_FILE), folder))
         before = list(sys.path)
         try:
             built = FmuBuilder.build_FMU(script, Path(folder, "unit.fmu"), files)
@@ -50,7 +50,7 @@ def write_unit(model: Model, source: Path | None, out: Path) -> None:
 def _packed(model: Model, source: Path | None, folder: Path) -> list[Path]:
     """Write the files of a model into a folder, with its residual; returns all files there."""
     residual = read_yaml(source).get("residual") if source else None
-    write_model(model, folder / MODEL, residual=residual)
+    write_model(model, folder / MODEL_FILE, residual=residual)
     if source and residual:
         copy_file(source.parent / residual["file"], folder / residual["file"])
     return sorted(folder.iterdir())

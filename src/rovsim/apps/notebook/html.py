@@ -12,7 +12,7 @@ from pandas import DataFrame
 from rovsim.reporting.figures.style import styled
 from rovsim.reporting.wording import significant
 
-SCREEN = 110  # dots an inch: a text column is 650 pixels wide
+SCREEN_DPI = 110  # a text column is 650 pixels wide
 
 
 def heading(text: str) -> str:
@@ -41,7 +41,7 @@ def picture(figure: Figure, caption: str) -> str:
 def png(figure: Figure) -> bytes:
     """Draw a figure for the screen; returns the content of a PNG file."""
     with styled():
-        figure.set_dpi(SCREEN)
+        figure.set_dpi(SCREEN_DPI)
         buffer = io.BytesIO()
         FigureCanvasAgg(figure).print_png(buffer)
     return buffer.getvalue()

@@ -6,7 +6,7 @@ from typing import Iterator
 
 from rovsim.core.progress import heard_by
 
-STEPS = 20  # lines are written so often, at most: a notebook keeps what a cell wrote
+MAX_LINES = 20  # a notebook keeps what a cell wrote
 
 
 @contextmanager
@@ -19,7 +19,7 @@ def in_a_cell() -> Iterator[None]:
 
     def tell(what: str, share: float | None) -> None:
         nonlocal shown
-        percent = "" if share is None else f" {round(STEPS * share) * 100 // STEPS} %"
+        percent = "" if share is None else f" {round(MAX_LINES * share) * 100 // MAX_LINES} %"
         line = f"{what}{percent}"
         if line != shown:
             print(f"\r{line:<78}", end="", flush=True)

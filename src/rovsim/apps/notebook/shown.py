@@ -27,7 +27,7 @@ from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 from rovsim.results.ladder import Ladder
 
-FITTED = ("value", "std", "unit")
+FITTED_COLUMNS = ("value", "std", "unit")
 
 
 class Figures:
@@ -189,7 +189,7 @@ class ShownModel(os.PathLike):
             for p in effect.parameters
             if p.name in effect.given() or p.name in effect.std
         }
-        return _rows(rows, FITTED)
+        return _rows(rows, FITTED_COLUMNS)
 
     def _repr_html_(self) -> str:
         residual = self.model.residual
@@ -228,7 +228,7 @@ def _named(table: Table) -> DataFrame:
     return table.frame.set_axis(names, axis=1)
 
 
-def _effects(found: Sequence[FittedEffect]) -> DataFrame:
+def _effects(effects: Sequence[FittedEffect]) -> DataFrame:
     rows = {
         (fitted.effect, name): (
             or_nan(v.value),
@@ -237,10 +237,10 @@ def _effects(found: Sequence[FittedEffect]) -> DataFrame:
             or_nan(fitted.error_reduction),
             fitted.probability,
         )
-        for fitted in found
+        for fitted in effects
         for name, v in fitted.parameters.items()
     }
-    return _rows(rows, (*FITTED, "error_reduction", "probability"))
+    return _rows(rows, (*FITTED_COLUMNS, "error_reduction", "probability"))
 
 
 def _rows(rows: Mapping[tuple[str, str], Sequence[object]], columns: Sequence[str]) -> DataFrame:

@@ -27,7 +27,8 @@ from rovsim.dynamics.model import Model
 from rovsim.simulation.prediction import Prediction
 
 TITLE, QUESTION = "Add", "How much better is it once that is added?"
-SENT = 0.002  # s: NiceGUI has sent the curves; beside them it would send the numbers first
+# NiceGUI has sent the curves; beside them it would send the numbers first
+SENDING_PAUSE_S = 0.002
 
 
 class Add:
@@ -174,7 +175,7 @@ class Add:
         motion = self.bench.data.motions[self.run]
         remark = self._remark({self.bench.base.name: self.base, "the new model": prediction})
         traces.redraw(panels(motion, {"new": prediction}, self.chosen["axes"]), remark)
-        await asyncio.sleep(SENT)
+        await asyncio.sleep(SENDING_PAUSE_S)
         self._tell(self.after, "now", error)
 
 

@@ -13,8 +13,8 @@ from rovsim.reporting.units import unit
 from rovsim.reporting.wording import rounded, tell_probability
 from rovsim.reporting.words.totals import tell_total
 
-STEPS = 400  # of a slider
-FIRST = 5  # effects that are offered without being asked for
+SLIDER_STEPS = 400
+OFFERED_EFFECTS = 5  # effects that are offered without being asked for
 
 Changed = Callable[[], Awaitable[None]]
 
@@ -52,9 +52,11 @@ class Effects:
                     "the workbench with the effects_file=… it was made with.",
                     "warning",
                 )
-            for name in offered[:FIRST] + [n for n in offered[FIRST:] if n in self.draft.ticked]:
+            for name in offered[:OFFERED_EFFECTS] + [
+                n for n in offered[OFFERED_EFFECTS:] if n in self.draft.ticked
+            ]:
                 self._card(name)
-            rest = [name for name in self.bench.catalogue if name not in offered[:FIRST]]
+            rest = [name for name in self.bench.catalogue if name not in offered[:OFFERED_EFFECTS]]
             select = ui.select(rest, label="Another effect", with_input=True).classes(
                 "control wide"
             )
@@ -138,7 +140,7 @@ class ParameterRow:
 
     def _draw(self, label: str, value: float) -> None:
         low, high = reach(self.parameter, value)
-        step = 1.0 if self.parameter.discrete else (high - low) / STEPS
+        step = 1.0 if self.parameter.discrete else (high - low) / SLIDER_STEPS
         self.slider = Slider(min=low, max=high, step=step, value=value)
         self.slider.props(f'aria-label="{label}"')
         self.number = ui.number(value=rounded(value), suffix=self.unit).classes("value")
@@ -146,12 +148,12 @@ class ParameterRow:
         back = ui.button(icon="settings_backup_restore").classes("reset")
         about = f"{label}: back to where it began"
         back.props(f'flat dense aria-label="{about}" title="{about}"')
-        self.total = ui.html(self._told(value), sanitize=False).classes("total")
+        self.total = ui.html(self._format_total(value), sanitize=False).classes("total")
         self.slider.on("update:model-value", self._moved, throttle=0.05)
         self.number.on("change", self._typed)
         back.on_click(lambda: self.effects.reset(self.effect, self.parameter.name))
 
-    def _told(self, value: float) -> str:
+    def _format_total(self, value: float) -> str:
         body = self.effects.bench.base.body
         total = tell_total(body, self.effect, self.parameter.name, value, self.unit)
         return f"{escape(total.text)} {alarm(total.wrong)}".strip()
@@ -168,7 +170,7 @@ class ParameterRow:
     async def _change(self, value: float) -> None:
         if value == self.effects.draft.entry(self.effect).parameters[self.parameter.name].value:
             return  # a key tells its value twice, and the throttle tells the last one again
-        self.total.content = self._told(value)
+        self.total.content = self._format_total(value)
         await self.effects.move(self.effect, self.parameter.name, value)
 
 

@@ -23,23 +23,23 @@ from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
 SCREENS = ("compare", "where", "why", "add", "ladder", "models", "flight", "data")
-STYLE, CHARTS = (Path(__file__).with_name(name) for name in ("style.css", "charts.js"))
+STYLE_FILE, CHARTS_FILE = (Path(__file__).with_name(name) for name in ("style.css", "charts.js"))
 ICON = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 32 32"><path fill="none" '
     'stroke="#0072B2" stroke-width="4" d="M2 21c5-14 9-14 14 0s9 14 14 0"/></svg>'
 )
 # Light or dark as the system is, until the user changes it; the browser then remembers that.
-TURN = """() => {
+SWITCH_SHADE = """() => {
   const dark = !document.body.classList.contains("body--dark");
   localStorage.setItem("dark", dark);
   setDark(dark);
 }"""
-RECALL = """
+RECALL_SHADE = """
   const kept = localStorage.getItem("dark");
   if (kept !== null) setDark(kept === "true");
 """
-LOOK = 0.25  # s between two looks at long work
-TIDY = 60.0  # s between two times that memory is given back
+LOOK_INTERVAL_S = 0.25  # between two looks at long work
+TIDY_INTERVAL_S = 60.0  # between two times that memory is given back
 
 
 class Screens(ui.sub_pages):
@@ -68,8 +68,8 @@ class Page:
 
     def build(self) -> None:
         """Build the header, the line that shows progress, and the screen."""
-        ui.add_head_html(f"<style>{STYLE.read_text(encoding='utf-8')}</style>")
-        ui.add_head_html(f"<script>{CHARTS.read_text(encoding='utf-8')}</script>")
+        ui.add_head_html(f"<style>{STYLE_FILE.read_text(encoding='utf-8')}</style>")
+        ui.add_head_html(f"<script>{CHARTS_FILE.read_text(encoding='utf-8')}</script>")
         ui.colors(primary="#0072B2")
         ui.query("html").props('lang="en"')
         with ui.element("header"):
@@ -81,7 +81,7 @@ class Page:
                     title = "Effects" if name == "gallery" else name.capitalize()
                     link = ui.link(title, f"/{name}").props(f'accesskey="{k}" title="key {k}"')
                     self.links[name] = link
-            shade = ui.button(icon="contrast").classes("shade").on("click", js_handler=TURN)
+            shade = ui.button(icon="contrast").classes("shade").on("click", js_handler=SWITCH_SHADE)
             shade.props('flat round dense aria-label="Light or dark" title="Light or dark"')
         self._progress()
         with ui.element("div").classes("screen"):
@@ -90,8 +90,8 @@ class Page:
             routes["/gallery/{effect}"] = self._effect
             self.pages = Screens(routes)
         ui.keyboard(on_key=self._key)
-        ui.timer(LOOK, self._look)
-        ui.run_javascript(RECALL)
+        ui.timer(LOOK_INTERVAL_S, self._look)
+        ui.run_javascript(RECALL_SHADE)
 
     async def _enter(self) -> Session:
         """Return the session of this tab, once the tab is connected."""
@@ -151,8 +151,8 @@ class Page:
     def _tell(self, session: Session) -> None:
         """Notify the user of long work that has ended since the screen was drawn."""
         for work in session.works:
-            if work.said and work.ended > self.heard.get(work, work.ended):
-                ui.notify(work.said, color="dark", position="bottom-right", multi_line=True)
+            if work.message and work.ended > self.heard.get(work, work.ended):
+                ui.notify(work.message, color="dark", position="bottom-right", multi_line=True)
 
     def _note(self, session: Session) -> None:
         """Remember the state that the page is drawn in, to notice later changes."""
@@ -242,7 +242,7 @@ def was_answered(record: logging.LogRecord) -> bool:
 def serve(settings: WorkbenchSettings, catalogue: Catalogue) -> None:
     """Serve the workbench on loopback until interrupted."""
     sessions = Sessions(settings, catalogue)
-    server.timer(TIDY, give_back_memory, immediate=False)
+    server.timer(TIDY_INTERVAL_S, give_back_memory, immediate=False)
     logging.getLogger("uvicorn.error").addFilter(was_answered)
     server.add_middleware(Gate)
     server.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

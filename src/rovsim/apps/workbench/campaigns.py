@@ -9,12 +9,12 @@ from rovsim.apps.workbench.folders import Inside, Listing, list_recent, look, sh
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 
 TITLE, QUESTION = "Open", "Which campaign do you want to look at?"
-PLACES = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaign.yaml")
+CAMPAIGN_PATTERNS = ("campaigns/*/campaign.yaml", "results/*/raw/campaign.yaml", "*/campaign.yaml")
 
 
-def known() -> list[Path]:
+def list_campaigns() -> list[Path]:
     """List the folders of campaigns at the usual places below the working directory."""
-    folders = {path.parent for place in PLACES for path in Path().glob(place)}
+    folders = {path.parent for place in CAMPAIGN_PATTERNS for path in Path().glob(place)}
     return sorted(folders)
 
 
@@ -114,7 +114,7 @@ def show(
         "soft",
     )
     _list("Opened last", list_recent(), choose)
-    _list("Campaigns in this folder", known(), choose)
+    _list("Campaigns in this folder", list_campaigns(), choose)
     section("Look for a folder")
     Browser(Path(typed or "."), choose).show()
     section("No recordings at hand?")

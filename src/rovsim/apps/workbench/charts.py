@@ -11,11 +11,13 @@ from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, n
 from rovsim.reporting.figures.palette import AREA_OPACITY, Look, looks
 from rovsim.reporting.wording import title
 
-POINTS = 800  # a curve shows at most: each takes its time to send and to draw
-MARK = "#D55E00"
-TALL, SHORT, GAP, TOP, ICONS = 104, 56, 36, 40, 12  # px: panels, what lies between, legend; icons
-LOW, WIDTH = "/low end of the band", "/width of the band"  # ids of series, as a csv names them
-WEIGHT = 2.2  # px of a line on screen for one of width 1 on paper
+MAX_POINTS = 800  # a curve shows at most: each takes its time to send and to draw
+MARK_COLOR = "#D55E00"
+# px: panels, what lies between, legend; icons
+TALL_PANEL_PX, SHORT_PANEL_PX, PANEL_GAP_PX, LEGEND_PX, ICON_PX = 104, 56, 36, 40, 12
+# ids of series, as a csv names them
+BAND_LOW_SUFFIX, BAND_WIDTH_SUFFIX = "/low end of the band", "/width of the band"
+LINE_WIDTH_PX = 2.2  # of a line on screen for one of width 1 on paper
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +41,7 @@ class Panel:
     about: Mapping[str, str] = field(default_factory=dict)
 
 
-def told(curve: str) -> str:
+def legend_name(curve: str) -> str:
     """Return the name of a curve in the legend: the title of its model, then its run, if any.
 
     Ids of curves, and the CSV, keep the name of the model's file.
@@ -57,25 +59,29 @@ def styles(names: Sequence[str]) -> dict[str, Look]:
 
 
 def points(time: Array, values: Array) -> list[list[float]]:
-    """Return pairs (time, value) for ECharts, at most about `POINTS`; NaN leaves a gap.
+    """Return pairs (time, value) for ECharts, at most about `MAX_POINTS`; NaN leaves a gap.
 
     Args:
         time: of the samples (n,), s.
         values: at these (n,).
     """
-    step = max(1, len(time) // POINTS)
+    step = max(1, len(time) // MAX_POINTS)
     return np.stack([np.round(time[::step], 3), np.round(values[::step], 5)], axis=1).tolist()
 
 
 def line_style(look: Look) -> Options:
     """Return colour, width and dashes of a line as ECharts options."""
     dash = "solid" if isinstance(look.dash, str) else [2 * d for d in look.dash[1]]
-    return {"color": look.color, "width": WEIGHT * look.width, "type": dash}
+    return {"color": look.color, "width": LINE_WIDTH_PX * look.width, "type": dash}
 
 
 def height(panels: Sequence[Panel]) -> int:
     """Return the height in px of a chart with these panels."""
-    return TOP + sum((SHORT if p.short else TALL) + GAP for p in panels) + 24
+    return (
+        LEGEND_PX
+        + sum((SHORT_PANEL_PX if p.short else TALL_PANEL_PX) + PANEL_GAP_PX for p in panels)
+        + 24
+    )
 
 
 def series_data(time: Array, panels: Sequence[Panel], but: Sequence[str] = ()) -> list[Options]:
@@ -96,7 +102,7 @@ def columns(panels: Sequence[Panel]) -> Options:
             f"{k}/{name}{end}": f"{about}{end.replace('/', ', ')} ({panel.unit})"
             for k, panel in enumerate(panels)
             for name, about in panel.about.items()
-            for end in ("", *((LOW, WIDTH) if name in panel.bands else ()))
+            for end in ("", *((BAND_LOW_SUFFIX, BAND_WIDTH_SUFFIX) if name in panel.bands else ()))
         },
     }
 
@@ -104,7 +110,11 @@ def columns(panels: Sequence[Panel]) -> Options:
 def _ends(panel: Panel) -> list[tuple[str, Array]]:
     """List the lower ends of bands, and their widths, which ECharts stacks on these."""
     bands = [(name, low, high - low) for name, (low, high) in panel.bands.items()]
-    return [s for name, low, wide in bands for s in ((name + LOW, low), (name + WIDTH, wide))]
+    return [
+        s
+        for name, low, wide in bands
+        for s in ((name + BAND_LOW_SUFFIX, low), (name + BAND_WIDTH_SUFFIX, wide))
+    ]
 
 
 def time_series(time: Array, panels: Sequence[Panel], look: Mapping[str, Look]) -> Options:
@@ -140,7 +150,7 @@ def _controls(panels: Sequence[Panel]) -> Options:
         },
         "toolbox": {
             "right": 8,
-            "top": ICONS,
+            "top": ICON_PX,
             "iconStyle": {"borderColor": SOFT},
             "feature": {
                 "dataZoom": {"yAxisIndex": "none", "title": {"zoom": "zoom", "back": "back"}}
@@ -178,7 +188,11 @@ def _panel(
     """
     return [
         *(_curve(k, name, look[name], ready) for name in panel.curves),
-        *(_area(k, name, end, look[name], ready) for name in panel.bands for end in (LOW, WIDTH)),
+        *(
+            _area(k, name, end, look[name], ready)
+            for name in panel.bands
+            for end in (BAND_LOW_SUFFIX, BAND_WIDTH_SUFFIX)
+        ),
         cursor(k, None) | {"xAxisIndex": k, "yAxisIndex": k},
     ]
 
@@ -187,7 +201,7 @@ def _curve(k: int, name: str, look: Look, ready: Mapping[str, Any]) -> Options:
     """Return the series of a curve; what was measured lies above the others."""
     return {
         "id": f"{k}/{name}",
-        "name": told(name),
+        "name": legend_name(name),
         "type": "line",
         "symbol": "none",
         "xAxisIndex": k,
@@ -205,14 +219,14 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
     Args:
         k: number of the panel.
         name: of the curve that the band belongs to.
-        end: `LOW` or `WIDTH`.
+        end: `BAND_LOW_SUFFIX` or `BAND_WIDTH_SUFFIX`.
         look: of that curve.
         ready: points of every series by id.
     """
-    shade = {"color": look.color, "opacity": AREA_OPACITY if end == WIDTH else 0.0}
+    shade = {"color": look.color, "opacity": AREA_OPACITY if end == BAND_WIDTH_SUFFIX else 0.0}
     return {
         "id": f"{k}/{name}{end}",
-        "name": told(name),
+        "name": legend_name(name),
         "type": "line",
         "silent": True,
         "symbol": "none",
@@ -231,7 +245,7 @@ def _area(k: int, name: str, end: str, look: Look, ready: Mapping[str, Any]) -> 
 def cursor(panel: int, time: float | None) -> Options:
     """Return a series that marks an instant with a vertical line; None: no line."""
     marks = [] if time is None else [{"xAxis": time}]
-    look = {"color": MARK, "width": 1.5, "type": "solid"}
+    look = {"color": MARK_COLOR, "width": 1.5, "type": "solid"}
     return {
         "id": f"{panel}/cursor",
         "type": "line",
@@ -252,11 +266,11 @@ def _title(panel: Panel) -> str:
 
 
 def _grids(panels: Sequence[Panel]) -> list[Options]:
-    top, grids = TOP + GAP // 2, []
+    top, grids = LEGEND_PX + PANEL_GAP_PX // 2, []
     for panel in panels:
-        size = SHORT if panel.short else TALL
+        size = SHORT_PANEL_PX if panel.short else TALL_PANEL_PX
         grids.append({"left": 60, "right": 16, "top": top, "height": size})
-        top += size + GAP
+        top += size + PANEL_GAP_PX
     return grids
 
 

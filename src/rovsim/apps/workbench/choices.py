@@ -9,7 +9,7 @@ from rovsim.apps.workbench.traces import Span
 
 Redraw = Callable[[], Awaitable[None]]
 Control = TypeVar("Control", bound=ValueElement)
-WHOLE: Span = (None, None)
+WHOLE_RUN: Span = (None, None)
 
 
 class Choices:
@@ -37,7 +37,7 @@ class Choices:
     ) -> None:
         self.place, self.redraw = place, redraw
         self._chosen = place.choose(first, possible)
-        self.span = (place.number("from"), place.number("to")) if zooms else WHOLE
+        self.span = (place.number("from"), place.number("to")) if zooms else WHOLE_RUN
 
     def __getitem__(self, name: str) -> Any:
         return self._chosen[name]
@@ -75,7 +75,7 @@ class Choices:
         async def changed() -> None:
             if control.value or optional:
                 self[name] = convert(control.value)
-                self.span = WHOLE if name == "run" else self.span
+                self.span = WHOLE_RUN if name == "run" else self.span
                 await (redraw or self.redraw)()
 
         control.on_value_change(changed)

@@ -20,7 +20,7 @@ from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
 from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.traces import (
-    BANDED,
+    BAND_FIELDS,
     HORIZONS,
     QUANTITIES,
     Traces,
@@ -137,7 +137,7 @@ class Compare:
         axes, quantity = self.chosen["axes"], self.chosen["quantity"]
         thrust = await computed(self.bench.replays.thrust, self.bench.base, run)
         bands: dict[str, Band] = {}
-        if self.chosen["bands"] and run == self.chosen["run"] and quantity in BANDED:
+        if self.chosen["bands"] and run == self.chosen["run"] and quantity in BAND_FIELDS:
             for name in predicted:
                 model, horizon = self.bench.models[name], self.chosen["horizon"]
                 band = await computed(self.bench.replays.band, model, run, horizon)
@@ -159,7 +159,7 @@ class Compare:
         """Show which of the chosen models have no probability bands, and why."""
         if not self.chosen["bands"]:
             return
-        if self.chosen["quantity"] not in BANDED:
+        if self.chosen["quantity"] not in BAND_FIELDS:
             text("Accelerations have no bands.", "soft")
             return
         for name in self.chosen["models"]:

@@ -9,12 +9,13 @@ from rovsim.apps.workbench.parts import chart, section, text
 from rovsim.reporting.charts import ConditionMap, chart_conditions
 from rovsim.results.error_conditions import ModelConditions
 
-SHADES = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]  # one hue: also without colours
-MOST = 12  # conditions
-STEPS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowUp": (0, -1), "ArrowDown": (0, 1)}
+# one hue: also without colours
+SHARE_COLORS = ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"]
+MAX_CONDITIONS = 12
+KEY_MOVES = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowUp": (0, -1), "ArrowDown": (0, 1)}
 # All other keys stay the browser's; arrows would move the page.
-KEYS = f"""(e) => {{
-  if (!{[*STEPS, "Enter"]}.includes(e.key)) return;
+KEY_HANDLER = f"""(e) => {{
+  if (!{[*KEY_MOVES, "Enter"]}.includes(e.key)) return;
   e.preventDefault();
   emit(e.key);
 }}"""
@@ -32,7 +33,7 @@ class FieldMap:
 
     def __init__(self, found: ModelConditions, choose: Callable[[str, str], None]) -> None:
         section("What the error varies with")
-        self.shown, self.choose = chart_conditions(found, MOST), choose
+        self.shown, self.choose = chart_conditions(found, MAX_CONDITIONS), choose
         if not self.shown.axes:
             return
         text(
@@ -50,9 +51,9 @@ class FieldMap:
             columns={"names": ("axis", "condition", "share of the squared error")},
         )
         self.chart.props('role="application" tabindex="0"')
-        self.chart.on("keydown", self._key, js_handler=KEYS)
+        self.chart.on("keydown", self._key, js_handler=KEY_HANDLER)
         self.chart.on("focus", lambda: self._mark(), js_handler="() => emit()")
-        self.told = ui.label().classes("soft").props('role="status"')
+        self.status = ui.label().classes("soft").props('role="status"')
 
     def _turned(self, row: int) -> int:
         """Convert a number of a row: ECharts counts rows from below."""
@@ -66,7 +67,7 @@ class FieldMap:
         if event.args == "Enter":
             self._choose(*self.at)
             return
-        right, down = STEPS[event.args]
+        right, down = KEY_MOVES[event.args]
         self.at = (
             min(max(self.at[0] + right, 0), len(self.shown.axes) - 1),
             min(max(self.at[1] + down, 0), len(self.shown.conditions) - 1),
@@ -81,7 +82,7 @@ class FieldMap:
             self.chart.run_chart_method("dispatchAction", {**action, "seriesIndex": 0})
         share = float(self.shown.share[row][column])
         axis, condition = self.shown.axes[column], self.shown.conditions[row]
-        self.told.text = f"{axis} over {condition}: {100 * share:.0f} % of the error"
+        self.status.text = f"{axis} over {condition}: {100 * share:.0f} % of the error"
 
 
 def map_chart(shown: ConditionMap) -> Options:
@@ -102,7 +103,7 @@ def map_chart(shown: ConditionMap) -> Options:
                   "axisLabel": {"color": INK, "interval": 0, "width": 150,
                                 "overflow": "truncate"},
                   "axisLine": {"show": False}, "axisTick": {"show": False}},
-        "visualMap": {"show": False, "min": 0, "max": 1, "inRange": {"color": SHADES}},
+        "visualMap": {"show": False, "min": 0, "max": 1, "inRange": {"color": SHARE_COLORS}},
         "series": [{"type": "heatmap", "data": data,
                     "itemStyle": {"borderColor": "#ffffff", "borderWidth": 2},
                     "emphasis": {"itemStyle": {"borderColor": INK}},

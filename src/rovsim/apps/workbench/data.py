@@ -6,7 +6,7 @@ from typing import Mapping
 from nicegui import ui
 
 from rovsim.apps.workbench.chart_axes import INK, LINE, SOFT, Options, named_below
-from rovsim.apps.workbench.charts import MARK
+from rovsim.apps.workbench.charts import MARK_COLOR
 from rovsim.apps.workbench.parts import (
     Failure,
     cell,
@@ -26,7 +26,7 @@ from rovsim.core.files import read_text, write_text
 from rovsim.reporting.words.sentences import doubt_sentences
 from rovsim.results.quality import Quality
 
-NOTES = "notes.md"
+NOTES_FILE = "notes.md"
 TITLE, QUESTION = "Data", "Can these recordings be trusted?"
 
 
@@ -40,7 +40,7 @@ async def show(bench: Workbench, place: Place) -> None:
     _gaps(quality)
     _excitation(quality)
     paragraphs("Remarks", list_remarks(quality))
-    _notes(bench.data.campaign.file.with_name(NOTES))
+    _notes(bench.data.campaign.file.with_name(NOTES_FILE))
 
 
 def list_remarks(quality: Mapping[str, Quality]) -> list[str]:
@@ -163,7 +163,7 @@ def _chart_of_gaps(gaps: list[list[float]], runs: list[str], longest: float) -> 
                 "data": gaps,
                 ":renderItem": GAP_SHAPE,
                 "encode": {"x": [0, 2], "y": 1},
-                "itemStyle": {"color": MARK},
+                "itemStyle": {"color": MARK_COLOR},
             }
         ],
     }

@@ -15,9 +15,10 @@ from rovsim.dynamics.model import Model
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect
 
-MOVING = 1.0  # s between two values of one hand that goes on moving
+MAX_MOVE_PAUSE_S = 1.0  # s between two values of one hand that goes on moving
 SOURCE = Path("diagnosis.json")  # where fitted effects are from, for messages
-SPAN = 2.0  # scales that a slider reaches at least: a scale is a change worth looking for
+# scales that a slider reaches at least: a scale is a change worth looking for
+MIN_SLIDER_SCALES = 2.0
 
 
 @dataclass(eq=False)
@@ -39,7 +40,7 @@ class Draft:
     values: dict[str, dict[str, float]] = field(default_factory=dict)
     _before: list[tuple[list[str], dict[str, dict[str, float]]]] = field(default_factory=list)
     _changing: tuple[object, float] = (None, 0.0)  # subject and time (s) of the last change
-    _found: dict[str, Model] = field(default_factory=dict)  # by the effect that is left out
+    _fitted_models: dict[str, Model] = field(default_factory=dict)  # by the effect that is left out
 
     def __post_init__(self) -> None:
         self.ticked = [fitted.effect for fitted in self.chosen if fitted.effect in self.catalogue]
@@ -65,12 +66,12 @@ class Draft:
     def _remember(self, change: object) -> None:
         """Keep the present state for `undo`, before a change.
 
-        A value that is changed again and again within `MOVING` s is one change. `change` is its
-        subject; None for a change that always counts by itself.
+        A value that is changed again and again within `MAX_MOVE_PAUSE_S` is one change. `change` is
+        its subject; None for a change that always counts by itself.
         """
         now = time.monotonic()
         last, moved = self._changing
-        if change is None or change != last or now - moved > MOVING:
+        if change is None or change != last or now - moved > MAX_MOVE_PAUSE_S:
             self._before.append((self.ticked, deepcopy(self.values)))
         self._changing = change, now
 
@@ -133,20 +134,20 @@ class Draft:
             model, self.ticked, self.base, self.diagnosis, SOURCE, self.catalogue
         )
 
-    def found(self, but: str = "") -> Model:
+    def fitted_model(self, but: str = "") -> Model:
         """Return the base with the chosen effects as they were fitted, without the effect `but`."""
-        if but not in self._found:
+        if but not in self._fitted_models:
             kept = [fitted for fitted in self.chosen if fitted.effect != but]
             entries = [EffectEntry.of(fitted, SOURCE) for fitted in kept]
             effects = build_effects(entries, self.catalogue)
-            self._found[but] = extend(self.base, effects)
-        return self._found[but]
+            self._fitted_models[but] = extend(self.base, effects)
+        return self._fitted_models[but]
 
 
 def reach(parameter: Parameter, value: float) -> tuple[float, float]:
     """Return the lowest and highest value of a slider that begins at `value`."""
     if parameter.discrete and np.isfinite(whole := (parameter.low, parameter.highest)).all():
         return whole
-    span = max(SPAN * parameter.scale, abs(value))
+    span = max(MIN_SLIDER_SCALES * parameter.scale, abs(value))
     low, high = max(parameter.low, value - span), min(parameter.high, value + span)
     return (float(low), float(high)) if np.isfinite([low, high]).all() else (-1.0, 1.0)

@@ -34,8 +34,8 @@ from rovsim.reporting.words.experiment import list_steps, size_of_odds, tell_lim
 from rovsim.results.experiment import Experiment
 
 TITLE, QUESTION = "Flight", "Which flight would tell most?"
-ASKED = {"between": "Which of two effects is it?", "know": "How large is a value?"}
-RIVALS = ("linear_damping", "quadratic_damping")  # where no diagnosis names two
+FLIGHT_QUESTIONS = {"between": "Which of two effects is it?", "know": "How large is a value?"}
+USUAL_RIVALS = ("linear_damping", "quadratic_damping")  # where no diagnosis names two
 
 
 class Flight:
@@ -44,12 +44,12 @@ class Flight:
     def __init__(self, bench: Workbench, place: Place) -> None:
         self.bench = bench
         rival_groups = bench.diagnosis.indistinguishable if bench.diagnosis else ()
-        one, other = next((pair for pair in rival_groups if len(pair) == 2), RIVALS)
+        one, other = next((pair for pair in rival_groups if len(pair) == 2), USUAL_RIVALS)
         trained = {name for name, m in bench.models.items() if m.residual is not None or m.inert}
-        self.known = [name for name in bench.known_models() if name not in trained]
+        self.known_models = [name for name in bench.known_models() if name not in trained]
         added = [name for name in list(bench.models)[1:] if name not in trained]
         first = {
-            "model": (added or self.known)[-1],
+            "model": (added or self.known_models)[-1],
             "asked": "between",
             "one": one,
             "other": other,
@@ -57,8 +57,8 @@ class Flight:
         }
         effects = list(bench.catalogue)
         possible: Mapping[str, Sequence[Any]] = {
-            "model": self.known,
-            "asked": list(ASKED),
+            "model": self.known_models,
+            "asked": list(FLIGHT_QUESTIONS),
             "one": effects,
             "other": effects,
             "seconds": range(MIN_FLIGHT_SECONDS, MAX_FLIGHT_SECONDS + 1),
@@ -88,14 +88,14 @@ class Flight:
         self.controls.clear()
         with self.controls:
             bind, redraw = choices.bind, self._draw_all
-            bind("asked", ui.select(ASKED, label="The question"), redraw=redraw)
+            bind("asked", ui.select(FLIGHT_QUESTIONS, label="The question"), redraw=redraw)
             if choices["asked"] == "between":
                 bind("one", ui.select(effects, label="One", with_input=True))
                 bind("other", ui.select(effects, label="Or the other", with_input=True))
             else:
                 select = ui.select(names, label="Values (none: all)", multiple=True)
                 bind("know", select, optional=True)
-            bind("model", ui.select(titled(self.known), label="Model"), redraw=redraw)
+            bind("model", ui.select(titled(self.known_models), label="Model"), redraw=redraw)
             seconds = ui.number(
                 "Length (s)", min=MIN_FLIGHT_SECONDS, max=MAX_FLIGHT_SECONDS, precision=0
             )
@@ -169,19 +169,19 @@ class Flight:
         in_a_terminal(f"rovsim design {command}")
 
 
-def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
+def _tell(experiment: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
     """Show a planned flight: what it is expected to tell, its path, and instructions.
 
     Args:
-        found: the plan.
+        experiment: the plan.
         folder: that holds its files.
         thrusters: names of the vehicle's thrusters.
     """
-    section(f"A flight of {found.seconds:g} s")
-    for item in found.warnings:
+    section(f"A flight of {experiment.seconds:g} s")
+    for item in experiment.warnings:
         text(item, "warning")
-    _expected(found, thrusters)
-    text(tell_limits(found))
+    _show_expected(experiment, thrusters)
+    text(tell_limits(experiment))
     png(folder / "experiment.png", "The predicted path from above and from the side, the commands")
     with ui.row().classes("controls"):
         for name, title in (("experiment.csv", "Commands"), ("instructions.txt", "Instructions")):
@@ -191,9 +191,9 @@ def _tell(found: Experiment, folder: Path, thrusters: Sequence[str]) -> None:
                 on_click=lambda _, path=folder / name: ui.download.file(path),
             ).props("outline no-caps")
     section("What to do")
-    ui.html(_numbered(found.instructions), sanitize=False).classes("text")
+    ui.html(_numbered(experiment.instructions), sanitize=False).classes("text")
     section("What the usual manoeuvres would tell")
-    rows = [(name, [words(tell_share(item))]) for name, item in found.baselines.items()]
+    rows = [(name, [words(tell_share(item))]) for name, item in experiment.baselines.items()]
     table(
         "On the same seconds, at their best amplitudes",
         ["manoeuvre", "beside this flight"],
@@ -214,25 +214,25 @@ def _numbered(instructions: Sequence[str]) -> str:
     return f"<ol>{''.join(steps)}</ol>"
 
 
-def _expected(found: Experiment, thrusters: Sequence[str]) -> None:
-    if found.expects.odds:
+def _show_expected(experiment: Experiment, thrusters: Sequence[str]) -> None:
+    if experiment.expects.odds:
         rows = [
             (name, [words(size_of_odds(estimate.now)), words(size_of_odds(estimate.then))])
-            for name, estimate in found.expects.odds.items()
+            for name, estimate in experiment.expects.odds.items()
         ]
         table(
             "Odds of each effect against the other, if it is the true one",
             ["effect", "now", "after the flight"],
             rows,
         )
-    if found.expects.std:
-        labels = with_thruster_names(found.expects.std, thrusters)
+    if experiment.expects.std:
+        labels = with_thruster_names(experiment.expects.std, thrusters)
         rows = [
             (
                 f"{label} ({unit(estimate.unit)})" if estimate.unit not in (None, "1") else label,
                 [cell(estimate.now, f"{name}/now"), cell(estimate.then, f"{name}/then")],
             )
-            for label, (name, estimate) in zip(labels, found.expects.std.items(), strict=True)
+            for label, (name, estimate) in zip(labels, experiment.expects.std.items(), strict=True)
         ]
         table("Standard deviation of each value", ["value", "now", "after the flight"], rows)
 

@@ -9,9 +9,9 @@ from platformdirs import user_state_path
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.files import read_json, write_json
 
-MOST = 200  # folders listed of one
-KEPT = 8  # campaigns remembered
-DESCRIPTION = "campaign.yaml"
+MAX_FOLDERS = 200  # listed of one
+MAX_KEPT_CAMPAIGNS = 8
+CAMPAIGN_FILE = "campaign.yaml"
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Listing:
     Attributes:
         folder: absolute path.
         parents: of the folder, the root first.
-        inside: folders in it that match, sorted by name, at most `MOST`.
+        inside: folders in it that match, sorted by name, at most `MAX_FOLDERS`.
         more: how many others match.
         files: how many files it holds.
         problem: why it cannot be read; empty if it can.
@@ -66,7 +66,7 @@ def look(folder: Path, part: str = "") -> Listing:
         return Listing(folder, parents, problem=error.strerror or str(error))
     folders = (name for name, is_folder in contents if is_folder and not name.startswith("."))
     names = sorted(name for name in folders if part.casefold() in name.casefold())
-    paths = [folder / name for name in names[:MOST]]
+    paths = [folder / name for name in names[:MAX_FOLDERS]]
     inside = tuple(Inside(path, _holds_campaign(path)) for path in paths)
     files = sum(not is_folder for _, is_folder in contents)
     return Listing(folder, parents, inside, len(names) - len(inside), files)
@@ -95,7 +95,7 @@ def _is_folder(entry: os.DirEntry) -> bool:
 
 def _holds_campaign(path: Path) -> bool:
     try:
-        return (path / DESCRIPTION).is_file()
+        return (path / CAMPAIGN_FILE).is_file()
     except OSError:  # nobody may look into it
         return False
 
@@ -117,7 +117,7 @@ def remember(campaign: Path) -> None:
     path = Path(os.path.abspath(campaign))
     folders = [path, *(folder for folder in list_recent() if folder != path)]
     try:
-        write_json(_file(), {"campaigns": [str(folder) for folder in folders[:KEPT]]})
+        write_json(_file(), {"campaigns": [str(folder) for folder in folders[:MAX_KEPT_CAMPAIGNS]]})
     except (OSError, ValueError, RovsimError):  # read-only, full, a name that is no text
         return
 

@@ -17,7 +17,7 @@ from rovsim.reporting.catalogue.entries import PICTURES, chaptered
 from rovsim.reporting.units import unit
 
 TITLE, QUESTION = "Effects", "What may a simulator lack, and what does it look like?"
-DRAWN = shipped(f"docs/{PICTURES}")  # by `make catalogue`
+PICTURES_FOLDER = shipped(f"docs/{PICTURES}")  # by `make catalogue`
 
 
 async def show(bench: Workbench, place: Place) -> None:
@@ -63,7 +63,7 @@ async def picture(bench: Workbench, cls: type[Effect]) -> None:
     """Show the picture of an effect's signature; one that does not exist yet is drawn now."""
     if cls.signature is None:
         return
-    path = DRAWN / f"{cls.id}.png"
+    path = PICTURES_FOLDER / f"{cls.id}.png"
     if not path.exists():
         path = bench.out / "pictures" / path.name
     if not path.exists():

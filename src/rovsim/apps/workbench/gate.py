@@ -7,9 +7,9 @@ that points its own name at this machine is refused by its `Host` (TrustedHostMi
 
 from typing import Any
 
-ELSEWHERE = (b"cross-site", b"same-site")  # another port of this machine is a site's other page
+OTHER_SITES = (b"cross-site", b"same-site")  # another port of this machine is a site's other page
 # Refuse to be shown inside a frame of another page, which could misdirect clicks.
-HEADERS = [
+SECURITY_HEADERS = [
     (b"content-security-policy", b"frame-ancestors 'self'"),
     (b"x-frame-options", b"SAMEORIGIN"),
 ]
@@ -38,14 +38,14 @@ def _foreign(headers: dict[bytes, bytes]) -> bool:
     origin, host = headers.get(b"origin"), headers.get(b"host", b"")
     if origin is not None:
         return origin != b"http://" + host
-    from_elsewhere = headers.get(b"sec-fetch-site") in ELSEWHERE
+    from_elsewhere = headers.get(b"sec-fetch-site") in OTHER_SITES
     return from_elsewhere and headers.get(b"sec-fetch-mode") != b"navigate"
 
 
 def _framed(send: Any) -> Any:
     async def sending(message: Any) -> None:
         if message["type"] == "http.response.start":
-            message = {**message, "headers": [*message["headers"], *HEADERS]}
+            message = {**message, "headers": [*message["headers"], *SECURITY_HEADERS]}
         await send(message)
 
     return sending

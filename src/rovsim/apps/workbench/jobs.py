@@ -14,7 +14,7 @@ from rovsim.design.settings import Question
 from rovsim.dynamics.model_file import read_model
 from rovsim.reporting.wording import title
 
-WAITING = "Waits until what goes on has ended, one long work at a time: {}."
+WAITING_SENTENCE = "Waits until what goes on has ended, one long work at a time: {}."
 
 
 class Beginning(ui.button):
@@ -30,7 +30,7 @@ class Beginning(ui.button):
     def wait(self) -> None:
         """Disable the button while other work runs, with the reason as tooltip and description."""
         self.set_enabled(not self.other)
-        reason = WAITING.format(self.other) if self.other else None
+        reason = WAITING_SENTENCE.format(self.other) if self.other else None
         for name in ("title", "aria-description"):
             self.props.set_optional(name, reason)
 
@@ -38,7 +38,9 @@ class Beginning(ui.button):
 def start_diagnosis(bench: Workbench) -> None:
     """Start a diagnosis of the base."""
     settings, path = bench.only(bench.base.name), bench.diagnosis_path
-    bench.work.begin("Finding what is missing", bench.found, tasks.diagnose_into, settings, path)
+    bench.work.begin(
+        "Finding what is missing", bench.replace_diagnosis, tasks.diagnose_into, settings, path
+    )
 
 
 def start_training(bench: Workbench, kind: str, name: str) -> None:

@@ -50,10 +50,10 @@ from rovsim.results.fitted import FittedValue
 
 TITLE, QUESTION = "Models", "Which of two models is better, and what sets them apart?"
 SIDES = ("left", "right")
-ABSENT = "–"
-LOOKS = (FAMILIES["nominal"], FAMILIES["knn"])  # left and right, whichever models these are
-ERRORS = {f"{axis} ({u})": axis for axis, u in zip(AXES, VELOCITY_UNITS, strict=True)}
-POSE = {"position (m)": "position_rmse_m", "attitude (rad)": "attitude_rmse_rad"}
+ABSENT_SIGN = "–"
+SIDE_LOOKS = (FAMILIES["nominal"], FAMILIES["knn"])  # left and right, whichever models these are
+VELOCITY_ERRORS = {f"{axis} ({u})": axis for axis, u in zip(AXES, VELOCITY_UNITS, strict=True)}
+POSE_ERRORS = {"position (m)": "position_rmse_m", "attitude (rad)": "attitude_rmse_rad"}
 Errors = dict[str, dict[float | None, Metrics]]  # by model and horizon
 
 
@@ -147,7 +147,10 @@ class Models:
             section("Replays")
             about = f"Measured and simulated, run {self.chosen['run']}"
             time = self.bench.data.motions[self.chosen["run"]].time
-            look = {"measured": FAMILIES["measured"], **dict(zip(self.models, LOOKS, strict=False))}
+            look = {
+                "measured": FAMILIES["measured"],
+                **dict(zip(self.models, SIDE_LOOKS, strict=False)),
+            }
             span, zoom = self.chosen.span, self.chosen.zoom
             self.traces = Traces(time, all_panels, about, span, zoom, look, remark)
             section("What is in them")
@@ -184,7 +187,7 @@ def _tell_errors(run: str, errors: Errors) -> None:
     names = list(map(title, errors))
     heads = [*names, *(["change"] if len(errors) == 2 else [])]
     rows = []
-    for name in (*ERRORS, *POSE):
+    for name in (*VELOCITY_ERRORS, *POSE_ERRORS):
         cells: list[str] = []
         for horizon in horizons:
             values = {
@@ -208,13 +211,17 @@ def _tell_errors(run: str, errors: Errors) -> None:
 
 def _read(metrics: Metrics, name: str) -> float | None:
     """Return the error that a row of the table shows."""
-    return metrics.velocity_rmse[ERRORS[name]] if name in ERRORS else getattr(metrics, POSE[name])
+    return (
+        metrics.velocity_rmse[VELOCITY_ERRORS[name]]
+        if name in VELOCITY_ERRORS
+        else getattr(metrics, POSE_ERRORS[name])
+    )
 
 
 def tell_change(before: float | None, after: float | None) -> str:
     """Say by how many percent an error is larger (+) or smaller (−) than another."""
     if not before or after is None:
-        return ABSENT
+        return ABSENT_SIGN
     percent = round(100.0 * (after / before - 1.0))
     return f"{percent:+d} %".replace("-", "−") if percent else "0 %"
 
@@ -229,7 +236,7 @@ def _tell_parameters(models: Mapping[str, Model]) -> None:
     rows = [
         (
             f"{effect}, {parameter}" if parameter else effect,
-            [words(values.get((effect, parameter), ABSENT)) for values in columns.values()],
+            [words(values.get((effect, parameter), ABSENT_SIGN)) for values in columns.values()],
         )
         for effect, parameter in keys
     ]

@@ -5,7 +5,7 @@ from typing import Callable, Mapping, Sequence
 
 from nicegui import ui
 
-from rovsim.apps.workbench.folders import DESCRIPTION, shown
+from rovsim.apps.workbench.folders import CAMPAIGN_FILE, shown
 from rovsim.apps.workbench.parts import Failure, heading, section, text
 from rovsim.core.errors import RovsimError
 from rovsim.intake.guesses import list_guesses
@@ -13,7 +13,7 @@ from rovsim.intake.proposal import CampaignProposal, OpenQuestion
 from rovsim.reporting.wording import listed
 
 TITLE, QUESTION = "New campaign", "What is in these recordings?"
-TOPICS = {
+TOPIC_TITLES = {
     "vehicle": "Vehicle",
     "mocap.body": "Body",
     "mocap.world_axes": "Axes of the world",
@@ -64,7 +64,7 @@ def show(
         except RovsimError as error:
             failure.tell(error)
 
-    text(f"It is written as `{shown(folder / DESCRIPTION)}`, and can be edited later.", "soft")
+    text(f"It is written as `{shown(folder / CAMPAIGN_FILE)}`, and can be edited later.", "soft")
     with ui.row().classes("controls"):
         ui.button("Write campaign.yaml and open it", on_click=answered).props("unelevated no-caps")
         ui.button("Another folder", on_click=leave).props("flat no-caps")
@@ -73,7 +73,7 @@ def show(
 
 def _guesses(proposal: CampaignProposal) -> None:
     """Show the guesses of the proposal, each with its reason."""
-    guesses = list_guesses(proposal, TOPICS)
+    guesses = list_guesses(proposal, TOPIC_TITLES)
     if not guesses:
         return
     section("Taken, and why")
@@ -90,13 +90,13 @@ def tell_unanswered(questions: Sequence[OpenQuestion], answers: Mapping[str, str
         answers: by place in campaign.yaml.
     """
     unanswered = [q.place for q in questions if not answers.get(q.place, "").strip()]
-    names = listed([TOPICS.get(place, place) for place in unanswered])
+    names = listed([TOPIC_TITLES.get(place, place) for place in unanswered])
     return f"No answer yet: {names}. Answer every question; no file does." if unanswered else ""
 
 
 def _field(question: OpenQuestion) -> Callable[[], str]:
     """Show a question and a field for its answer; returns a function that reads the answer."""
-    label = TOPICS.get(question.place, question.place)
+    label = TOPIC_TITLES.get(question.place, question.place)
     text(question.asks)
     if question.free:
         entry = ui.input(label, autocomplete=[value for value, _ in question.answers])

@@ -6,9 +6,9 @@ import numpy as np
 from nicegui import ui
 
 from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
-from rovsim.apps.workbench.charts import MARK
+from rovsim.apps.workbench.charts import MARK_COLOR
 from rovsim.apps.workbench.parts import chart, computed
-from rovsim.apps.workbench.where import ERRORS, WHISKER
+from rovsim.apps.workbench.where import DRAW_WHISKER, WHISKER_NAME
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import ACCELERATION_UNITS, AXES
 from rovsim.core.errors import RovsimError
@@ -18,8 +18,8 @@ from rovsim.evaluation.error_conditions.lowered import Lowered, find_most_lowere
 from rovsim.reporting.charts import chart_bins
 from rovsim.reporting.figures.palette import BLUE
 
-SEEN = 1e-4  # of the measured power: one per cent of the acceleration
-LOOKS = {"without it": (MARK, "dashed"), "with it": (BLUE, "solid")}
+MIN_SEEN_SHARE = 1e-4  # of the measured power: one per cent of the acceleration
+CURVE_LOOKS = {"without it": (MARK_COLOR, "dashed"), "with it": (BLUE, "solid")}
 
 
 async def show_lowered(bench: Workbench, effect: str) -> bool:
@@ -29,7 +29,7 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
         Whether it is, so that there is a chart.
     """
     try:
-        models = bench.draft.found(but=effect), bench.draft.found()
+        models = bench.draft.fitted_model(but=effect), bench.draft.fitted_model()
     except RovsimError:  # a diagnosis from elsewhere, of effects that are not known here
         return False
     cls = bench.catalogue.get(effect)
@@ -38,11 +38,12 @@ async def show_lowered(bench: Workbench, effect: str) -> bool:
     if blocks[0] is None or blocks[1] is None:
         return False
     errors = find_most_lowered(*blocks, cls.signature if cls else None, _axes(bench, effect))
-    if errors is None or errors.removed < SEEN:
+    if errors is None or errors.removed < MIN_SEEN_SHARE:
         return False
     chart(
         lowered_chart(errors),
-        f"On your data: {_name(errors)} over {errors.condition.name}, without {effect} and with it",
+        f"On your data: {_name_condition(errors)} over {errors.condition.name}, without {effect} "
+        "and with it",
         230,
     )
     label = "the size (RMS) of what is left" if errors.size else "what is left"
@@ -59,23 +60,23 @@ def _axes(bench: Workbench, effect: str) -> Collection[str]:
     return [axis for axis in AXES if axis in fitted] or AXES
 
 
-def _name(found: Lowered) -> str:
-    return f"{'size of ' if found.size else ''}{found.axis} error"
+def _name_condition(lowered: Lowered) -> str:
+    return f"{'size of ' if lowered.size else ''}{lowered.axis} error"
 
 
-def lowered_chart(found: Lowered) -> Options:
+def lowered_chart(lowered: Lowered) -> Options:
     """Return a chart of the binned errors: means with two standard errors, or their RMS."""
-    name, unit = found.condition.name, chart_bins(tabulate(found.before)).unit
+    name, unit = lowered.condition.name, chart_bins(tabulate(lowered.before)).unit
     series = [
         curve
         for (label, (color, dash)), table in zip(
-            LOOKS.items(), (found.before, found.after), strict=True
+            CURVE_LOOKS.items(), (lowered.before, lowered.after), strict=True
         )
-        for curve in _curve(label, color, dash, table, found.size)
+        for curve in _curve(label, color, dash, table, lowered.size)
     ]
     return {
         "grid": {"left": 64, "right": 16, "top": 52, "bottom": 44},
-        "legend": {"top": 0, "left": 56, "data": list(LOOKS)},
+        "legend": {"top": 0, "left": 56, "data": list(CURVE_LOOKS)},
         "tooltip": {"trigger": "axis"},
         "xAxis": {
             "type": "value",
@@ -86,7 +87,9 @@ def lowered_chart(found: Lowered) -> Options:
             "axisLabel": {"color": SOFT},
         },
         "yAxis": {
-            **named_above(f"{_name(found)} ({ACCELERATION_UNITS[AXES.index(found.axis)]})", 56),
+            **named_above(
+                f"{_name_condition(lowered)} ({ACCELERATION_UNITS[AXES.index(lowered.axis)]})", 56
+            ),
             "splitNumber": 4,
             "axisTick": {"show": False},
             "axisLine": {"show": False, "onZero": False},
@@ -111,9 +114,9 @@ def _curve(name: str, color: str, dash: str, table: BinnedErrors, size: bool) ->
         return [line]
     bars = {
         "type": "custom",
-        "name": f"{name}, {ERRORS}",
+        "name": f"{name}, {WHISKER_NAME}",
         "silent": True,
-        ":renderItem": WHISKER,
+        ":renderItem": DRAW_WHISKER,
         "z": 4,
         "data": np.stack([centers, mean - error, mean + error], 1).tolist(),
         "encode": {"x": 0, "y": [1, 2]},

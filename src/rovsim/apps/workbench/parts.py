@@ -19,7 +19,7 @@ from rovsim.results.base import or_nan
 
 FONT = "Roboto, system-ui, sans-serif"
 # Functions of charts.js
-SAVE = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
+SAVE_FUNCTIONS = {"PNG": "savePicture", "SVG": "saveVectors", "CSV": "saveValues"}
 Columns = Mapping[str, Any]  # what the columns of the CSV are called: see saveValues
 NO_COLUMNS: Columns = MappingProxyType({})
 
@@ -114,17 +114,17 @@ def paragraphs(called: str, sentences: Iterable[str]) -> None:
         text(words)
 
 
-def cell(value: float | None, name: str = "", told: str = "") -> str:
+def cell(value: float | None, name: str = "", text: str = "") -> str:
     """Return a table's cell with a number, as HTML.
 
     Args:
         value: in full in the attribute `data-value`; None is shown as a dash.
         name: in the attribute `data-name`, by which tests find the number.
-        told: text to show in place of three significant digits.
+        text: text to show in place of three significant digits.
     """
     attribute = "" if value is None else f' data-value="{value!r}"'
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))
-    content = escape(told or digits)
+    content = escape(text or digits)
     return f'<td class="number" data-name="{escape(name)}"{attribute}>{content}</td>'
 
 
@@ -216,7 +216,7 @@ def chart(
     element.props.update({"role": "img", "aria-label": about})
     literal = json.dumps(dict(columns)).replace("<", "\\u003c")  # names of models are in it
     with ui.row().classes("keep"):
-        for name, function in SAVE.items():
+        for name, function in SAVE_FUNCTIONS.items():
             arguments = f"getElement({element.id}).chart, {literal}"
             saving(name, about).on("click", js_handler=f"() => {function}({arguments})")
     return element.classes("chart").style(f"height:{height}px" if height else "")

@@ -17,22 +17,23 @@ from rovsim.core.rotations import HALF_TURN_X
 from rovsim.measurement.signals.motion import Motion
 from rovsim.reporting.wording import title
 
-PAPER = "#ffffff"
-TICK = 0.1  # s between two pictures of a playback
-SPEED = 2  # times as fast as it was
-DRAWN = "new Promise(requestAnimationFrame)"  # kept when the browser draws its next picture
-PATIENCE = 10.0  # s for one picture, before the next is sent: hidden tabs draw none
-PIECES = 80  # bent tubes that a path is drawn with at most: about one a second
-PICTURES = 10  # a second: a machine that draws without a graphics card must keep up
-THIN = 0.0012  # radius of a tube of width 1, over the size of the room
-SPOT = 0.01  # radius of a vehicle, likewise
+PAPER_COLOR = "#ffffff"
+TICK_S = 0.1  # s between two pictures of a playback
+PLAYBACK_SPEED = 2  # times as fast as it was
+NEXT_PICTURE = "new Promise(requestAnimationFrame)"  # kept when the browser draws its next picture
+PATIENCE_S = 10.0  # s for one picture, before the next is sent: hidden tabs draw none
+MAX_CURVES = 80  # bent tubes of a path: about one a second
+MAX_FPS = 10  # a machine that draws without a graphics card must keep up
+TUBE_RADIUS = 0.0012  # at width 1, over the size of the room
+VEHICLE_RADIUS = 0.01  # likewise
 DIRECTIONS = ("north", "east", "down")
-NEAR = 0.05  # m beyond a wall that are no leaving: walls and places are known no better
-EYE = np.array([-0.25, -0.9, 0.5])  # direction from the middle to the eye
-ANGLE, WIDE = 40.0, 1.6  # degrees that the eye sees from below to above; width over height
-FILLED = 0.86  # of the picture: names stand beside the room
+WALL_TOLERANCE_M = 0.05  # m beyond a wall that are no leaving: walls and places are known no better
+EYE_DIRECTION = np.array([-0.25, -0.9, 0.5])  # direction from the middle to the eye
+# degrees that the eye sees from below to above; width over height
+EYE_ANGLE_DEG, ASPECT_RATIO = 40.0, 1.6
+FILLED_SHARE = 0.86  # of the picture: names stand beside the room
 # The page of the tank goes behind names too, so that no edge strikes them through.
-NAME = f"color: {SOFT}; background: {PAPER}; padding: 0 4px; font-size: 13px"
+NAME_STYLE = f"color: {SOFT}; background: {PAPER_COLOR}; padding: 0 4px; font-size: 13px"
 
 
 class Path:
@@ -66,7 +67,7 @@ class Path:
                     path_table(motion.run.id, motion.time, paths), "rovsim_path.csv", "text/csv"
                 )
             )
-        self.timer = ui.timer(TICK, self._tick, active=False)
+        self.timer = ui.timer(TICK_S, self._tick, active=False)
 
     def _controls(self) -> None:
         start, end = float(self.time[0]), float(self.time[-1])
@@ -75,16 +76,16 @@ class Path:
             self.play.props("unelevated no-caps")
             with ui.column().classes("control wide"):
                 ui.label("Time (s)")
-                self.clock = Slider(min=start, max=end, step=TICK, value=start)
+                self.clock = Slider(min=start, max=end, step=TICK_S, value=start)
                 self.clock.props('label aria-label="Time in the run, seconds"')
                 self.clock.on("update:model-value", lambda e: self._show(e.args), throttle=0.05)
 
     def _draw(self, low: Array, high: Array) -> None:
         middle, size = 0.5 * (low + high), float(np.linalg.norm(high - low))
         look = styles(list(self.paths))
-        camera = ui.scene.perspective_camera(fov=ANGLE, near=0.01 * size, far=10 * size)
+        camera = ui.scene.perspective_camera(fov=EYE_ANGLE_DEG, near=0.01 * size, far=10 * size)
         scene = ui.scene(
-            grid=False, background_color=PAPER, camera=camera, click_events=[], fps=PICTURES
+            grid=False, background_color=PAPER_COLOR, camera=camera, click_events=[], fps=MAX_FPS
         )
         scene.classes("path").props('role="img" aria-label="Path in the tank"')
         with scene:
@@ -92,14 +93,14 @@ class Path:
             walls = scene.box(wide, long, tall, wireframe=True)
             walls.move(*middle.tolist()).material(SOFT)
             for name, spot in directions(low, high).items():
-                scene.text(name, NAME).move(*spot)
+                scene.text(name, NAME_STYLE).move(*spot)
             for name, path in self.paths.items():
-                radius = THIN * size * look[name].width
+                radius = TUBE_RADIUS * size * look[name].width
                 for start, bend, end in bends(path):
                     tube = scene.quadratic_bezier_tube(start, bend, end, 4, radius, 5)
                     tube.material(look[name].color)
             self.spots = {
-                name: scene.sphere(SPOT * size).material(look[name].color).visible(False)
+                name: scene.sphere(VEHICLE_RADIUS * size).material(look[name].color).visible(False)
                 for name in self.paths
             }
         eye = dict(zip("xyz", (middle + far_enough(low, high)).tolist(), strict=True))
@@ -113,11 +114,11 @@ class Path:
 
     async def _tick(self) -> None:
         """Advance the playback by one picture, no faster than the browser draws; then restart."""
-        moment = self.clock.value + TICK * SPEED
+        moment = self.clock.value + TICK_S * PLAYBACK_SPEED
         self.clock.value = round(moment if moment <= self.time[-1] else float(self.time[0]), 2)
         self._show(self.clock.value)
         with suppress(TimeoutError):
-            await ui.run_javascript(DRAWN, timeout=PATIENCE)
+            await ui.run_javascript(NEXT_PICTURE, timeout=PATIENCE_S)
 
     def _show(self, moment: float) -> None:
         """Move the vehicles to where they are at one moment, s."""
@@ -133,10 +134,10 @@ class Path:
 def bends(path: Array) -> list[tuple[list[float], list[float], list[float]]]:
     """Return start, control point and end (3,) of quadratic Bezier curves along a path (n, 3).
 
-    Each curve passes through three points of the path, which is thinned to about `PIECES` curves;
-    those with a gap (NaN) are left out.
+    Each curve passes through three points of the path, which is thinned to about `MAX_CURVES` of
+    them; those with a gap (NaN) are left out.
     """
-    k = np.unique(np.linspace(0, len(path) - 1, 2 * PIECES + 1).astype(int))
+    k = np.unique(np.linspace(0, len(path) - 1, 2 * MAX_CURVES + 1).astype(int))
     k = k[: len(k) - (len(k) + 1) % 2]  # pieces share their ends: an odd number of points
     start, middle, end = path[k[:-2:2]], path[k[1:-1:2]], path[k[2::2]]
     curves = np.stack([start, 2.0 * middle - 0.5 * (start + end), end], axis=1)
@@ -165,13 +166,13 @@ def far_enough(low: Array, high: Array) -> Array:
         low: lowest corner (3,), north, west, up; m.
         high: highest corner (3,), likewise.
     """
-    ahead = EYE / np.linalg.norm(EYE)
+    ahead = EYE_DIRECTION / np.linalg.norm(EYE_DIRECTION)
     right = np.cross([0.0, 0.0, 1.0], ahead)
     right /= np.linalg.norm(right)
     above = np.cross(ahead, right)
     corners = 0.5 * (high - low) * np.array(list(product((-1.0, 1.0), repeat=3)))
-    slope = FILLED * np.tan(np.radians(0.5 * ANGLE))
-    aside = np.maximum(np.abs(corners @ above), np.abs(corners @ right) / WIDE)
+    slope = FILLED_SHARE * np.tan(np.radians(0.5 * EYE_ANGLE_DEG))
+    aside = np.maximum(np.abs(corners @ above), np.abs(corners @ right) / ASPECT_RATIO)
     return ahead * float(np.max(corners @ ahead + aside / slope))
 
 
@@ -203,7 +204,7 @@ def tell_leaving(time: Array, paths: Mapping[str, Array], tank: Array) -> list[s
     low, high = np.sort(tank, axis=1).T
     sentences = []
     for name, path in paths.items():
-        outside = ((path < low - NEAR) | (path > high + NEAR)).any(axis=1)
+        outside = ((path < low - WALL_TOLERANCE_M) | (path > high + WALL_TOLERANCE_M)).any(axis=1)
         if name != "measured" and outside.any():
             seconds = time[np.argmax(outside)] - time[0]
             sentences.append(f"The replay of {title(name)} leaves the tank after {seconds:.1f} s.")

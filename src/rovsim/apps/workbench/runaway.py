@@ -8,7 +8,7 @@ from numpy import ndarray as Array
 from rovsim.reporting.figures.series import limits
 from rovsim.simulation.prediction import Prediction
 
-FASTEST = 30.0  # m/s, rad/s: no underwater vehicle moves like that, a replay that does is lost
+MAX_SPEED = 30.0  # m/s, rad/s: no underwater vehicle moves like that, a replay that does is lost
 
 
 def find_divergence(time: Array, predicted: Prediction) -> float | None:
@@ -18,7 +18,7 @@ def find_divergence(time: Array, predicted: Prediction) -> float | None:
         time: of the samples (n,), s.
         predicted: the replay at these.
     """
-    diverged = (np.abs(predicted.nu) > FASTEST).any(axis=1)
+    diverged = (np.abs(predicted.nu) > MAX_SPEED).any(axis=1)
     return float(time[np.argmax(diverged)] - time[0]) if diverged.any() else None
 
 
@@ -45,5 +45,5 @@ def _when(time: Array, predicted: Prediction, at: float) -> str:
 def cut(values: Array, measured: Array) -> Array:
     """Return values (n,) with NaN where they are too far from the measured (n,) for one chart."""
     reference = np.where(np.isfinite(measured), measured, np.nan)
-    low, high = limits(reference, [np.clip(values, -FASTEST, FASTEST)])
+    low, high = limits(reference, [np.clip(values, -MAX_SPEED, MAX_SPEED)])
     return np.where((values >= low) & (values <= high), values, np.nan)

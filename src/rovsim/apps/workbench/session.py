@@ -10,13 +10,13 @@ from typing import Any, Iterator, Mapping
 
 from rovsim.application.configuration import compose
 from rovsim.application.settings import WorkbenchSettings
-from rovsim.apps.workbench.folders import DESCRIPTION, remember, tell_unopenable
+from rovsim.apps.workbench.folders import CAMPAIGN_FILE, remember, tell_unopenable
 from rovsim.apps.workbench.work import LongWork, reap
 from rovsim.core.errors import RovsimError
 from rovsim.dynamics.catalogue import Catalogue
 
-PRACTICE = Path("results/practice/raw")
-MOST = 200  # tabs remembered: one that slept for days finds its campaign
+PRACTICE_FOLDER = Path("results/practice/raw")
+MAX_KEPT_TABS = 200  # tabs remembered: one that slept for days finds its campaign
 
 
 class Session:
@@ -66,7 +66,7 @@ class Session:
             self.problem = problem
             self._changes += 1
             return
-        if place.is_dir() and not (place / DESCRIPTION).exists():
+        if place.is_dir() and not (place / CAMPAIGN_FILE).exists():
             self._look_into(place.absolute())
             return
         if self.bench is not None:
@@ -119,15 +119,15 @@ class Session:
         """Open the practice campaign; start to make it where it does not exist."""
         from rovsim.apps.workbench import tasks
 
-        if (PRACTICE / "campaign.yaml").exists():
-            self.choose(str(PRACTICE))
+        if (PRACTICE_FOLDER / "campaign.yaml").exists():
+            self.choose(str(PRACTICE_FOLDER))
             return
         self._begin(
             "Making a campaign",
             lambda path: self.choose(str(path)),
             tasks.practise,
             compose(["tank=practice"]).tank,
-            PRACTICE,
+            PRACTICE_FOLDER,
         )
 
     @property
@@ -240,7 +240,7 @@ class Sessions:
 
     def _forget(self) -> None:
         closed = [t for t, s in self._by_tab.items() if not s.pages and s is not self.last]
-        for tab in closed[: max(0, len(self._by_tab) - MOST)]:
+        for tab in closed[: max(0, len(self._by_tab) - MAX_KEPT_TABS)]:
             del self._by_tab[tab]
 
 

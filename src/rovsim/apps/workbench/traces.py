@@ -36,10 +36,10 @@ QUANTITIES = {
     "eta": ("position and attitude", POSE_UNITS),
 }
 # Names of the components of a pose, which is in the tank's axes, by axis of the body.
-POSES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
-BANDED = {"nu": "nu", "eta": "place"}  # what a band calls these; others have none
+POSE_TITLES = dict(zip(AXES, ("north", "east", "down", "roll", "pitch", "yaw"), strict=True))
+BAND_FIELDS = {"nu": "nu", "eta": "place"}  # what a band calls these; others have none
 NO_BANDS: Mapping[str, Band] = MappingProxyType({})
-STEADY = ("measured", "commanded")  # curves that no model changes
+STEADY_CURVES = ("measured", "commanded")  # curves that no model changes
 HORIZONS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)  # s; None: open loop
 
 
@@ -102,10 +102,10 @@ def panels(
         models = {name: _columns(p, quantity)[:, k] for name, p in predicted.items()}
         models |= {name: cut(models[name], measured[:, k]) for name in diverging}
         missed = {name: measured[:, k] - values for name, values in models.items()}
-        ends = {name: getattr(band, BANDED[quantity])[:, :, k] for name, band in bands.items()}
+        ends = {name: getattr(band, BAND_FIELDS[quantity])[:, :, k] for name, band in bands.items()}
         title, description = axis, f"{run} {axis} {quantity_name}"
         if quantity == "eta":
-            title, description = POSES[axis], f"{run} {POSES[axis]}"
+            title, description = POSE_TITLES[axis], f"{run} {POSE_TITLES[axis]}"
             missed = {n: short_way(x) if k > 2 else x for n, x in missed.items()}
         missed_bands = {name: end - measured[:, k] + missed[name] for name, end in ends.items()}
         curves = {"measured": measured[:, k], **models}
@@ -195,7 +195,7 @@ class Traces:
         look: Mapping[str, Look] | None = None,
         remark: str = "",
     ) -> None:
-        self.time, self.shown, self.told = time, list(shown), zoomed
+        self.time, self.shown, self.zoomed = time, list(shown), zoomed
         names = list(dict.fromkeys(n for panel in shown for n in panel.curves))
         self.remark = ui.label().classes("text warning").props('role="status"')
         self._remark(remark)
@@ -209,7 +209,7 @@ class Traces:
             ).props(f'label aria-label="Part of the run shown, seconds" {NOT_ONE_VALUE}')
             self.range.on("update:model-value", self._zoom, throttle=0.05)
             ui.button("whole run", on_click=self._whole).props("flat dense no-caps")
-        self.chart.on("chart:datazoom", self._zoomed, js_handler=WINDOW)
+        self.chart.on("chart:datazoom", self._zoomed, js_handler=ZOOM_HANDLER)
         low = first if span[0] is None else max(span[0], first)
         high = last if span[1] is None else min(span[1], last)
         if (first, last) != (low, high) and low < high:
@@ -228,7 +228,7 @@ class Traces:
         """Report which part of the run is shown."""
         part = (float(self.range.value["min"]), float(self.range.value["max"]))
         whole = part == (float(self.time[0]), float(self.time[-1]))
-        self.told((None, None) if whole else part)
+        self.zoomed((None, None) if whole else part)
 
     def _whole(self) -> None:
         self.range.value = {"min": float(self.time[0]), "max": float(self.time[-1])}
@@ -252,7 +252,9 @@ class Traces:
         """Show new values of the same curves; only these are sent to the browser."""
         self.shown = list(shown)
         self._remark(remark)
-        self.chart.run_chart_method("setOption", {"series": series_data(self.time, shown, STEADY)})
+        self.chart.run_chart_method(
+            "setOption", {"series": series_data(self.time, shown, STEADY_CURVES)}
+        )
 
     def mark(self, time: float | None) -> None:
         """Mark an instant (s) in every panel; None removes the mark."""
@@ -261,4 +263,4 @@ class Traces:
 
 
 # The zoom that a user made in the chart itself, in percent; one made by the slider has no batch.
-WINDOW = "(e) => e.batch && emit([e.batch[0].start, e.batch[0].end])"
+ZOOM_HANDLER = "(e) => e.batch && emit([e.batch[0].start, e.batch[0].end])"

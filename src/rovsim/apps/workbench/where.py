@@ -7,7 +7,7 @@ import numpy as np
 from nicegui import ui
 
 from rovsim.apps.workbench.chart_axes import LINE, SOFT, Options, named_above, named_below
-from rovsim.apps.workbench.charts import MARK
+from rovsim.apps.workbench.charts import MARK_COLOR
 from rovsim.apps.workbench.condition_map import FieldMap
 from rovsim.apps.workbench.parts import (
     about_axes,
@@ -31,9 +31,9 @@ from rovsim.reporting.figures.palette import BLUE
 from rovsim.results.error_conditions import ConditionFinding, ConditionTable
 
 TITLE, QUESTION = "Where", "Under which conditions does it fail?"
-FAINT = "#bdbdbd"
-ERRORS = "from two standard errors below to above"
-FIRST = 4  # sentences that are not folded away
+FAINT_COLOR = "#bdbdbd"
+WHISKER_NAME = "from two standard errors below to above"
+MAX_OPEN_SENTENCES = 4  # the others are folded away
 
 
 class Where:
@@ -68,12 +68,12 @@ class Where:
         """Draw findings, map and bins of the chosen model."""
         model = self.bench.models[self.chosen["model"]]
         self.searched: SearchedModel = await computed(self.bench.replays.searched, model)
-        self.told = list_conditions([self.searched]).models[model.name]
+        self.conditions = list_conditions([self.searched]).models[model.name]
         self.area.clear()
         with self.area:
             with ui.column().classes("half equal"):
-                self._findings(self.told.findings)
-                FieldMap(self.told, self.choose)
+                self._findings(self.conditions.findings)
+                FieldMap(self.conditions, self.choose)
             with ui.column().classes("half equal side"):
                 self.bins = ui.column().classes("area")
                 onward("Why does it fail?", "/why")
@@ -85,24 +85,24 @@ class Where:
 
     def _largest(self) -> tuple[str, str] | None:
         """Return axis and condition of the first finding, else of the largest share of an error."""
-        if self.told.findings:
-            finding = self.told.findings[0]
+        if self.conditions.findings:
+            finding = self.conditions.findings[0]
             return finding.axis, finding.condition
         shares = {
             (axis, condition): table.share_of_error
-            for axis, tables in self.told.axes.items()
+            for axis, tables in self.conditions.axes.items()
             for condition, table in tables.items()
         }
         return max(shares, key=lambda pair: shares[pair]) if shares else None
 
     def _findings(self, findings: Sequence[ConditionFinding]) -> None:
-        """Show the findings in sentences; all but the first `FIRST` are folded away."""
+        """Show the findings in sentences; all but `MAX_OPEN_SENTENCES` are folded away."""
         runs = f"{self.searched.split} runs {', '.join(self.searched.runs)}"
         text(f"Acceleration error in means over half a second, on the {runs}.", "soft")
-        for k, sentence in enumerate(self.told.sentences):
-            if k == FIRST:
-                folded = ui.expansion(f"{len(findings) - FIRST} more").classes("more")
-            with folded if k >= FIRST else nullcontext(), ui.row().classes("finding"):
+        for k, sentence in enumerate(self.conditions.sentences):
+            if k == MAX_OPEN_SENTENCES:
+                folded = ui.expansion(f"{len(findings) - MAX_OPEN_SENTENCES} more").classes("more")
+            with folded if k >= MAX_OPEN_SENTENCES else nullcontext(), ui.row().classes("finding"):
                 ui.label(sentence)
                 if k < len(findings):
                     pair = (findings[k].axis, findings[k].condition)
@@ -125,7 +125,7 @@ class Where:
                 "soft",
             )
             chart(
-                bins_chart(self.told.axes[axis][condition], condition, axis, unit),
+                bins_chart(self.conditions.axes[axis][condition], condition, axis, unit),
                 f"Mean {axis} error by bins of {condition}",
                 200,
                 on_point_click=lambda e: self._samples(axis, table, e.data_index),
@@ -135,14 +135,14 @@ class Where:
             toggle.props('no-caps dense flat toggle-color=primary aria-label="Bin"').classes("bins")
             self.series = ui.column().classes("area")
 
-    def _samples(self, axis: str, found: BinnedErrors, chosen: int) -> None:
+    def _samples(self, axis: str, binned: BinnedErrors, chosen: int) -> None:
         """Show the samples (half-second means) of the bin number `chosen` among all, over time."""
         blocks = self.searched.explanation.blocks
         assert blocks is not None  # a table was made of them
-        error, inside = blocks.error[:, AXES.index(axis)], found.binning.bin == chosen
+        error, inside = blocks.error[:, AXES.index(axis)], binned.binning.bin == chosen
         self.series.clear()
         with self.series:
-            ui.label(f"{int(inside.sum())} samples, {_span(found, chosen)}").classes("soft")
+            ui.label(f"{int(inside.sum())} samples, {_span(binned, chosen)}").classes("soft")
             for k, run in enumerate(self.searched.runs):
                 in_run = blocks.run == k
                 if (in_run & inside).any():
@@ -152,8 +152,8 @@ class Where:
                     chart(options, f"Samples of run {run} over time", 170)
 
 
-def _span(found: BinnedErrors, k: int) -> str:
-    edges, unit = found.binning.edges, found.binning.condition.unit
+def _span(binned: BinnedErrors, k: int) -> str:
+    edges, unit = binned.binning.edges, binned.binning.condition.unit
     low, high = (np.degrees(edges[k : k + 2]) if unit == "rad" else edges[k : k + 2]).tolist()
     if len(edges) == 2:
         return "throughout"
@@ -161,10 +161,10 @@ def _span(found: BinnedErrors, k: int) -> str:
     return f"{ends} {'°' if unit == 'rad' else unit}"
 
 
-def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> Options:
+def bins_chart(table: ConditionTable, condition: str, axis: str, unit: str) -> Options:
     """Return a chart of the bins' mean errors with two standard errors; grey: too few samples."""
-    curve = chart_bins(found)
-    colors = [BLUE if yes else FAINT for yes in curve.judged]
+    curve = chart_bins(table)
+    colors = [BLUE if yes else FAINT_COLOR for yes in curve.judged]
     centers = [minus(f"{c:.2g}") for c in curve.center]
     low, high = curve.mean - curve.error, curve.mean + curve.error
     whiskers = [[k, *ends] for k, ends in enumerate(np.stack([low, high], axis=1).tolist())]
@@ -186,15 +186,15 @@ def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> O
                 "barMaxWidth": 64,
                 "data": [
                     {"value": m, "itemStyle": {"color": c}}
-                    for m, c in zip(found.mean, colors, strict=True)
+                    for m, c in zip(table.mean, colors, strict=True)
                 ],
             },
             {
                 "type": "custom",
-                "name": ERRORS,
+                "name": WHISKER_NAME,
                 "silent": True,
                 "data": whiskers,
-                ":renderItem": WHISKER,
+                ":renderItem": DRAW_WHISKER,
                 "z": 4,
                 "encode": {"x": 0, "y": [1, 2]},
             },
@@ -202,7 +202,7 @@ def bins_chart(found: ConditionTable, condition: str, axis: str, unit: str) -> O
     }
 
 
-WHISKER = (
+DRAW_WHISKER = (
     "(p, api) => { const a = api.coord([api.value(0), api.value(1)]),"
     " b = api.coord([api.value(0), api.value(2)]);"
     " return {type: 'line', shape: {x1: a[0], y1: a[1], x2: b[0], y2: b[1]},"
@@ -237,14 +237,14 @@ def samples_chart(time, error, inside, run: str, axis: str) -> Options:
                 "type": "scatter",
                 "name": "other",
                 "symbolSize": 4,
-                "itemStyle": {"color": FAINT},
+                "itemStyle": {"color": FAINT_COLOR},
                 "data": pairs[~inside].tolist(),
             },
             {
                 "type": "scatter",
                 "name": "in the bin",
                 "symbolSize": 9,
-                "itemStyle": {"color": MARK, "borderColor": "#ffffff"},
+                "itemStyle": {"color": MARK_COLOR, "borderColor": "#ffffff"},
                 "data": pairs[inside].tolist(),
             },
         ],

@@ -42,11 +42,11 @@ from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect
 
 TITLE, QUESTION = "Why", "Which physics is missing?"
-OF_WHICH = (
+OLD_VERSION_WARNING = (
     "An earlier version wrote this file, which does not say of which recordings it is: make sure "
     "that these are those of this campaign."
 )
-SHOWN = 8  # effects of the ranking, unless more are likely
+MAX_RANKED_EFFECTS = 8  # effects of the ranking, unless more are likely
 
 
 async def show(bench: Workbench, place: Place) -> None:
@@ -57,18 +57,18 @@ async def show(bench: Workbench, place: Place) -> None:
         return
     diagnosis = bench.diagnosis
     if bench.settings.diagnosis and not diagnosis.recordings:
-        text(OF_WHICH, "warning")
+        text(OLD_VERSION_WARNING, "warning")
     verdict = explain(diagnosis, bench.catalogue)
     ui.html(
         f"<p><strong>{escape(verdict.sentence)}</strong> <span>({escape(verdict.name)})</span></p>",
         sanitize=False,
     ).classes("verdict")
-    _errors(diagnosis)
+    _show_errors(diagnosis)
     text(verdict.error)
     if verdict.key:
         text(verdict.key, "soft")
     rooms = {missing.effect: _effect(missing) for missing in verdict.missing}
-    await _left(bench, diagnosis)
+    await _show_unexplained(bench, diagnosis)
     if diagnosis.selected:
         onward("Add what is missing", "/add")
     if verdict.next:
@@ -76,7 +76,7 @@ async def show(bench: Workbench, place: Place) -> None:
         text(verdict.next, "next")
         onward("Plan the flight", "/flight")
     paragraphs("What else to know", verdict.remarks)
-    _ranking(diagnosis)
+    _show_ranking(diagnosis)
     button = jobs.Beginning(bench, "Diagnose again", on_click=lambda: jobs.start_diagnosis(bench))
     button.props("flat no-caps").classes("onward")
     for effect, room in rooms.items():
@@ -96,11 +96,11 @@ def _ask(bench: Workbench) -> None:
     button.props("unelevated no-caps").classes("onward")
 
 
-def _errors(found: Diagnosis) -> None:
-    error = found.error
+def _show_errors(diagnosis: Diagnosis) -> None:
+    error = diagnosis.error
     with ui.row().classes("tiles"):
         tile(f"{ERROR_NAME} of the model", error.nominal, "error/nominal", "test runs")
-        if found.selected:
+        if diagnosis.selected:
             tile("With the effects", error.with_effects, "error/with_effects", "test runs")
         tile("Noise floor", error.noise_floor, "error/noise_floor", "of a perfect model, about")
 
@@ -131,9 +131,9 @@ async def _show_effect(bench: Workbench, effect: str) -> None:
         ui.label("From the gallery: what it looks like in a calm tank, not your data.")
 
 
-async def _left(bench: Workbench, found: Diagnosis) -> None:
+async def _show_unexplained(bench: Workbench, diagnosis: Diagnosis) -> None:
     """Show what no effect explains: the law that is proposed for it, or the force over time."""
-    law = found.unexplained.proposal
+    law = diagnosis.unexplained.proposal
     if law is not None:
         with ui.column().classes("card effect"):
             ui.html("<h2>A law for what is left</h2>", sanitize=False)
@@ -147,10 +147,10 @@ async def _left(bench: Workbench, found: Diagnosis) -> None:
             add = ui.button("Add the law").props("unelevated no-caps")
             failure = Failure()
             add.on_click(lambda: _take(bench, failure))
-    elif found.unexplained.disturbance is not None:
+    elif diagnosis.unexplained.disturbance is not None:
         section("A disturbance, and no law")
         path = bench.out / "pictures" / "disturbance.png"
-        await computed(draw_disturbance, found.unexplained.disturbance, path)
+        await computed(draw_disturbance, diagnosis.unexplained.disturbance, path)
         png(path, "What pushes and follows no law: on the path, in time and by frequency")
 
 
@@ -171,8 +171,8 @@ def draw_disturbance(force: Disturbance, path: Path) -> None:
     save(find_figure("disturbance").draw(disturbance=force), path.parent, path.stem)
 
 
-def _ranking(found: Diagnosis) -> None:
-    if ranking := list_worth_showing(found.ranking):
+def _show_ranking(diagnosis: Diagnosis) -> None:
+    if ranking := list_worth_showing(diagnosis.ranking):
         section("Each effect alone")
         text(
             "As if one effect alone were missing, the likeliest first. Where several are missing, "
@@ -198,9 +198,9 @@ def _ranking(found: Diagnosis) -> None:
             ["effect", "error removed", "probability, if one alone is missing"],
             rows,
         )
-    if found.where:
+    if diagnosis.where:
         section("Where the model fails")
-        rows = [(w.axis, [words(w.condition), words(tell_share(w))]) for w in found.where]
+        rows = [(w.axis, [words(w.condition), words(tell_share(w))]) for w in diagnosis.where]
         table("Conditions the error varies with", ["axis", "condition", "share of error"], rows)
 
 
@@ -216,10 +216,10 @@ def tell_share(one: ConditionShare) -> str:
 def list_worth_showing(ranking: Sequence[FittedEffect]) -> list[FittedEffect]:
     """List all effects that are not improbable, the likeliest first, then those that remove most.
 
-    In all `SHOWN`, unless more are likely.
+    In all `MAX_RANKED_EFFECTS`, unless more are likely.
     """
     likely = [r for r in ranking if (r.probability or 0.0) >= MIN_TOLD_PROBABILITY]
     likely.sort(key=lambda r: -(r.probability or 0.0))
     rest = [r for r in ranking if r not in likely and (r.error_reduction or 0.0) > 0.0]
     rest.sort(key=lambda r: -(r.error_reduction or 0.0))
-    return likely + rest[: max(0, SHOWN - len(likely))]
+    return likely + rest[: max(0, MAX_RANKED_EFFECTS - len(likely))]

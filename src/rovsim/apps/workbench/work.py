@@ -10,7 +10,7 @@ from typing import Any, Callable
 from rovsim.core.errors import BadInput, RovsimError
 from rovsim.core.progress import heard_by
 
-FEWEST = 0.1  # share that must be done before anybody can tell how long the rest takes
+MIN_DONE_SHARE = 0.1  # that must be done before anybody can tell how long the rest takes
 
 
 @dataclass(eq=False)
@@ -26,7 +26,7 @@ class Work:
         state: running, done, failed or cancelled.
         what: it does at present.
         share: of the work that is done, 0 to 1; None if unknown.
-        said: the result, or why it failed.
+        outcome: the result, or why it failed.
     """
 
     title: str
@@ -37,7 +37,7 @@ class Work:
     state: str = "running"
     what: str = "starting"
     share: float | None = None
-    said: Any = None
+    outcome: Any = None
 
     @staticmethod
     def start(title: str, after: Callable[[Any], None], function: Callable, *given: Any) -> "Work":
@@ -61,7 +61,7 @@ class Work:
             if kind == "progress":
                 self.what, self.share = rest
             else:
-                self.state, self.said = kind, rest[0]
+                self.state, self.outcome = kind, rest[0]
         return self.state
 
     def cancel(self) -> None:
@@ -77,8 +77,8 @@ class Work:
 
     @property
     def left(self) -> float | None:
-        """Estimated remaining time, s; None before `FEWEST` of the work is done."""
-        reliable = self.share is not None and self.share >= FEWEST
+        """Estimated remaining time, s; None before `MIN_DONE_SHARE` of the work is done."""
+        reliable = self.share is not None and self.share >= MIN_DONE_SHARE
         return self.elapsed * (1.0 / self.share - 1.0) if reliable and self.share else None
 
 
@@ -88,14 +88,14 @@ class LongWork:
 
     Attributes:
         now: the work that is running; None where none is.
-        said: a sentence on the work that ended last.
+        message: a sentence on the work that ended last.
         trouble: why work failed, with its title, until the user has read it.
         why: the same without the title.
         ended: how often work has ended.
     """
 
     now: Work | None = None
-    said: str = ""
+    message: str = ""
     trouble: str = ""
     why: str = ""
     ended: int = 0
@@ -124,11 +124,11 @@ class LongWork:
             return ""
         self.now = None
         if work.state == "done":
-            work.after(work.said)
+            work.after(work.outcome)
         elif work.state == "failed":
-            self.why, self.trouble = work.said, f"{work.title}: {work.said}"
+            self.why, self.trouble = work.outcome, f"{work.title}: {work.outcome}"
         self.ended += 1
-        self.said = {
+        self.message = {
             "done": f"{work.title}: done in {work.elapsed:.0f} s.",
             "failed": "",
             "cancelled": f"{work.title}: cancelled, nothing was changed.",

@@ -27,7 +27,7 @@ from rovsim.dynamics.model_file import read_model, write_model
 from rovsim.results.diagnosis import Diagnosis, law_beside
 from rovsim.results.ladder import Ladder, LadderStep
 
-OPENINGS = "test_runs_opened.csv"  # one line for each model that was saved and measured
+OPENINGS_FILE = "test_runs_opened.csv"  # one line for each model that was saved and measured
 
 
 @dataclass(eq=False)
@@ -117,7 +117,7 @@ class Workbench:
         """The model that the user puts together by hand."""
         return Draft(self.base, self.diagnosis, self.catalogue)
 
-    def found(self, diagnosis: Diagnosis) -> None:
+    def replace_diagnosis(self, diagnosis: Diagnosis) -> None:
         """Replace the diagnosis; a new draft begins with the effects that it selected."""
         self.diagnosis = diagnosis
         self.__dict__.pop("draft", None)
@@ -211,7 +211,7 @@ class Workbench:
 
     def note_opening(self, model: Model) -> int:
         """Note in a file that the test runs were opened for a model; returns how often so far."""
-        log = self.out / OPENINGS
+        log = self.out / OPENINGS_FILE
         before = read_text(log) if log.exists() else "model,error\n"
         write_text(log, f"{before}{model.name},{self.replays.step(model).windows_2s}\n")
         return len(before.splitlines())

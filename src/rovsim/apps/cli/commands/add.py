@@ -20,12 +20,12 @@ from rovsim.core.model_names import NOMINAL
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.reporting.words.totals import warn_totals
 
-OTHER = (
+OTHER_BASE_WARNING = (
     "The diagnosis is not of {base}: its values were found beside the effects of another model. "
     "Name that one with to=FILE to keep them."
 )
 
-ALONE = (
+FOUND_ALONE_WARNING = (
     "Some of these values were found without the other effects: what two of them explain is there "
     "twice. `rovsim diagnose campaign=DIR model={model}` tells what is missing then, or too much."
 )
@@ -63,9 +63,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
         source = "the diagnosis selected" if settings.effects is None else "effects=[] names"
         text = f"{base} as it is, for {source} no effect"
     if not diagnosed:
-        text += f".\n{OTHER.format(base=base)}"
+        text += f".\n{OTHER_BASE_WARNING.format(base=base)}"
     if one_by_one:
-        text += f".\n{ALONE.format(model=model)}"
+        text += f".\n{FOUND_ALONE_WARNING.format(model=model)}"
     if kept:
         text += f".\n{KEPT.format(kept=kept)}"
     warning = warn_totals(extended.body)

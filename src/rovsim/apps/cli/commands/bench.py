@@ -33,8 +33,8 @@ from rovsim.simulation.samples import sample_run
 from rovsim.simulation.synthetic_tank.campaign import make_campaign
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-UNFINISHED = "bench.unfinished.json"  # as far as it is, beside the result
-LARGE = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
+UNFINISHED_FILE = "bench.unfinished.json"  # as far as it is, beside the result
+LARGE_FEATURES = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))  # 18 features
 
 
 class Settings(SimulationSections, WritingSettings):
@@ -50,9 +50,9 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     model, samples = _samples(settings, catalogue)
     options = settings.bench
     pairs = _pairs(samples, FeatureSettings()).drawn()
-    large = _pairs(samples, LARGE).drawn()
+    large = _pairs(samples, LARGE_FEATURES).drawn()
     gp = fitted("gp", pairs.first(2_000), max_points=2_000, **GP_SETTINGS)
-    knn = fitted("knn", large.first(2_235), features=LARGE)  # the thesis' size
+    knn = fitted("knn", large.first(2_235), features=LARGE_FEATURES)  # the thesis' size
     residuals = {"knn": knn, "gp": unfading(gp), "gp_faded": gp}
     effort = Effort(options.calls, options.warmup, options.seconds)
     speeds = replay_speeds(model, residuals)
@@ -60,7 +60,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     result = Bench(
         machine=describe_machine(), replay=speeds, inference={}, scheduling="", accuracy=()
     )
-    unfinished = path.with_name(UNFINISHED)
+    unfinished = path.with_name(UNFINISHED_FILE)
 
     def known_with(timed: dict[str, Latency], scheduling: str) -> Bench:
         return result.model_copy(update={"inference": timed, "scheduling": scheduling})
@@ -90,9 +90,9 @@ def _samples(settings: Settings, catalogue: Catalogue) -> tuple[Model, dict[str,
     return model, by_split
 
 
-def _pairs(found: dict[str, list], features: FeatureSettings) -> Pairs:
+def _pairs(samples: dict[str, list], features: FeatureSettings) -> Pairs:
     def joined(split: str) -> tuple:
-        runs = found[split]
+        runs = samples[split]
         return (
             np.concatenate([s.features(features) for _, s in runs]),
             np.concatenate([s.a_res for _, s in runs]),

@@ -23,7 +23,8 @@ from rovsim.reporting.html.kept import find_outdated, keep_other
 from rovsim.reporting.report_data import ReportData
 from rovsim.reporting.words.terminal import tell_comparison, tell_doubts
 
-DRAWING = "rovsim.reporting.html.folder"  # a second process imports it while this one compares
+# a second process imports it while this one compares
+DRAWING_MODULE = "rovsim.reporting.html.folder"
 
 
 class Settings(CampaignSettings):
@@ -32,7 +33,7 @@ class Settings(CampaignSettings):
 
 def run(settings: Settings, catalogue: Catalogue) -> None:
     """Compare, then write numbers, figures and the report."""
-    with second_process(DRAWING) as other:
+    with second_process(DRAWING_MODULE) as other:
         data, out = measure_campaign(settings, "compare")
         models = load_models(settings.model, data.vehicle, catalogue)
         results = compare(data, models, settings)
@@ -58,12 +59,12 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     say(settings, message, results.comparison.to_json())
 
 
-def _write(folder: Path, found: ReportData) -> None:
+def _write(folder: Path, report: ReportData) -> None:
     results = {
-        "where": found.where,
-        "budget": found.budget_totals,
-        "bands": found.band_coverage,
-        "comparison": found.comparison,
+        "where": report.where,
+        "budget": report.budget_totals,
+        "bands": report.band_coverage,
+        "comparison": report.comparison,
     }
     for name, result in results.items():
         if result is not None:

@@ -37,9 +37,9 @@ from rovsim.results.quality import Quality
 from rovsim.simulation.compiled_ahead import is_compiled
 
 # The second process imports these; this one does without them, to begin sooner.
-DRAWING = "rovsim.reporting.html.folder"
-COMPILING = "rovsim.simulation.compiled_ahead:compile_ahead"
-LOGGING = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
+DRAWING_MODULE = "rovsim.reporting.html.folder"
+COMPILING_CALL = "rovsim.simulation.compiled_ahead:compile_ahead"
+LOGGING_MODULES = ("mlflow.tracking", "mlflow.store.tracking.sqlalchemy_store")
 
 
 class Settings(CampaignSettings):
@@ -55,8 +55,8 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     data, out = measure_campaign(settings, "diagnosis", even_unusable=True)
     base = load_one_model(settings.model, data.vehicle, catalogue)
     tracking = settings.tracking if installed("tracking") else None
-    modules = (DRAWING, *(LOGGING if tracking else ()))
-    with second_process(*modules, first=None if is_compiled() else COMPILING) as other:
+    modules = (DRAWING_MODULE, *(LOGGING_MODULES if tracking else ()))
+    with second_process(*modules, first=None if is_compiled() else COMPILING_CALL) as other:
         outdated = find_outdated(out / "report.html", "diagnose", settings.campaign)
         drawing = _Drawing(other, out)
 
@@ -99,7 +99,7 @@ class _Drawing:
         for figure in known.figures:
             if figure not in self._begun:
                 self._begun[figure] = self._other.submit(
-                    call, f"{DRAWING}:draw_one", self._out, figure, "", known
+                    call, f"{DRAWING_MODULE}:draw_one", self._out, figure, "", known
                 )
 
     def finish(self) -> list[Drawn]:
@@ -119,7 +119,7 @@ def _data_to_show(result: CampaignDiagnosis, quality: Mapping[str, Quality]) -> 
 def _tell(
     settings: Settings,
     out: Path,
-    found: Diagnosis,
+    diagnosis: Diagnosis,
     quality: Mapping[str, Quality],
     catalogue: Catalogue,
     replaced: str,
@@ -127,10 +127,10 @@ def _tell(
     """Say what was found, what speaks against the recordings, and where it is written."""
     from rovsim.reporting.words.terminal import tell_diagnosis, tell_doubts, tell_roles
 
-    text = tell_diagnosis(found, catalogue)
-    if found.verdict == "insufficient_data":
+    text = tell_diagnosis(diagnosis, catalogue)
+    if diagnosis.verdict == "insufficient_data":
         text += tell_roles(quality)
     text += tell_doubts(quality)
     files = f"{out / 'diagnosis.json'} and {out / 'report.html'}"
     notice = keep_other(out / "report.html", "diagnose")
-    say(settings, join_files(text, files, notice, replaced), found.to_json())
+    say(settings, join_files(text, files, notice, replaced), diagnosis.to_json())

@@ -46,7 +46,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     export = export_model(model, chosen, partial(_flown, settings, model), over, model_parts(model))
     write_export(export, out)
     warning = warn_totals(model.body)
-    lines = [_told(f"{out}: {_name(model)}", chosen, export.left, over), *fold(warning)]
+    lines = [_format_summary(f"{out}: {_name(model)}", chosen, export.left, over), *fold(warning)]
     content = _content(out, chosen, export.left) | {"model": model.name, "warning": warning}
     say(settings, "\n".join(lines), content)
 
@@ -92,7 +92,7 @@ def _name(model: Model) -> str:
     return f"the model {model.name}"
 
 
-def _told(head: str, chosen: Target, left: Sequence[Sized], over: str) -> str:
+def _format_summary(head: str, chosen: Target, left: Sequence[Sized], over: str) -> str:
     """`head`: the file, and what is in it."""
     if not left:
         sentence = f"{chosen.title} holds the whole model. {chosen.takes}"

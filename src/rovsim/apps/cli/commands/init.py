@@ -48,7 +48,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     with tempfile.TemporaryDirectory() as scratch:
         proposal = propose(paths, out, Path(scratch))
         file = write_proposal(proposal, out, settings.force)
-    say(settings, _told(proposal, file), _content(proposal, file))
+    say(settings, _format_proposal(proposal, file), _content(proposal, file))
 
 
 def _folder(paths: list[Path]) -> str:
@@ -63,7 +63,7 @@ def _bag(path: Path) -> bool:
     return (path / "metadata.yaml").is_file()
 
 
-def _told(proposal: CampaignProposal, file: Path) -> str:
+def _format_proposal(proposal: CampaignProposal, file: Path) -> str:
     parts = ["\n".join(f"  {line}" for line in proposal.findings)]
     assumptions = [*list_taken(proposal), *(f"guess: {line}" for line in list_guesses(proposal))]
     parts.append("\n".join(f"  {line}" for line in assumptions))

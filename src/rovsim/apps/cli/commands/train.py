@@ -38,7 +38,7 @@ from rovsim.results.growth import Growth
 from rovsim.results.quality import Quality
 from rovsim.simulation.synthetic_tank.settings import TankSettings
 
-FILE = Path("model.yaml")  # in the folder that is written
+MODEL_FILE = Path("model.yaml")  # in the folder that is written
 
 
 class Settings(TrainingSettings, CampaignSettings):
@@ -59,13 +59,13 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
     settings = _of_study(settings)
     data, out = measure_campaign(settings, f"trained/{name}")
     base = load_one_model(settings.model, data.vehicle, catalogue)
-    file, story = out / FILE, provenance(settings, catalogue, data.campaign)
+    file, story = out / MODEL_FILE, provenance(settings, catalogue, data.campaign)
     corrected = train(data.motions.values(), base, settings, catalogue, file, story)
     scored = score_models([base, corrected], data.motions, settings)
     comparison = scored.comparison
     comparison.write(out / "comparison.json")
     names = {base.name: base.name, corrected.name: name_learned(kind, settings.control, base.name)}
-    pictures = draw(out, _shown(scored, names, data.quality))
+    pictures = draw(out, _collect_shown(scored, names, data.quality))
     errors = {step.model: step.windows_2s for step in scored.steps}
     with reported("logging to MLflow"):
         files = (file, out / ARRAYS_FILE, out / "comparison.json")
@@ -74,7 +74,7 @@ def run(settings: Settings, catalogue: Catalogue) -> None:
             name=settings.tracking.name or name,
             tags={"model": base.name, "residual": kind, "control": settings.control},
             params=settings.residual | {"seed": settings.seed},
-            scores=comparison.models[FILE.stem].runs,
+            scores=comparison.models[MODEL_FILE.stem].runs,
             files=[*files, *(path for picture in pictures for path in picture.files)],
             metrics=ranking(errors, corrected.name, base.name),
         )
@@ -98,21 +98,21 @@ def _of_study(settings: Settings) -> Settings:
 def _check_name(given: str | Sequence[str]) -> None:
     """Refuse a base that is called as what is trained will be: one would stand for the other."""
     for model in as_list(given):
-        if Path(model).stem == FILE.stem:
+        if Path(model).stem == MODEL_FILE.stem:
             raise BadInput(
-                f"the base is called '{FILE.stem}', as the model that is trained will be",
+                f"the base is called '{MODEL_FILE.stem}', as the model that is trained will be",
                 where=f"model={model}",
                 expected="another name (a model is called by its file's stem)",
                 remedy="Copy the file, for example to base.yaml, and give that.",
             )
 
 
-def _shown(
-    scored: ScoreCollector, said: Mapping[str, str], quality: Mapping[str, Quality]
+def _collect_shown(
+    scored: ScoreCollector, titles: Mapping[str, str], quality: Mapping[str, Quality]
 ) -> ReportData:
     """What figures show of the errors, the models called by what they are."""
-    comparison = {said[name]: result for name, result in scored.comparison.models.items()}
-    growth = {said[name]: result for name, result in scored.growth.models.items()}
+    comparison = {titles[name]: result for name, result in scored.comparison.models.items()}
+    growth = {titles[name]: result for name, result in scored.growth.models.items()}
     return ReportData(
         comparison=Comparison(models=comparison), growth=Growth(models=growth), quality=quality
     )
