@@ -77,7 +77,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         start = rest_state(np.zeros(3), self.np_random.uniform(-np.pi, np.pi))
         self.goal = np.array(options.get("goal", self._goal()), dtype=np.float64)
         self.state = np.array(options.get("state", start), dtype=np.float64)
-        return self._seen(), {}
+        return self._observation(), {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Hold an action (n,) for `dt` s; values beyond [-1, 1] count as -1 or 1."""
@@ -85,7 +85,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
         self.state = self.stepper.step(self.state, self.limit * action, self.dt)
         terminated = bool(np.abs(self.state[:3]).max() > 3.0 * self.reach)
         truncated = self.stepper.time >= self.seconds - 1e-9
-        return self._seen(), self.reward(action), terminated, truncated, {}
+        return self._observation(), self.reward(action), terminated, truncated, {}
 
     def reward(self, action: Array) -> float:
         """Return the reward of the action (n,) that led to the present state."""
@@ -95,7 +95,7 @@ class VehicleEnv(gymnasium.Env[Array, Array]):
     def _goal(self) -> Array:
         return self.np_random.uniform(-self.reach, self.reach, 3)
 
-    def _seen(self) -> Array:
+    def _observation(self) -> Array:
         return np.concatenate([self.state, self.goal])
 
 

@@ -85,26 +85,28 @@ def _cumulative(
     at_rest = replace(motion, state_nu=0 * motion.state_nu)
     yield RESTORING, _force(so_far, at_rest, no_thrust)
     yield CORIOLIS, _force(so_far, motion, no_thrust)
-    for k, effect in sorted(enumerate(model.vehicle_effects), key=lambda pair: _place(pair[1])):
+    for k, effect in sorted(
+        enumerate(model.vehicle_effects), key=lambda pair: _part_order(pair[1])
+    ):
         if so_far.effects[k] is not effect:  # else every vehicle has it: in from the start
             so_far = so_far.with_effect(k, effect)
             yield NOMINAL_PARTS.get(effect.id, effect.id), _force(so_far, motion, no_thrust)
-    yield THRUSTERS, _at(so_far, motion, settings)
+    yield THRUSTERS, _inertial_force(so_far, motion, settings)
     for k, effect in enumerate(model.added, start=len(model.vehicle_effects)):
         so_far = so_far.with_effect(k, effect)
-        yield f"+{effect.id}", _at(so_far, motion, settings)
+        yield f"+{effect.id}", _inertial_force(so_far, motion, settings)
     if model.residual is not None:
-        yield RESIDUAL_NAME, _at(model, motion, settings)
+        yield RESIDUAL_NAME, _inertial_force(model, motion, settings)
 
 
-def _place(effect: Effect) -> int:
+def _part_order(effect: Effect) -> int:
     """Position of an effect of the vehicle in the order of parts."""
     return (
         list(NOMINAL_PARTS).index(effect.id) if effect.id in NOMINAL_PARTS else len(NOMINAL_PARTS)
     )
 
 
-def _at(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
+def _inertial_force(model: Model, motion: Motion, settings: ReplaySettings) -> Array:
     """M nu_dot (n, 6) of a model at the measured states, under the logged commands."""
     return accelerate_as_logged(model, motion, settings) @ model.M.T
 

@@ -90,13 +90,13 @@ class ConditionMap:
         axes: names of a axes.
         conditions: names of c conditions; those that explain most come first.
         share: (c, a), 0 to 1. A constant error counts for the condition `throughout` alone.
-        found: pairs of axis and condition that are more than chance.
+        significant: pairs of axis and condition that are more than chance.
     """
 
     axes: tuple[str, ...]
     conditions: tuple[str, ...]
     share: Array
-    found: frozenset[tuple[str, str]]
+    significant: frozenset[tuple[str, str]]
 
 
 def chart_conditions(model: ModelConditions, most: int | None = None) -> ConditionMap:

@@ -82,14 +82,14 @@ class Equation:
     def products(self) -> dict[str, float]:
         """Coefficients of products of velocities by SNAME name (Yuv), as in vehicle files."""
         coefficients: dict[str, float] = {}
-        for flow in self._those(CrossFlow):
+        for flow in self._list_effects(CrossFlow):
             coefficients |= {
                 name: coefficients.get(name, 0.0) + c for name, c in flow.products.items()
             }
-        for lift in self._those(Lift):
+        for lift in self._list_effects(Lift):
             for name in ("Y|u|v", "Z|u|w"):
                 coefficients[name] = coefficients.get(name, 0.0) - lift["coefficient"]
-        for cubic in self._those(CubicDamping):
+        for cubic in self._list_effects(CubicDamping):
             for axis, force, v in zip(AXES, FORCE, VELOCITY, strict=True):
                 coefficients[f"{force}{3 * v}"] = (
                     coefficients.get(f"{force}{3 * v}", 0.0) - cubic[axis]
@@ -99,12 +99,12 @@ class Equation:
     @property
     def constant(self) -> Array:
         """Constant wrench (6,), N and N m, FRD."""
-        return sum((e.values for e in self._those(ConstantWrench)), np.zeros(6))
+        return sum((e.values for e in self._list_effects(ConstantWrench)), np.zeros(6))
 
     @property
     def friction(self) -> Array:
         """Coefficients c (6,) of dry friction, N and N m: tau_i = -c_i tanh(nu_r,i / 0.01)."""
-        return sum((e.values for e in self._those(DryFriction)), np.zeros(6))
+        return sum((e.values for e in self._list_effects(DryFriction)), np.zeros(6))
 
     @property
     def names(self) -> list[str]:
@@ -115,14 +115,14 @@ class Equation:
     def columns(self) -> Array:
         """Position (n,) of the command that each thruster follows, counted from 0."""
         order = np.arange(self.model.thrust_path.thrusters.count)[None]
-        for effect in self._those(ThrusterOrder):
+        for effect in self._list_effects(ThrusterOrder):
             order = effect.thruster_command(order)
         return np.asarray(order[0], dtype=int)
 
     @property
     def deadband(self) -> float:
         """Width of the deadband: commands up to this size, within [-1, 1], do nothing."""
-        return max((e["width"] for e in self._those(ThrusterDeadband)), default=0.0)
+        return max((e["width"] for e in self._list_effects(ThrusterDeadband)), default=0.0)
 
     @property
     def curves(self) -> list[ForceCurve]:
@@ -132,7 +132,7 @@ class Equation:
     @property
     def exponent(self) -> float:
         """Exponent e in F -> sign(F) F_max (|F| / F_max)^e, where F_max is `full`."""
-        return float(np.prod([e["exponent"] for e in self._those(CurveExponent)]))
+        return float(np.prod([e["exponent"] for e in self._list_effects(CurveExponent)]))
 
     @property
     def full(self) -> Array:
@@ -143,14 +143,14 @@ class Equation:
     def gain(self) -> Array:
         """Factor (n,) on the force of each thruster, after the curve."""
         force = np.ones((1, self.model.thrust_path.thrusters.count))
-        for gain in self._those(ThrusterGain):
+        for gain in self._list_effects(ThrusterGain):
             force = gain.scaled_force(force, np.zeros(1), 1.0)
         return np.asarray(force[0])
 
     @property
     def backwards(self) -> float:
         """Factor on forces that are negative after curve and gain."""
-        return float(np.prod([e["ratio"] for e in self._those(ThrustAsymmetry)]))
+        return float(np.prod([e["ratio"] for e in self._list_effects(ThrustAsymmetry)]))
 
     @property
     def reach(self) -> Array:
@@ -172,5 +172,5 @@ class Equation:
         """Compute the steady forces (m, n), N, of commands (m, n) in [-1, 1]."""
         return self.model.thrust_path.static(command, np.zeros(len(command)), 1.0)
 
-    def _those(self, kind: type[E]) -> list[E]:
+    def _list_effects(self, kind: type[E]) -> list[E]:
         return [e for e in self.model.effects if isinstance(e, kind)]

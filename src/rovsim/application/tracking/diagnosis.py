@@ -16,7 +16,7 @@ def track_diagnosis(
     settings: TrackingSettings,
     experiment: str,
     base: str,
-    found: Diagnosis,
+    diagnosis: Diagnosis,
     params: Mapping[str, Any],
     files: Iterable[Path],
     parent: str | None = None,
@@ -27,7 +27,7 @@ def track_diagnosis(
         settings: where MLflow keeps runs.
         experiment: name of the campaign.
         base: name of the model that was diagnosed.
-        found: the diagnosis.
+        diagnosis: what is logged.
         params: settings of the diagnosis, nested plain values.
         files: kept as artifacts; the diagnosis itself and the figure of the ladder also with every
             step.
@@ -37,20 +37,20 @@ def track_diagnosis(
         Ids of the runs, by name: `diagnosis`, and each step's model.
     """
     files = list(files)
-    selected = "+".join(effect.effect for effect in found.selected) or "none"
-    tags = {"model": base, "verdict": found.verdict, "selected": selected}
-    diagnosis = TrackedRun(
+    selected = "+".join(effect.effect for effect in diagnosis.selected) or "none"
+    tags = {"model": base, "verdict": diagnosis.verdict, "selected": selected}
+    parent_run = TrackedRun(
         experiment=experiment,
         name="diagnosis",
         tags=tags,
         params=leaves(params),
         files=files,
         parent=parent,
-        metrics=diagnosis_metrics(found),
+        metrics=diagnosis_metrics(diagnosis),
     )
-    run_id = track(settings, diagnosis)
+    run_id = track(settings, parent_run)
     runs = {"diagnosis": run_id}
-    for step in found.ladder.steps:
+    for step in diagnosis.ladder.steps:
         of_step = TrackedRun(
             experiment=experiment,
             name=step.model,

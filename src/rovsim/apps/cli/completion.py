@@ -105,10 +105,10 @@ def _answer(shell: str, line: str) -> list[str]:
     *before, last = split(line)
     names = [word.value for word in before[1:]]
     values = suggest(names, last.value)
-    return [_as(shell, last, value) for value in values]
+    return [_format_suggestion(shell, last, value) for value in values]
 
 
-def _as(shell: str, word: Word, value: str) -> str:
+def _format_suggestion(shell: str, word: Word, value: str) -> str:
     """Return a suggestion as a shell expects it: a finished word ends in a blank, but for fish.
 
     Args:

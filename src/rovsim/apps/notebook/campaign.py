@@ -98,12 +98,14 @@ class Campaign:
         """
         base = load_one_model(fspath(model), self.data.vehicle, self.catalogue)
         settings, folder = select(self.settings, DiagnosisSettings), self._folder
-        path = kept_diagnosis(folder, self.data.campaign, settings, base, self._known)
+        path = kept_diagnosis(folder, self.data.campaign, settings, base, self._vehicle_catalogue)
         if not path.exists():
             with in_a_cell():
-                found = diagnose(self.data.campaign, self.data.runs, base, settings, self.catalogue)
-                found.write(path)
-        return ShownDiagnosis(Diagnosis.read(path), path, self._known)
+                diagnosis = diagnose(
+                    self.data.campaign, self.data.runs, base, settings, self.catalogue
+                )
+                diagnosis.write(path)
+        return ShownDiagnosis(Diagnosis.read(path), path, self._vehicle_catalogue)
 
     def add(
         self,
@@ -179,7 +181,7 @@ class Campaign:
         return kept_folder(self.settings.out, self.data.campaign)
 
     @property
-    def _known(self) -> Catalogue:
+    def _vehicle_catalogue(self) -> Catalogue:
         return self.catalogue.on(self.data.vehicle)
 
     def _repr_html_(self) -> str:

@@ -183,22 +183,22 @@ class Compare:
             await self._path(self.traces)
             onward("Where does it fail?", "/where")
 
-    def _numbers(self, found: Predicted) -> None:
+    def _numbers(self, predicted: Predicted) -> None:
         """Show a table of the errors at this horizon, with the numbers of comparison.json."""
         self.numbers.clear()
         horizon = self.chosen["horizon"]
         with self.numbers:
             rows = []
-            for run, name in ((run, name) for run, models in found.items() for name in models):
+            for run, name in ((run, name) for run, models in predicted.items() for name in models):
                 errors = self.bench.replays.metrics(self.bench.models[name], run, horizon)
                 key = "" if run == self.chosen["run"] else f"{run}/"
                 cells = [cell(errors.velocity_rmse[a], f"{key}velocity_rmse/{a}") for a in AXES]
                 cells += [cell(getattr(errors, k), f"{key}{k}") for k in POSE_ERRORS]
                 label = title(name)
-                rows.append((f"{label}, {run}" if len(found) > 1 else label, cells))
+                rows.append((f"{label}, {run}" if len(predicted) > 1 else label, cells))
             units = [f"{a} ({u})" for a, u in zip(AXES, VELOCITY_UNITS, strict=True)]
             table(
-                f"Velocity error (root mean square) on run {', '.join(found)}, "
+                f"Velocity error (root mean square) on run {', '.join(predicted)}, "
                 f"{horizon_text(horizon)}",
                 ["model", *units, "position (m)", "attitude (rad)"],
                 rows,

@@ -27,13 +27,13 @@ class FieldMap:
     Fields are numbered (column, row) from the left and from the top.
 
     Args:
-        found: the errors of one model over conditions.
+        conditions: the errors of one model over conditions.
         choose: called with axis and condition of a field that is chosen.
     """
 
-    def __init__(self, found: ModelConditions, choose: Callable[[str, str], None]) -> None:
+    def __init__(self, conditions: ModelConditions, choose: Callable[[str, str], None]) -> None:
         section("What the error varies with")
-        self.shown, self.choose = chart_conditions(found, MAX_CONDITIONS), choose
+        self.shown, self.choose = chart_conditions(conditions, MAX_CONDITIONS), choose
         if not self.shown.axes:
             return
         text(

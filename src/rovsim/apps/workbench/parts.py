@@ -120,7 +120,7 @@ def cell(value: float | None, name: str = "", text: str = "") -> str:
     Args:
         value: in full in the attribute `data-value`; None is shown as a dash.
         name: in the attribute `data-name`, by which tests find the number.
-        text: text to show in place of three significant digits.
+        text: shown in place of three significant digits.
     """
     attribute = "" if value is None else f' data-value="{value!r}"'
     digits = str(value) if isinstance(value, int) else significant(or_nan(value))

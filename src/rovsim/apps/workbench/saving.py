@@ -75,7 +75,7 @@ class Saving:
                 if floor is not None:
                     tile("Noise floor", floor, "saved/noise_floor", "of a perfect model, about")
             text(_sentence(before, after, lost))
-            text(_counted(opened), "soft")
+            text(_say_openings(opened), "soft")
             words = (f"campaign={self.bench.settings.campaign}", f"model=[nominal,{path}]")
             in_a_terminal(f"rovsim compare {shlex.join(words)} out=COMPARED")
             onward("See the whole ladder", "/ladder")
@@ -91,7 +91,7 @@ def _sentence(before: float | None, after: float | None, lost: bool) -> str:
     return "Saved. On the test runs the error did not fall."
 
 
-def _counted(opened: int) -> str:
+def _say_openings(opened: int) -> str:
     """Say for how many models the test runs were opened, and why that matters."""
     if opened == 1:
         return "The test runs were opened for one saved model: this one."

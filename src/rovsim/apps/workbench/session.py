@@ -81,7 +81,11 @@ class Session:
         self.scratch = tempfile.TemporaryDirectory()
         self.problem, self.described = "", folder
         self._begin(
-            "Looking into the files", self._found, tasks.look_into, folder, Path(self.scratch.name)
+            "Looking into the files",
+            self._keep_proposal,
+            tasks.look_into,
+            folder,
+            Path(self.scratch.name),
         )
 
     def _begin(self, *work: Any) -> None:
@@ -92,7 +96,7 @@ class Session:
             self.problem = str(error)
             self._changes += 1
 
-    def _found(self, proposal: Any) -> None:
+    def _keep_proposal(self, proposal: Any) -> None:
         self.proposal = proposal
 
     def write(self, answers: Mapping[str, str]) -> None:

@@ -74,9 +74,11 @@ class Case(Section):
         """Verdicts that are right."""
         if self.outside:
             return {"unexplained"}
-        return {"missing_effects"} if self.names else {"adequate"} | self._either()
+        return (
+            {"missing_effects"} if self.names else {"adequate"} | self._verdicts_beside_adequate()
+        )
 
-    def _either(self) -> set[str]:
+    def _verdicts_beside_adequate(self) -> set[str]:
         """Return verdicts that are right besides `adequate` where no effect has to be named."""
         quiet = {"insufficient_data"} if self.partial else set()
         return quiet | ({"missing_effects"} if self.forgiven else set())
@@ -96,17 +98,19 @@ class Case(Section):
     def weaker(self) -> "Case":
         """Return the same case with smaller effects, for a pilot that cannot hold the vehicle."""
         outside = tuple(_shrunk_outside(entry) for entry in self.outside)
-        hidden = tuple(_shrunk(entry) for entry in self.hidden)
+        hidden = tuple(_weaken_entry(entry) for entry in self.hidden)
         strength = self.strength * WEAKENING_FACTOR
         return self.model_copy(update={"hidden": hidden, "outside": outside, "strength": strength})
 
 
-def _shrunk(entry: EffectEntry) -> EffectEntry:
+def _weaken_entry(entry: EffectEntry) -> EffectEntry:
     """Move the parameters of an effect that strength changes closer to their neutral values."""
     declared = {p.name: p for p in built_in()[entry.effect].parameters}
     fixed = RECIPES[entry.effect].fixed
     values = {
-        k: v if k in fixed or not declared[k].fitted else Value(value=_closer(v.value, declared[k]))
+        k: v
+        if k in fixed or not declared[k].fitted
+        else Value(value=_weaken_value(v.value, declared[k]))
         for k, v in entry.parameters.items()
     }
     return EffectEntry(effect=entry.effect, parameters=values)
@@ -115,11 +119,11 @@ def _shrunk(entry: EffectEntry) -> EffectEntry:
 def _shrunk_outside(one: Unlisted) -> Unlisted:
     """Move the first parameter of an effect outside the catalogue, its size, closer to neutral."""
     first = find_outside(one.name).parameters[0]
-    smaller = {first.name: _closer(one.parameters[first.name], first)}
+    smaller = {first.name: _weaken_value(one.parameters[first.name], first)}
     return Unlisted(name=one.name, parameters=one.parameters | smaller)
 
 
-def _closer(value: float, parameter: Parameter) -> float:
+def _weaken_value(value: float, parameter: Parameter) -> float:
     return float(f"{parameter.combine(parameter.neutral_value, value, WEAKENING_FACTOR):.4g}")
 
 

@@ -57,7 +57,7 @@ def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
     """
     record = SIMULATORS[simulator].record
     for pilot in range(PILOT_COUNT):
-        flown = _held(case.model_copy(update={"seed": case.seed + pilot}), out, record)
+        flown = _weaken_until_held(case.model_copy(update={"seed": case.seed + pilot}), out, record)
         if flown is not None:
             return flown
     raise BadInput(
@@ -68,7 +68,7 @@ def fly(case: Case, out: Path, simulator: str = "tank") -> Case:
     )
 
 
-def _held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case | None:
+def _weaken_until_held(case: Case, out: Path, record: Callable[[Case, Path], None]) -> Case | None:
     """Weaken a case until its pilot can hold the vehicle; None where that does not succeed."""
     for _ in range(MAX_TRIES):
         try:

@@ -15,9 +15,9 @@ from rovsim.reporting.figures.style import save, sheet, styled
 from rovsim.results.blind_benchmark import BlindSummary, Calibration, Ranks
 
 RANKS, RELIABILITY = "blind_ranks", "blind_reliability"
-COLUMNS, ROW_HEIGHT_MM = 5, 24  # panels beside each other, mm
+COLUMN_COUNT, ROW_HEIGHT_MM = 5, 24  # panels beside each other, mm
 BAND_PROBABILITY = 0.99  # of an honest histogram's bars lie inside the band
-BAR, BAND, LINE = "#0072B2", "#dddddd", "#D55E00"
+BAR_COLOR, BAND_COLOR, LINE_COLOR = "#0072B2", "#dddddd", "#D55E00"
 MIN_DOUBT = 1e-4  # least distance from one at which a probability is drawn
 
 
@@ -42,9 +42,9 @@ def write_pictures(page: Path, results: BlindSummary) -> list[str]:
 def draw_ranks(calibration: Calibration) -> Figure:
     """Draw a rank histogram of all values together, and of each parameter with enough values."""
     by_name = {"all": calibration.ranks} | _with_enough(calibration.parameters)
-    rows = ceil(len(by_name) / COLUMNS)
+    rows = ceil(len(by_name) / COLUMN_COUNT)
     figure = sheet(14 + ROW_HEIGHT_MM * rows)
-    panels = figure.subplots(rows, COLUMNS, sharex=True, squeeze=False).ravel()
+    panels = figure.subplots(rows, COLUMN_COUNT, sharex=True, squeeze=False).ravel()
     for axes, (name, ranks) in zip(panels, by_name.items(), strict=False):
         _histogram(axes, name, ranks)
     for axes in panels[len(by_name) :]:
@@ -69,8 +69,8 @@ def _histogram(axes: Axes, name: str, ranks: Ranks) -> None:
     """Draw the number of values in each bin, over the band in which honest ones lie."""
     bins = len(ranks.counts)
     low, high = binom.interval(BAND_PROBABILITY, ranks.values, 1.0 / bins)
-    axes.axhspan(low, high, color=BAND, zorder=0)
-    axes.bar((np.arange(bins) + 0.5) / bins, ranks.counts, width=0.8 / bins, color=BAR)
+    axes.axhspan(low, high, color=BAND_COLOR, zorder=0)
+    axes.bar((np.arange(bins) + 0.5) / bins, ranks.counts, width=0.8 / bins, color=BAR_COLOR)
     effect, _, parameter = name.partition(".")
     title = f"{effect}\n{parameter}" if parameter else effect
     axes.set_title(f"{title} ({ranks.values})", fontsize=6.5)
@@ -91,8 +91,8 @@ def draw_reliability(calibration: Calibration) -> Figure:
     for doubt, bin_ in zip(doubts, calibration.probability, strict=True):
         interval = binomtest(bin_.right, bin_.names).proportion_ci(method="wilson")
         share = bin_.right / bin_.names
-        axes.plot([doubt] * 2, [interval.low, interval.high], color=BAR, linewidth=1.2)
-        axes.plot(doubt, share, "o", color=BAR, markersize=4)
+        axes.plot([doubt] * 2, [interval.low, interval.high], color=BAR_COLOR, linewidth=1.2)
+        axes.plot(doubt, share, "o", color=BAR_COLOR, markersize=4)
         axes.annotate(
             f"{bin_.right} of {bin_.names}",
             (doubt, share),
@@ -103,7 +103,7 @@ def draw_reliability(calibration: Calibration) -> Figure:
             va="top",
         )
     honest = np.geomspace(MIN_DOUBT, 1.0, 100)
-    axes.plot(honest, 1.0 - honest, color=LINE, label="honest")
+    axes.plot(honest, 1.0 - honest, color=LINE_COLOR, label="honest")
     axes.set_xscale("log")
     axes.set_xlim(2.0, 0.7 * MIN_DOUBT)
     ticks = {0.5: "0.5", 0.1: "0.9", 0.01: "0.99", 1e-3: "0.999", MIN_DOUBT: "above"}

@@ -81,8 +81,8 @@ def score(case: Case, answer: Answer | Diagnosis) -> Score:
     return Score(
         verdict=right,
         flagged=answer.verdict == "unexplained",
-        first_strict=_first(selected, case.names, []),
-        first=_first(selected, case.names, groups),
+        first_strict=_first_is_hidden(selected, case.names, []),
+        first=_first_is_hidden(selected, case.names, groups),
         exact_strict=right and as_many and set(names) == set(case.names),
         exact=right and as_many and matches == len(case.names),
         false_strict=len(names) - len(hits),
@@ -102,7 +102,9 @@ def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) 
     return answer.verdict in case.model_copy(update={"hidden": named_entries}).verdicts
 
 
-def _first(selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]) -> bool | None:
+def _first_is_hidden(
+    selected: Sequence[str], truth: Sequence[str], groups: list[set[str]]
+) -> bool | None:
     """Whether the first selected effect is hidden; None where nothing is."""
     if not truth:
         return None

@@ -188,7 +188,7 @@ def deviation(k: int, seeds: Range) -> Case:
     random = random_of(case_id, seeds)
     share = DEVIATION_SHARES[k % len(DEVIATION_SHARES)]
     water = load_vehicle(default_vehicle()).hydrodynamics
-    hidden = [_off(name, getattr(water, name), share, random) for name in DEVIATING_EFFECTS]
+    hidden = [_deviate(name, getattr(water, name), share, random) for name in DEVIATING_EFFECTS]
     return Case(
         id=case_id,
         kind="deviation",
@@ -199,7 +199,7 @@ def deviation(k: int, seeds: Range) -> Case:
     )
 
 
-def _off(
+def _deviate(
     name: str, nominal: Sequence[float], share: float, random: np.random.Generator
 ) -> EffectEntry:
     changes = share * np.array(nominal) * random.choice([-1.0, 1.0], size=len(AXES))

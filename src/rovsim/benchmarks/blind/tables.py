@@ -108,11 +108,13 @@ def _calibration(calibration: Calibration, pictures: Sequence[str]) -> list[str]
 
 def _table_ranks(rows: Mapping[str, Ranks], head: str) -> str:
     columns = list(RANK_COLUMNS)[:-1]
-    lines = [[n, *(shown(k, getattr(r, k)) for k in columns), _say(r)] for n, r in rows.items()]
+    lines = [
+        [n, *(shown(k, getattr(r, k)) for k in columns), _judge_honesty(r)] for n, r in rows.items()
+    ]
     return marked.table([head, *RANK_COLUMNS.values()], lines)
 
 
-def _say(ranks: Ranks) -> str:
+def _judge_honesty(ranks: Ranks) -> str:
     """Say in a word whether intervals are honest."""
     if ranks.p_value is None or ranks.stretch is None:
         return "–"

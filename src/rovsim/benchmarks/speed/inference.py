@@ -47,7 +47,7 @@ class Stopwatch:
         effort: how much is measured.
         scheduling: how the process was scheduled.
         tell: called with the results so far and the scheduling, after each way to predict.
-        latencies: latencies by `name@points`.
+        latencies: by `name@points`.
     """
 
     def __init__(self, pairs: Pairs, effort: Effort, tell: Tell = lambda *_: None) -> None:

@@ -47,7 +47,7 @@ def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
         vehicle: the vehicle.
     """
     upside_down = list(_upside_down(recording, vehicle))
-    mismatches = [] if upside_down else list(_unlike(recording, vehicle))
+    mismatches = [] if upside_down else list(_unlike_commands(recording, vehicle))
     return (*upside_down, *mismatches, *_out_of_tank(recording), *_log_that_ends(recording))
 
 
@@ -63,7 +63,7 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
         )
 
 
-def _unlike(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
+def _unlike_commands(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     """Remark a motion unlike its commands: another convention, other axes or another clock."""
     predicted = _predict_caused(recording, vehicle)
     if predicted is None:

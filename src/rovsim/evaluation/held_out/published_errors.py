@@ -128,7 +128,7 @@ def compare_published(
         )
     candidates = [
         _cell(
-            _of(published, run, axis),
+            _select_published(published, run, axis),
             _errors(comparisons[run], run, axis, metric),
             moved[run],
             run,
@@ -149,7 +149,7 @@ def compare_published(
     )
 
 
-def _of(published: Sequence[Published], run: str, axis: str) -> list[Published]:
+def _select_published(published: Sequence[Published], run: str, axis: str) -> list[Published]:
     """Published errors on one axis of one run."""
     return [p for p in published if (p.run, p.axis) == (run, axis)]
 

@@ -93,8 +93,8 @@ def chaptered(effects: Mapping[str, type[Effect]]) -> dict[str, list[type[Effect
     return chapters
 
 
-def _contents(title: str, found: Iterable[type[Effect]]) -> str:
-    links = " · ".join(f"[{cls.id}](#{cls.id})" for cls in found)
+def _contents(title: str, classes: Iterable[type[Effect]]) -> str:
+    links = " · ".join(f"[{cls.id}](#{cls.id})" for cls in classes)
     return f"**{title}:** {links}\n"
 
 

@@ -148,7 +148,7 @@ def _check(path: Path, constants: Mapping[str, Any], takes: ast.arguments) -> No
 
 
 def refuse_unknown(figure: FigureKind, known_names: Iterable[str]) -> None:
-    """Refuse a figure that needs something other than the `known_names` names.
+    """Refuse a figure that needs something other than `known_names`.
 
     Raises:
         BadInput: it does.

@@ -32,7 +32,7 @@ RATIO_TICKS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0)
 @styled()
 def draw(*, published_errors: PublishedErrors) -> Figure:
     """Draw the ratios of `published_errors.json`, a panel for each metric."""
-    names = _shown(published_errors)
+    names = _list_shown_models(published_errors)
     style = looks(names)
     figure = sheet(60 + 60 * len(JUDGED_METRICS))
     for axes, metric in zip(figure.subplots(len(JUDGED_METRICS), 1), JUDGED_METRICS, strict=True):
@@ -47,7 +47,7 @@ def draw(*, published_errors: PublishedErrors) -> Figure:
     return figure
 
 
-def _shown(published_errors: PublishedErrors) -> list[str]:
+def _list_shown_models(published_errors: PublishedErrors) -> list[str]:
     """List our models that have a ratio in every cell.
 
     A residual on top of the nominal model is left out if there is one on top of effects.

@@ -21,7 +21,7 @@ CAPTION = (
     "stretch was left out of the campaign."
 )
 MAX_RUNS = 40  # what fits on a page
-EXCITED, STILL, SEEN, GAP = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
+EXCITED_COLOR, STILL_COLOR, SEEN_COLOR, GAP_COLOR = "#A6CEE8", "#FFFFFF", "#CCCCCC", VERMILION
 
 
 @styled()
@@ -52,7 +52,12 @@ def draw(*, quality: Mapping[str, Quality]) -> Figure:
     timeline.set_title("seen by the motion capture")
     if not runs:
         explain_empty(cells, "no runs")
-    labels = ((EXCITED, "excited"), (STILL, "not excited"), (SEEN, "seen"), (GAP, "gap"))
+    labels = (
+        (EXCITED_COLOR, "excited"),
+        (STILL_COLOR, "not excited"),
+        (SEEN_COLOR, "seen"),
+        (GAP_COLOR, "gap"),
+    )
     edge: Style = {"edgecolor": "#888888", "linewidth": 0.5}
     add_legend(figure, [Patch(facecolor=color, label=label, **edge) for color, label in labels])
     note(figure, remarks)
@@ -70,7 +75,7 @@ def _draw_excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation])
     """Draw a cell for each axis of a run, with a dash where nothing was measured."""
     for k, axis in enumerate(AXES):
         entry = excitation.get(axis)
-        color = EXCITED if entry and entry.excited else STILL
+        color = EXCITED_COLOR if entry and entry.excited else STILL_COLOR
         axes.bar(k, 0.84, 0.94, y - 0.42, facecolor=color, edgecolor="#BBBBBB", linewidth=0.5)
         text = significant(entry.std, 2) if entry else "–"
         axes.text(k, y, text, ha="center", va="center", fontsize=8)
@@ -79,8 +84,10 @@ def _draw_excitation(axes: Axes, y: float, excitation: Mapping[str, Excitation])
 def _draw_seen(axes: Axes, y: float, report: Quality) -> None:
     whole = ((0.0, report.duration_s),)
     used = [(begin, end - begin) for begin, end in report.used or whole]
-    axes.barh(y, report.duration_s, 0.5, facecolor=STILL, edgecolor=SEEN, linewidth=0.5)
-    axes.broken_barh(used, (y - 0.25, 0.5), facecolor=SEEN)
+    axes.barh(y, report.duration_s, 0.5, facecolor=STILL_COLOR, edgecolor=SEEN_COLOR, linewidth=0.5)
+    axes.broken_barh(used, (y - 0.25, 0.5), facecolor=SEEN_COLOR)
     spans = [(gap.start_s, gap.duration_s) for gap in report.gaps]
     # a gap narrower than a hair would vanish on paper: the edge keeps it visible
-    axes.broken_barh(spans, (y - 0.25, 0.5), facecolor=GAP, edgecolor=GAP, linewidth=0.4)
+    axes.broken_barh(
+        spans, (y - 0.25, 0.5), facecolor=GAP_COLOR, edgecolor=GAP_COLOR, linewidth=0.4
+    )

@@ -99,15 +99,15 @@ def family_look(name: str) -> Look:
 def looks(names: Iterable[str]) -> dict[str, Look]:
     """Return a distinct look for each name; those of the study's own models never change."""
     taken: set[tuple[str, int]] = set()
-    found = {}
+    by_name = {}
     for name in names:
         kind = family(name)
         member = _member(name)
         while (kind, member) in taken and member < 40:
             member += 1
         taken.add((kind, member))
-        found[name] = _variant(family_look(name), member)
-    return found
+        by_name[name] = _variant(family_look(name), member)
+    return by_name
 
 
 def _member(name: str) -> int:

@@ -27,8 +27,13 @@ from rovsim.reporting.figures.palette import (
 )
 from rovsim.reporting.figures.style import sheet, styled
 
-PATH, CHANCE = VERMILION, GREY
-START_MARKER: Style = {"marker": "o", "color": PATH, "markersize": 4, "markeredgecolor": "white"}
+PATH_COLOR, CHANCE_COLOR = VERMILION, GREY
+START_MARKER: Style = {
+    "marker": "o",
+    "color": PATH_COLOR,
+    "markersize": 4,
+    "markeredgecolor": "white",
+}
 COMMAND_COLORS = (BLUE, BROWN, GREEN, PURPLE, BLACK, OLIVE, GREY)  # then dashed
 COMMAND_DASHES: tuple[Dash, ...] = ("-", (0, (4, 1.5)), (0, (1, 1.2)))
 MARGIN_M = 0.3  # shown around the paths where no wall is known
@@ -85,8 +90,8 @@ def draw_flight(planned_flight: PlannedFlight) -> Figure:
     add_legend(
         figure,
         [
-            Line2D([], [], color=PATH, label="likeliest path"),
-            Line2D([], [], color=CHANCE, label="where else it may lead"),
+            Line2D([], [], color=PATH_COLOR, label="likeliest path"),
+            Line2D([], [], color=CHANCE_COLOR, label="where else it may lead"),
             Line2D([], [], linestyle="none", label="start", **START_MARKER),
         ],
     )
@@ -98,8 +103,8 @@ def _draw_view(
 ) -> None:
     a, b = seen
     for path in paths[:0:-1]:
-        axes.plot(path[:, a], path[:, b], color=CHANCE, linewidth=0.3, alpha=0.5)
-    axes.plot(paths[0, :, a], paths[0, :, b], color=PATH, linewidth=0.9)
+        axes.plot(path[:, a], path[:, b], color=CHANCE_COLOR, linewidth=0.3, alpha=0.5)
+    axes.plot(paths[0, :, a], paths[0, :, b], color=PATH_COLOR, linewidth=0.9)
     axes.plot(*paths[0, :1, [a, b]], linestyle="none", **START_MARKER)
     low, high = np.sort(tank[[a, b]], axis=1).T
     if np.isfinite([low, high]).all():

@@ -20,7 +20,7 @@ CAPTION = (
     "it on each axis; bars: two standard errors, hollow: too few independent "
     "samples to judge, grey below: how often the vehicle was there."
 )
-COLUMNS = 3
+COLUMN_COUNT = 3
 MAX_MODELS = 4  # in one panel
 
 
@@ -31,12 +31,12 @@ def draw(*, where: ErrorConditions) -> Figure:
     style = looks(models)
     searched = [axis for axis in AXES if any(m.axes[axis] for m in models.values())] or AXES
     figure = sheet(40 * len(searched))
-    rows = figure.subplots(len(searched), COLUMNS, sharey="row", squeeze=False)
+    rows = figure.subplots(len(searched), COLUMN_COUNT, sharey="row", squeeze=False)
     for axis, panels in zip(searched, rows, strict=True):
         tables = {name: m.axes[axis] for name, m in models.items()}
         names = strongest(list(tables.values()))
         significant = {f.condition for m in models.values() for f in m.findings if f.axis == axis}
-        for panel, name in zip(panels, [*names, *[""] * COLUMNS][:COLUMNS], strict=True):
+        for panel, name in zip(panels, [*names, *[""] * COLUMN_COUNT][:COLUMN_COUNT], strict=True):
             _draw_panel(panel, {m: t[name] for m, t in tables.items() if name in t}, style)
             panel.set_title(
                 _title(name, list(tables.values())),
@@ -52,13 +52,13 @@ def draw(*, where: ErrorConditions) -> Figure:
 
 
 def strongest(models: Sequence[Mapping[str, ConditionTable]]) -> list[str]:
-    """List the `COLUMNS` conditions with several bins that explain most of some model's error."""
+    """List the three conditions with several bins that explain most of some model's error."""
     shares: dict[str, float] = {}
     for tables in models:
         for name, share in find_varying_shares(tables).items():
             if len(tables[name].mean) > 1:
                 shares[name] = max(shares.get(name, 0.0), share)
-    return sorted(shares, key=lambda name: -shares[name])[:COLUMNS]
+    return sorted(shares, key=lambda name: -shares[name])[:COLUMN_COUNT]
 
 
 def _title(name: str, models: Sequence[Mapping[str, ConditionTable]]) -> str:

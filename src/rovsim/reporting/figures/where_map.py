@@ -35,7 +35,7 @@ def draw(*, where: ErrorConditions) -> Figure:
     axes.imshow(chart.share, cmap=SHARE_COLORS, vmin=0, vmax=1, aspect="auto")
     for y, row in enumerate(rows):
         for x, axis in enumerate(chart.axes):
-            _draw_cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.found)
+            _draw_cell(axes, x, y, float(chart.share[y, x]), (axis, row) in chart.significant)
     axes.set_xticks(range(len(chart.axes)), chart.axes)
     axes.xaxis.tick_top()
     axes.set_yticks(range(len(rows)), rows)
@@ -45,10 +45,10 @@ def draw(*, where: ErrorConditions) -> Figure:
     return figure
 
 
-def _draw_cell(axes, x: int, y: int, share: float, found: bool) -> None:
+def _draw_cell(axes, x: int, y: int, share: float, significant: bool) -> None:
     text = f"{100 * share:.0f}" if round(100 * share) >= 1 else "·"
     color = "white" if share > 0.6 else "#222222"
     axes.text(x, y, text, ha="center", va="center", fontsize=7.5, color=color)
-    if found:
+    if significant:
         frame = {"facecolor": "none", "edgecolor": VERMILION, "linewidth": 1.6}
         axes.bar(x, 0.86, 0.95, y - 0.43, **frame)

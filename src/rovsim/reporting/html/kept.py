@@ -26,7 +26,7 @@ def keep_other(page: Path, command: str) -> str:
     writer = _find_kind(page)
     if writer in ("", command):
         return ""
-    new_path = _kept(page, writer)
+    new_path = _page_of_command(page, writer)
     os.replace(page, new_path)
     return f"{page} was the report of {writer}: it is {new_path} now."
 
@@ -67,7 +67,7 @@ def find_outdated(page: Path, command: str, campaign: str | None) -> Outdated:
         command: that writes it.
         campaign: folder of its campaign; None if there is none.
     """
-    other_page = _kept(page, command)
+    other_page = _page_of_command(page, command)
     earlier = [report for report in (page, other_page) if _find_kind(report) == command]
     texts = [report.read_text(encoding="utf-8", errors="replace") for report in earlier]
     figures = [
@@ -98,7 +98,7 @@ def _tell_other(out: Path, text: str, campaign: str | None) -> str:
     )
 
 
-def _kept(page: Path, command: str) -> Path:
+def _page_of_command(page: Path, command: str) -> Path:
     return page.with_name(f"{page.stem}_{command}{page.suffix}")
 
 

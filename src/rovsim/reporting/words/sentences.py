@@ -51,12 +51,12 @@ def summarize(data: ReportData) -> list[str]:
 def band_sentences(coverage: Bands) -> list[str]:
     """Say how much of the test runs lies inside the bands of each model."""
     return [
-        f"Inside the {coverage.level:.0%} bands of {title(name)} lie {listed(_held(model))}."
+        f"Inside the {coverage.level:.0%} bands of {title(name)} lie {listed(_say_shares(model))}."
         for name, model in coverage.models.items()
     ]
 
 
-def _held(model: ModelBands) -> list[str]:
+def _say_shares(model: ModelBands) -> list[str]:
     """Say which share of the velocities at the ends of windows is inside, by length of the window.
 
     All test runs and axes are pooled.

@@ -21,10 +21,10 @@ def shown_sentences(diagnosis: Diagnosis) -> list[str]:
 
 def held_sentences(standstills: Sequence[Standstill]) -> list[str]:
     """Say which runs stand still although the model would move: they may have been held."""
-    return [_held(one) for one in standstills]
+    return [_say_standstill(one) for one in standstills]
 
 
-def _held(one: Standstill) -> str:
+def _say_standstill(one: Standstill) -> str:
     unit, use = VELOCITY_UNITS[AXES.index(one.axis)], str([list(span) for span in one.use])
     return (
         f"Run {one.run} stands still from {one.from_s:.1f} to {one.to_s:.1f} s, where the model "

@@ -41,11 +41,11 @@ def text(equation: Equation, notes: Sequence[str]) -> str:
     """Return the text of the YAML file."""
     lines = [*notes, *EQUATION.strip("\n").splitlines()]
     return "".join(f"# {one_line(line)}".rstrip() + "\n" for line in lines) + yaml_text(
-        plain(_of(equation)), rows=True
+        plain(_write_terms(equation)), rows=True
     )
 
 
-def _of(equation: Equation) -> dict[str, Any]:
+def _write_terms(equation: Equation) -> dict[str, Any]:
     body = equation.body
     return {
         "name": equation.model.name,

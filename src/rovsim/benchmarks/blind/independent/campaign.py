@@ -8,9 +8,9 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.spatial.transform import Rotation
 
-from rovsim.benchmarks.blind.independent.exports import BODY, write_commands, write_poses
+from rovsim.benchmarks.blind.independent.exports import BODY_NAME, write_commands, write_poses
 from rovsim.benchmarks.blind.independent.motion import Mover, Vehicle
-from rovsim.benchmarks.blind.independent.pilot import Pilot, draw_pushes
+from rovsim.benchmarks.blind.independent.pilot import Pilot, draw_turbulence
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
 from rovsim.benchmarks.blind.independent.vehicle import MOCAP_TO_NED, Hidden, read_constants
 from rovsim.core.errors import BadInput
@@ -67,7 +67,7 @@ def _record(
         1.0 / settings["camera"]["rate"],
     )
     ticks, turbulence = round(seconds / tick), settings["turbulence"]
-    pushes = draw_pushes(
+    pushes = draw_turbulence(
         turbulence["force"], turbulence["moment"], turbulence["time_constant"], tick, ticks, random
     )
     frames = list(flight.fly(pushes, tank))
@@ -104,11 +104,11 @@ class Flight:
         self.acts: list[float] = []
         self.commands: list[Array] = []
 
-    def fly(self, pushes: Sequence[Array], tank: Array) -> Iterator[Vehicle]:
+    def fly(self, turbulence: Sequence[Array], tank: Array) -> Iterator[Vehicle]:
         """Yield the vehicle at every frame, the first at the start of the run.
 
         Args:
-            pushes: wrench (6,) of turbulence over each tick, body axes, N and N m.
+            turbulence: wrench (6,) over each tick, body axes, N and N m.
             tank: least and largest coordinates (3, 2), m, NED.
 
         Raises:
@@ -116,7 +116,7 @@ class Flight:
         """
         thrusters = self.mover.thrusters
         vehicle = self.pilot.begin(len(self.mover.own.position))
-        for k, push in enumerate(pushes):
+        for k, wrench in enumerate(turbulence):
             begin, end = k * self.tick, (k + 1) * self.tick
             command = thrusters.command(self.pilot.steer(begin, vehicle, self.tick))
             stamp, acts = thrusters.log(begin)
@@ -129,14 +129,14 @@ class Flight:
                 vehicle = Vehicle(
                     vehicle.place, vehicle.R, vehicle.velocity, spun_up, vehicle.memory
                 )
-            vehicle, frames = self._advance(vehicle, push, begin, end)
+            vehicle, frames = self._advance(vehicle, wrench, begin, end)
             if np.any(vehicle.place < tank[:, 0]) or np.any(vehicle.place > tank[:, 1]):
-                raise _lost(end)
+                raise _leave_tank(end)
             # the last instant is the end of the run, which has no frame
-            yield from frames if k + 1 < len(pushes) else frames[:-1]
+            yield from frames if k + 1 < len(turbulence) else frames[:-1]
 
     def _advance(
-        self, now: Vehicle, push: Array, begin: float, end: float
+        self, now: Vehicle, turbulence: Array, begin: float, end: float
     ) -> tuple[Vehicle, list[Vehicle]]:
         """Carry the vehicle over one tick; the commands change wherever one acts inside it.
 
@@ -153,12 +153,12 @@ class Flight:
             k = int(np.searchsorted(self.acts, 0.5 * (a + b), side="right")) - 1
             static = self.mover.thrusters.force(self.commands[max(k, 0)])
             instants = [min(t, b) for t in times if a + 1e-9 < t <= b + 1e-9]
-            now, vehicles = self.mover.carry(now, static, push, (a, b), instants)
+            now, vehicles = self.mover.carry(now, static, turbulence, (a, b), instants)
             frames += vehicles
         return now, frames
 
 
-def _lost(t: float) -> OutOfTank:
+def _leave_tank(t: float) -> OutOfTank:
     return OutOfTank(
         f"the vehicle left the tank after {t:.1f} s",
         where="independent simulator",
@@ -182,7 +182,7 @@ def _describe(settings: Mapping[str, Any]) -> dict[str, Any]:
         "name": settings["name"],
         "vehicle": settings["vehicle"],
         "tank": {k: list(settings["tank"][k]) for k in "xyz"},
-        "mocap": {"format": "qtm_tsv", "body": BODY, "world_axes": "z_up", "body_axes": "flu"},
+        "mocap": {"format": "qtm_tsv", "body": BODY_NAME, "world_axes": "z_up", "body_axes": "flu"},
         "commands": {
             "format": "csv",
             "kind": "pwm",

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from rovsim.benchmarks.blind.independent.vehicle import MOCAP_TO_NED, Hidden
 from rovsim.core.files import write_text
 
-BODY = "vehicle"
+BODY_NAME = "vehicle"
 
 
 def write_poses(
@@ -118,11 +118,11 @@ def _header(frames: int, rate: float) -> str:
         "FREQUENCY": f"{rate:g}",
         "DESCRIPTION": "--",
         "DATA_INCLUDED": "6D",
-        "BODY_NAMES": BODY,
+        "BODY_NAMES": BODY_NAME,
     }
     names = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
     lines = [f"{key}\t{value}" for key, value in fields.items()]
-    return "\n".join([*lines, "\t".join(["Frame", "Time", f"{BODY} X", *names])]) + "\n"
+    return "\n".join([*lines, "\t".join(["Frame", "Time", f"{BODY_NAME} X", *names])]) + "\n"
 
 
 def _table(rows: Array, rate: float) -> str:

@@ -17,10 +17,10 @@ from scipy.spatial.transform import Rotation
 
 from rovsim.benchmarks.blind.independent.pushes import (
     MEMORY_SCALE,
+    ForceLaw,
     Instant,
-    Push,
     cross,
-    list_pushes,
+    list_force_laws,
 )
 from rovsim.benchmarks.blind.independent.thrusters import Thrusters
 from rovsim.benchmarks.blind.independent.vehicle import Constants, Hidden, skew
@@ -77,7 +77,7 @@ class Mover:
         tolerance: float = STEP_TOLERANCE,
     ) -> None:
         self.own, self.thrusters, self.tolerance = own, thrusters, tolerance
-        self.pushes: Sequence[Push] = list_pushes(own, hidden, tank)
+        self.force_laws: Sequence[ForceLaw] = list_force_laws(own, hidden, tank)
         self.M_inv = np.linalg.inv(own.M)
         self.weight = float(own.weights[:, 0].sum())
         self.hang = own.weights[:, 0] @ own.weights[:, 1:]
@@ -97,7 +97,7 @@ class Mover:
         self,
         start: Vehicle,
         static: Array,
-        push: Array,
+        turbulence: Array,
         span: tuple[float, float],
         wanted: Sequence[float] = (),
     ) -> tuple[Vehicle, list[Vehicle]]:
@@ -106,14 +106,14 @@ class Mover:
         Args:
             start: the vehicle at its beginning.
             static: static forces (n,) of the thrusters with a full battery, held, N.
-            push: wrench (6,) of turbulence in body axes, held, N and N m.
+            turbulence: wrench (6,) in body axes, held, N and N m.
             span: begin and end, s.
             wanted: instants inside the span, ascending, s.
 
         Returns:
             The vehicle at the end, and at the wanted instants.
         """
-        flow, (begin, end) = _Flow(self, start, static, push, span[0]), span
+        flow, (begin, end) = _Flow(self, start, static, turbulence, span[0]), span
         solver = DOP853(
             flow.change,
             begin,
@@ -144,9 +144,9 @@ class _Flow:
     """
 
     def __init__(
-        self, mover: Mover, start: Vehicle, static: Array, push: Array, begin: float
+        self, mover: Mover, start: Vehicle, static: Array, turbulence: Array, begin: float
     ) -> None:
-        self.mover, self.start, self.static, self.push = mover, start, static, push
+        self.mover, self.start, self.static, self.turbulence = mover, start, static, turbulence
         self.t0, self.lags, self.remembers = begin, mover.lag > 0.0, mover.wake_time > 0.0
         v = start.velocity.copy()
         v[:3] -= start.R.T @ mover.current
@@ -178,7 +178,7 @@ class _Flow:
         """Return the derivative of the state."""
         mover, (R, v) = self.mover, self._motion(y)
         place = self.start.place + y[:3] + (t - self.t0) * mover.current
-        instant, wrench, rates = Instant(place, R, v), self.push, []
+        instant, wrench, rates = Instant(place, R, v), self.turbulence, []
         if self.steady:
             wrench = wrench + self.thrust
         else:
@@ -186,7 +186,7 @@ class _Flow:
             thrust = y[18 : 18 + len(target)] if self.lags else target
             wrench = wrench + self._thrust(thrust, v)
             rates += [(target - thrust) / mover.lag] if self.lags else []
-        for law in mover.pushes:
+        for law in mover.force_laws:
             wrench = wrench + law(instant)
         if self.remembers:
             wrench = wrench - mover.wake * (v - y[-6:])

@@ -32,7 +32,7 @@ class Pilot:
         size: amplitude (6,) of each sine.
         heading: yaw at the start, rad.
         trim: integral part (3,) of the position control.
-        states: states so far.
+        states: of the vehicle so far.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Pilot:
         return np.clip(demand, -MAX_DEMAND, MAX_DEMAND)
 
 
-def draw_pushes(
+def draw_turbulence(
     force: float,
     moment: float,
     time: float,
@@ -94,7 +94,9 @@ def draw_pushes(
     """
     decay = np.exp(-tick / time)
     std = np.repeat([force, moment], 3)
-    pushes = [std * random.normal(size=6)]
+    wrenches = [std * random.normal(size=6)]
     for _ in range(count - 1):
-        pushes.append(decay * pushes[-1] + std * np.sqrt(1.0 - decay**2) * random.normal(size=6))
-    return pushes
+        wrenches.append(
+            decay * wrenches[-1] + std * np.sqrt(1.0 - decay**2) * random.normal(size=6)
+        )
+    return wrenches

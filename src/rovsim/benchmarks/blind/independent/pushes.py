@@ -33,7 +33,7 @@ class Instant:
     v: Array
 
 
-Push = Callable[[Instant], Array]
+ForceLaw = Callable[[Instant], Array]
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -43,26 +43,26 @@ def cross(a: Array, b: Array) -> Array:
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
-def list_pushes(own: Constants, hidden: Hidden, tank: Array) -> list[Push]:
+def list_force_laws(own: Constants, hidden: Hidden, tank: Array) -> list[ForceLaw]:
     """List the forces of water and tether; `tank` (3, 2) is low and high, m, NED."""
-    pushes: list[Push] = [partial(drag, own, hidden, tank)]
-    pushes += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
+    laws: list[ForceLaw] = [partial(drag, own, hidden, tank)]
+    laws += [partial(law, hidden[name]) for name, law in LAWS.items() if name in hidden]
     if "tether_drag" in hidden:
-        pushes.append(partial(tow, hidden["tether_drag"], tank))
-    return pushes
+        laws.append(partial(tow, hidden["tether_drag"], tank))
+    return laws
 
 
 def drag(own: Constants, hidden: Hidden, tank: Array, at: Instant) -> Array:
     """Return damping: diagonal, larger near walls and surface, and coupled and cubic."""
     speed = np.abs(at.v)
-    diagonal = (own.linear + own.quadratic * speed) * _near(hidden, tank, at.place)
-    push = -(diagonal + own.cubic * speed * speed) * at.v
+    diagonal = (own.linear + own.quadratic * speed) * _damping_factor(hidden, tank, at.place)
+    wrench = -(diagonal + own.cubic * speed * speed) * at.v
     if "coupled_damping" in hidden:
-        push = push - own.coupled[0] @ at.v - own.coupled[1] @ (speed * at.v)
-    return push
+        wrench = wrench - own.coupled[0] @ at.v - own.coupled[1] @ (speed * at.v)
+    return wrench
 
 
-def _near(hidden: Hidden, tank: Array, place: Array) -> float:
+def _damping_factor(hidden: Hidden, tank: Array, place: Array) -> float:
     """Return the factor of linear and quadratic damping near walls and surface."""
     factor = 1.0
     if "wall_proximity" in hidden:
@@ -98,7 +98,7 @@ def pull(given: Given, at: Instant) -> Array:
     line = at.R.T @ (_anchor(given, np.zeros(3)) - at.place) - attachment
     length = float(np.sqrt(line @ line))
     stretch = max(0.0, length - given.get("slack_length", 0.0))
-    return _hung(given["stiffness"] * stretch * line / max(length, 1e-9), attachment)
+    return _wrench_at(given["stiffness"] * stretch * line / max(length, 1e-9), attachment)
 
 
 def tow(given: Given, tank: Array, at: Instant) -> Array:
@@ -107,7 +107,7 @@ def tow(given: Given, tank: Array, at: Instant) -> Array:
     reach = _anchor(given, MOCAP_TO_NED * middle) - at.place
     v = at.v[:3]
     size = given["coefficient"] * np.sqrt(reach @ reach) * np.sqrt(v @ v)
-    return _hung(-size * v, _attachment(given))
+    return _wrench_at(-size * v, _attachment(given))
 
 
 LAWS: Mapping[str, Callable[[Given, Instant], Array]] = {
@@ -136,6 +136,6 @@ def _anchor(given: Given, otherwise: Array) -> Array:
     return MOCAP_TO_NED * np.array(anchor)
 
 
-def _hung(force: Array, place: Array) -> Array:
+def _wrench_at(force: Array, place: Array) -> Array:
     """Return the wrench (6,) of a force at a place of the body."""
     return np.concatenate([force, cross(place, force)])

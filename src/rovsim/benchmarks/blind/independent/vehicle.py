@@ -69,7 +69,9 @@ def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
     load = hidden.get("payload", {})
     masses.append((load.get("mass", 0.0), _triple(load), np.zeros((3, 3))))
     M = sum(kinetic(*part) for part in masses) + np.diag(np.array(water["added_mass"], float))
-    M += np.diag(_six(hidden, "added_mass")) + _pairs(hidden.get("added_mass_coupling", {}))
+    M += np.diag(_six_parameters(hidden, "added_mass")) + _pairs(
+        hidden.get("added_mass_coupling", {})
+    )
     buoyancy = float(file["fluid"]["density"]) * g * float(body["displaced_volume"])
     buoyancy += hidden.get("net_buoyancy", {}).get("force", 0.0)
     center_of_buoyancy = np.array(body["center_of_buoyancy"], float)
@@ -79,9 +81,10 @@ def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
     return Constants(
         M=M,
         weights=np.array(weights),
-        linear=np.array(water["linear_damping"], float) + _six(hidden, "linear_damping"),
-        quadratic=np.array(water["quadratic_damping"], float) + _six(hidden, "quadratic_damping"),
-        cubic=_six(hidden, "cubic_damping"),
+        linear=np.array(water["linear_damping"], float) + _six_parameters(hidden, "linear_damping"),
+        quadratic=np.array(water["quadratic_damping"], float)
+        + _six_parameters(hidden, "quadratic_damping"),
+        cubic=_six_parameters(hidden, "cubic_damping"),
         coupled=_couplings(hidden.get("coupled_damping", {})),
         position=np.array([u["position"] for u in units], float),
         direction=np.array([u["direction"] for u in units], float),
@@ -89,7 +92,7 @@ def read_constants(file: Mapping[str, Any], hidden: Hidden) -> Constants:
     )
 
 
-def _six(hidden: Hidden, effect: str) -> Array:
+def _six_parameters(hidden: Hidden, effect: str) -> Array:
     """Return the parameters (6,) of an effect, one for each axis."""
     parameters = hidden.get(effect, {})
     return np.array([parameters.get(axis, 0.0) for axis in AXES])
