@@ -48,7 +48,7 @@ def run_sweep(overrides: Sequence[str], campaigns: Sequence[Path]) -> None:
         _run_all(words, folder)
     except KeyboardInterrupt:
         if any(f"command={name}" in words for name in CONTINUED):
-            warn(f"the same sweep with {FOLDER}={folder} goes on where this one ends")
+            warn(f"the same sweep with {SWEEP_FOLDER_KEY}={folder} goes on where this one ends")
         raise
     refuse_failed(folder)
 
