@@ -8,13 +8,13 @@ results      what is written as JSON
 dynamics     the equation of motion: vehicle, effects, engine
 measurement  campaigns, readers of raw exports, signals
 simulation   models driven by commands, and the synthetic tank
-evaluation   how far model and measurement are apart
 learning     trained residuals
+evaluation   how far model and measurement are apart
+reporting    figures, tables, pages
 estimation   values of given effects, and how likely each hypothesis is
+intake       files that nobody has described yet
 diagnosis    which physical effects a model lacks
 design       the next flight
-intake       files that nobody has described yet
-reporting    figures, tables, pages
 application  settings, the pipeline, tracking
 benchmarks   how right and how fast
 apps         command line, workbench, notebook, other programs

@@ -107,7 +107,7 @@ def test_a_second_campaign_of_one_name_leaves_nothing_of_the_first_and_says_so(
     assert f"held the results of another campaign, {campaign}" in unfolded(capsys.readouterr().out)
     assert "mine" in {path.stem for path in figures.iterdir()}
     assert not list(figures.glob("*3dof-1*"))
-    main([command, "campaign=other"])
+    main([command, "campaign=other/campaign.yaml"])  # the same one
     assert "another campaign" not in unfolded(capsys.readouterr().out)
 
 

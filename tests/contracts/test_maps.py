@@ -3,6 +3,7 @@
 import ast
 import re
 import runpy
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -46,6 +47,14 @@ MAPS = {
 @pytest.mark.parametrize("package", MAPS.values(), ids=MAPS)
 def test_a_map_shows_every_module(package):
     assert sorted(mapped(package)) == sorted(modules(package))
+
+
+def test_the_rooms_stand_in_the_order_of_their_imports():
+    settings = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))
+    layers = settings["tool"]["importlinter"]["contracts"][0]["layers"]
+    floors = {room: k for k, floor in enumerate(reversed(layers)) for room in floor.split(" | ")}
+    heights = [floors[room] for room in mapped(SOURCE)]
+    assert heights == sorted(heights)
 
 
 def test_the_steps_of_a_diagnosis_are_where_its_docstring_says():

@@ -123,7 +123,7 @@ def _flat(metrics: Metrics) -> Iterable[tuple[str, float | None]]:
 def tell_ranking(settings: TrackingSettings, experiment: str) -> str:
     """Say where the models of a campaign are ranked: what to start, and which link to open."""
     with _mlflow_errors(settings.uri):
-        number = _find_experiment(_client(settings), settings, experiment)
+        number = _find_or_create_experiment(_client(settings), settings, experiment)
     if _local(settings.uri) is None:
         return f"Ranking of the models: {address(number, settings.uri.rstrip('/') + '/')}"
     return (
@@ -207,7 +207,7 @@ def _absolute(uri: str) -> str:
 
 def _experiment(client, settings: TrackingSettings, name: str) -> str:
     """Return the number of an experiment, created if need be, with the tags of its ranking."""
-    experiment_id = _find_experiment(client, settings, name)
+    experiment_id = _find_or_create_experiment(client, settings, name)
     tags = client.get_experiment(experiment_id).tags
     for key, value in tags_of(experiment_id).items():
         if key not in tags:  # what a user has changed stays
@@ -215,7 +215,7 @@ def _experiment(client, settings: TrackingSettings, name: str) -> str:
     return experiment_id
 
 
-def _find_experiment(client, settings: TrackingSettings, name: str) -> str:
+def _find_or_create_experiment(client, settings: TrackingSettings, name: str) -> str:
     experiment = client.get_experiment_by_name(name)
     if experiment is not None:
         return experiment.experiment_id

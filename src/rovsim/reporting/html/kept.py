@@ -90,12 +90,18 @@ def _tell_other(out: Path, text: str, campaign: str | None) -> str:
     other = Path(unescape(match[1])) if match else Path()
     if not match or campaign is None or not other.exists():
         return ""
-    if other.resolve() == Path(campaign).expanduser().resolve():
+    if _description(other) == _description(Path(campaign)):
         return ""
     return (
         f"{out} held the results of another campaign, {other}: these have replaced them. To keep "
         "both, give another out=, or each its own 'name' in campaign.yaml."
     )
+
+
+def _description(campaign: Path) -> Path:
+    """The file that describes a campaign, which may be named by its folder as well."""
+    place = campaign.expanduser().resolve()
+    return place / "campaign.yaml" if place.is_dir() else place
 
 
 def _page_of_command(page: Path, command: str) -> Path:
