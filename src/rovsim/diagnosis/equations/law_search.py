@@ -12,7 +12,7 @@ from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import select_terms
-from rovsim.diagnosis.equations.with_memory import FORMS
+from rovsim.diagnosis.equations.with_memory import FORMS, WithMemory
 from rovsim.diagnosis.equations.with_thrust import WithThrust, begin, list_thrust_terms, push_thrust
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
@@ -47,7 +47,7 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     laws = [body_law for _, body_law in by_start] + [
         _fit_thrust_law(fits, *candidate) for candidate in by_start
     ]
-    laws += [law for start in starts for law in _fit_memory_laws(fits, start)]
+    laws += [law for start in starts for law in fit_memory_laws(fits, start)]
     grown = [law for law in laws if law is not None]
     if all(_is_surely_half(fits, candidate) for candidate in _keep_close(grown)):
         return None  # so nothing needs to be known of the effects that a law makes unnecessary
@@ -65,12 +65,14 @@ def is_seen(selection: SearchResult) -> bool:
     return all((run.innovation_mask | ~run.free_axes.astype(bool)).all() for run in runs)
 
 
-def _fit_memory_laws(fits: LawFits, start: Hypothesis) -> Iterator[FittedLaw | None]:
+def fit_memory_laws(
+    fits: LawFits, start: Hypothesis, forms: Sequence[type[WithMemory]] = FORMS
+) -> Iterator[FittedLaw | None]:
     """For each form with a memory the likeliest law; None for a form that explains too little."""
     axes = np.logical_and.reduce([run.axes for run in fits.runs])
     moving = [AXES[i] for i in np.flatnonzero(axes)]
     means = list_means(fits.runs, start.base.vehicle)
-    for kind in (k for k in FORMS if k.effect.requires in means):
+    for kind in (k for k in forms if k.effect.requires in means):
         beside = tuple(term for term in start.terms if term.id not in kind.imitates)
         without_law = fits.selection.fit(replace(start, terms=beside))
         if not without_law.is_finite:

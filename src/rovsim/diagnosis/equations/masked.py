@@ -5,17 +5,24 @@ beside a disturbance of that size the rest does not stand out. For example, a dr
 mistaken for lift and linear damping: the gain in twice the log likelihood was 20 under the noise
 fitted beside these effects, and 900 when the noise was fitted again beside the law. So what nearly
 stands out is fitted as a law, together with the noise and the accepted effects.
+
+Play of the thrusters leaves nothing that could stand out: a lag, a curve of the thrust and a delay
+shape the thrust in time as well, and with enough of them the rest passes for noise (eight names,
+five of them at a probability of one). So it is fitted wherever several effects shape the thrust.
 """
 
 from dataclasses import replace
 
 import numpy as np
 
+from rovsim.core.axes import AXES
+from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.law_fits import LawFits
-from rovsim.diagnosis.equations.law_search import is_seen
+from rovsim.diagnosis.equations.law_search import fit_memory_laws, is_seen
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
+from rovsim.diagnosis.equations.with_memory import Play
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
 from rovsim.diagnosis.structure.residual import Structure, split_by_axis
@@ -26,18 +33,46 @@ from rovsim.diagnosis.structure.residual import Structure, split_by_axis
 # and 8 in most, but only few functions are so similar to accepted effects.
 MIN_LR_OF_MASKED, MIN_EXPLAINABLE_SHARE, MIN_LR_OF_SIMILAR = 15.0, 0.5, 8.0
 LAWS_TRIED = 3  # fitted
+SHAPES_THRUST = ("thrusters", "commands")  # what an effect requires that shapes thrust in time
+MIN_IMITATORS = 2  # effects that shape the thrust: one alone does not imitate its play
 
 
 def find_masked_laws(selection: SearchResult) -> list[Structure]:
     """Find structure that stands out only once a law is fitted together with the noise.
 
     Returns:
-        The suspect structure, with its `times_limit` taken from the fitted law, where such a law is
-        worth its penalty. Otherwise nothing, as where no effect of the catalogue was accepted or
-        some axis is not read at every reading.
+        The structure, with its `times_limit` taken from the fitted law, where such a law is worth
+        its penalty. Otherwise nothing, as where no effect of the catalogue was accepted or some
+        axis is not read at every reading.
     """
-    names = [term for term in selection.best.hypothesis.terms if term.effect.listed]
-    suspect = _find_suspect(selection) if names and is_seen(selection) else None
+    effects = [term.effect for term in selection.best.hypothesis.terms if term.effect.listed]
+    if not effects or not is_seen(selection):
+        return []
+    shaping = sum(effect.requires in SHAPES_THRUST for effect in effects)
+    play = _find_masked_play(selection) if shaping >= MIN_IMITATORS else []
+    return play or _find_masked_products(selection)
+
+
+def _find_masked_play(selection: SearchResult) -> list[Structure]:
+    """The play of the thrusters as a structure, where it is worth its penalty beside the effects.
+
+    Its share is that of the disturbance which is not needed beside it.
+    """
+    fit = selection.best
+    fits = LawFits(selection, len(list_terms(selection.workspace.bank.runs)))
+    law = next(fit_memory_laws(fits, fit.hypothesis, [Play]), None)
+    if law is None:
+        return []
+    axis = find_action(law.form, law.fit, fits.runs).axis
+    without, beside = (f.noise.disturbance_std[AXES.index(axis)] for f in (fit, law.fit))
+    share = max(0.0, 1.0 - float(beside / without) ** 2)
+    gain = law.score - selection.workspace.score(fit)
+    return [Structure(axis, "thrust with a memory", share, gain / max(fits.chance, 1.0))]
+
+
+def _find_masked_products(selection: SearchResult) -> list[Structure]:
+    """The suspect function as a structure, where a product of states is worth its penalty."""
+    suspect = _find_suspect(selection)
     if suspect is None:
         return []
     workspace, fit = selection.workspace, selection.best
