@@ -6,7 +6,7 @@ import pytest
 
 from rovsim.application.configuration import compose
 from rovsim.application.provenance import provenance
-from rovsim.core.making import describe_commit, describe_machine, tell_making
+from rovsim.core.making import describe_commit, describe_machine, describe_making
 from rovsim.dynamics.catalogue import built_in
 from rovsim.reporting.html import report
 from rovsim.reporting.report_data import ReportData
@@ -25,7 +25,7 @@ def test_a_report_says_when_and_where_it_was_made(tmp_path, monkeypatch):
 
 def test_without_a_fixed_clock_it_is_today(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
-    assert "1970" not in tell_making()
+    assert "1970" not in describe_making()
 
 
 def test_the_commit_is_that_of_the_sources_and_of_no_other_folder(tmp_path):

@@ -126,8 +126,8 @@ def test_full_poses_keep_their_place_and_the_rest_goes_beside_them(tmp_path):
     lines[60] = f"{lines[60].split(',')[0]},,,,,,,"  # a frame without the body
     beside, anomalies = read(tmp_path / "beside", lines)
     np.testing.assert_array_equal(beside.time, plain.time)
-    assert np.flatnonzero(~beside.found).tolist() == [47]
-    np.testing.assert_array_equal(beside.position[beside.found], plain.position[beside.found])
+    assert np.flatnonzero(~beside.tracked).tolist() == [47]
+    np.testing.assert_array_equal(beside.position[beside.tracked], plain.position[beside.tracked])
     np.testing.assert_allclose(beside.channels["depth"].value[:, 0], 2 + SLOW, atol=1e-3)
     assert anomalies.motion.duplicates == 0
     assert plain.channels == {}

@@ -16,7 +16,7 @@ SOURCES = Path(rovsim.__file__).parents[2]  # top of a clone; unrelated for an i
 GIT_PATIENCE_S = 5.0
 
 
-def tell_making() -> str:
+def describe_making() -> str:
     """Sentence with date, version, commit (where known) and machine."""
     commit = describe_commit()
     version = f"rovsim {rovsim.__version__}" + (f" (commit {commit})" if commit else "")

@@ -12,7 +12,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     MIN_LEAD_RATIO,
     CrossCorrelation,
 )
-from rovsim.intake.motions import correlate, turned
+from rovsim.intake.motions import correlate, rank_rotations
 from rovsim.intake.pairing import Pair
 from rovsim.intake.vehicles import VehicleMatch
 
@@ -48,9 +48,11 @@ def choose(fits: Sequence[VehicleMatch], pairs: Sequence[Pair]) -> Choice:
     """
     if not fits:
         return Choice(None, "no vehicle file has as many commands", (), (), {})
-    compared = {fit.name: _compared(fit, pairs) for fit in fits}
+    compared = {fit.name: _correlate_runs(fit, pairs) for fit in fits}
     by_axes = {
-        name: turned(correlations) for name, correlations in compared.items() if correlations
+        name: rank_rotations(correlations)
+        for name, correlations in compared.items()
+        if correlations
     }
     scores = {name: _score(compared[name], by_axes[name]) for name in by_axes}
     ordered = sorted(fits, key=lambda fit: -scores.get(fit.name, 0.0))
@@ -92,7 +94,7 @@ def _first(ordered: Sequence[VehicleMatch], scores: dict[str, float]) -> Vehicle
     return best
 
 
-def _compared(fit: VehicleMatch, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
+def _correlate_runs(fit: VehicleMatch, pairs: Sequence[Pair]) -> dict[int, CrossCorrelation]:
     correlations = {
         k: correlate(p.motion, log, fit) for k, p in enumerate(pairs) if (log := p.shown)
     }

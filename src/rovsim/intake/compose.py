@@ -15,7 +15,7 @@ from rovsim.intake.places import Places
 from rovsim.intake.proposal import CampaignProposal
 from rovsim.intake.runs import missing, runs
 from rovsim.intake.survey.timing import RowTiming
-from rovsim.intake.unread import list_unread, tell_unread
+from rovsim.intake.unread import comment_unread, list_unread
 from rovsim.intake.vehicles import VehicleMatch
 from rovsim.measurement.quality.velocity_conventions import doubt_velocities
 from rovsim.measurement.recording.readers import mocap_readers
@@ -43,7 +43,7 @@ def propose(paths: Sequence[Path], out: Path, scratch: Path) -> CampaignProposal
     sections.mocap(facts, draft)
     sections.commands(facts, draft)
     runs(facts, places, draft)
-    tell_unread(facts, draft)
+    comment_unread(facts, draft)
     notes = dict.fromkeys(
         note for contents in (*collected.motions, *collected.logs) for note in contents.notes
     )

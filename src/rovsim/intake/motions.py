@@ -108,7 +108,7 @@ def correlate(motion: MotionFile, log: CommandFile, fit: VehicleMatch) -> CrossC
     return cross_correlate(motion.measured, time, nu, shift, min(reach, MAX_COMPARED_S))
 
 
-def turned(correlations: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
+def rank_rotations(correlations: Mapping[int, CrossCorrelation]) -> list[tuple[float, Array]]:
     """Average the best correlation of each run along each of the 24 axes.
 
     Args:

@@ -22,7 +22,7 @@ def list_unread(facts: Facts, draft: CampaignDraft) -> list[str]:
     return [f"not used: {_named(columns)} (in {_named(names)})" for columns, names in files.items()]
 
 
-def tell_unread(facts: Facts, draft: CampaignDraft) -> None:
+def comment_unread(facts: Facts, draft: CampaignDraft) -> None:
     """Write unused columns as comments above the first run of each file."""
     by_path = {item.named: item for item in _every(facts)}
     first_run = {item.file: n for n, item in reversed([*enumerate(list_run_entries(facts))])}

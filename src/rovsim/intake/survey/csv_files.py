@@ -12,7 +12,7 @@ from rovsim.intake.survey.contents import Contents, Track
 from rovsim.intake.survey.csv_commands import find_commands
 from rovsim.intake.survey.headings import rewritten
 from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, read_others
-from rovsim.intake.survey.repeats import check_unmixed, tell_repeats
+from rovsim.intake.survey.repeats import check_unmixed, warn_of_repeats
 from rovsim.intake.survey.sizes import Key, Unit, Units
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.formats.csv import KNOWN_COLUMNS, read_csv
@@ -72,7 +72,7 @@ def _look(path: Path, place: Path, notes: tuple[str, ...]) -> Contents:
     unread = tuple(
         name for name in lines.names if name and name not in (*KNOWN_COLUMNS, TIME_COLUMN)
     )
-    doubts = tell_repeats(lines, [*channels, *(drive.bare if drive else ())])
+    doubts = warn_of_repeats(lines, [*channels, *(drive.bare if drive else ())])
     return Contents(
         place, "csv", tracks, drives, original, notes, unknown=unknown, unread=unread, doubts=doubts
     )

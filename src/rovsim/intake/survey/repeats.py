@@ -95,7 +95,7 @@ def _several(
     )
 
 
-def tell_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
+def warn_of_repeats(lines: Lines, columns: Sequence[str]) -> tuple[str, ...]:
     """Warn where many lines that hold a value of one of these columns share their times."""
     places = [lines.names.index(name) for name in columns]
     time = _times(lines, places)

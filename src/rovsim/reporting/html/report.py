@@ -10,7 +10,7 @@ from markupsafe import Markup
 from rovsim.core.axes import AXES
 from rovsim.core.files import write_text
 from rovsim.core.horizons import OPEN_LOOP, STANDARD_HORIZON
-from rovsim.core.making import tell_making
+from rovsim.core.making import describe_making
 from rovsim.dynamics.effects.base import Effect
 from rovsim.reporting.figures import SECTIONS, find_figure
 from rovsim.reporting.formula import mathml
@@ -131,7 +131,7 @@ def _environment() -> Environment:
 
 def write(path: Path, report: Report) -> None:
     """Write the report, whole or not at all, with the time and place of making it."""
-    write_text(path, render(replace(report, made=tell_making())))
+    write_text(path, render(replace(report, made=describe_making())))
 
 
 def list_rows(content: Mapping[str, object], above: str = "") -> list[tuple[str, str]]:

@@ -84,7 +84,7 @@ def read_csv(path: Path, mocap: Mocap) -> Export:
     table, cut_lines = without_cut_line(lines, places)
     values = numbers(table, places[1:])
     values, filled = without_fillers(names, values)
-    zeros = _zeros(names, values)
+    zeros = _find_zeros(names, values)
     poses = np.isin(names, [*POSITION, *EULER])
     values[np.ix_(zeros, poses)] = np.nan
     columns = CsvColumns(times(table, places[0]), dict(zip(names, values.T, strict=True)))
@@ -99,7 +99,7 @@ def _quaternion_at(table: Lines, row: int) -> str:
     return f"{table.path}, line {table.numbers[row]}, columns {', '.join(QUATERNION)}"
 
 
-def _zeros(names: list[str], values: Array) -> Array:
+def _find_zeros(names: list[str], values: Array) -> Array:
     """Mask (n,) of lines whose pose is all zeros: the tracker did not see the body.
 
     Zeros at the start count as poses if the next pose is close to zero, as where motion is measured
