@@ -308,7 +308,7 @@ def test_what_lies_outside_of_the_used_spans_is_left_out_and_counted(tmp_path, p
     assert counts.left_out > 0
     if posed:
         times = recording.time[recording.tracked]
-        assert len(times) == whole.found.sum() - counts.left_out
+        assert len(times) == whole.tracked.sum() - counts.left_out
         assert (recording.time == whole.time).all()
     else:
         times = recording.time
