@@ -54,7 +54,7 @@ class Condition:
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """Means over n blocks of `BLOCK` s.
+    """Means over n blocks of `BLOCK_S`.
 
     Attributes:
         error: of the model's acceleration (n, 6), a_real - a_sim, m/s2 and rad/s2.

@@ -33,7 +33,7 @@ class Recording:
         rate: nominal rate, Hz.
         nu: (n, 6), exported body velocities in FRD, m/s and rad/s, which are means from time[k] to
             time[k+1]; None if there are none.
-        channels: further measured channels, by kind (`channels.KINDS`).
+        channels: further measured channels, by kind (`channels.CHANNEL_KINDS`).
         sensors: places and delays of what measured the channels.
     """
 

@@ -46,8 +46,8 @@ class SignalSettings(OutlierSettings):
         """Lower the filter's cut-off to what the sampling of a run can show.
 
         That is `Measured.cutoff` where only some channels were measured (the margin at the ends of
-        stretches then grows with the period of the cut-off), otherwise `HIGHEST` of the sampling
-        rate. Binned motions are not filtered: for them nothing changes.
+        stretches then grows with the period of the cut-off), otherwise `MAX_CUTOFF_SHARE` of the
+        sampling rate. Binned motions are not filtered: for them nothing changes.
         """
         if motion.measured is None:
             return self._below_sampling(motion)
