@@ -115,7 +115,7 @@ def _slower(export: Export, seen: _Seen, lines: int) -> Export:
     mask = ~export.tracked
     for start, count in seen.runs():
         mask[seen.frame[start : start + max(count - lines, 0) + 1 : lines]] = True
-    rows = {n: getattr(export, n)[mask] for n in ("time", "position", "attitude", "found")}
+    rows = {n: getattr(export, n)[mask] for n in ("time", "position", "attitude", "tracked")}
     note = f"Each pose stands in {lines} lines or so: the camera is slower than the log."
     return replace(export, **rows, rate=None, notes=(*export.notes, note))
 

@@ -141,7 +141,7 @@ def _use(export: Export, run: Run) -> tuple[Export, int]:
 
 def _cut(export: Export, used: Array, kept: Channels) -> Export:
     """Remove the unused lines of an export without poses; `kept` are its remaining channels."""
-    rows = {n: getattr(export, n)[used] for n in ("time", "position", "attitude", "found")}
+    rows = {n: getattr(export, n)[used] for n in ("time", "position", "attitude", "tracked")}
     return replace(export, **rows, channels=kept)
 
 
