@@ -8,7 +8,11 @@ from rovsim.core.run import Site
 from rovsim.diagnosis.equations.form import get_law
 from rovsim.diagnosis.equations.products.as_effect import list_moved
 from rovsim.diagnosis.equations.products.columns import Columns
-from rovsim.diagnosis.equations.products.library import LawTerm, list_body_terms, push_at
+from rovsim.diagnosis.equations.products.library import (
+    LawTerm,
+    evaluate_wrenches_at,
+    list_body_terms,
+)
 from rovsim.diagnosis.equations.products.products import Products
 from rovsim.diagnosis.equations.products.search import propose
 from rovsim.diagnosis.equations.products.selection import choose_kinds, stay
@@ -92,7 +96,7 @@ def test_the_search_sees_what_the_law_does(terms):
     small = 1e-6
     for term in terms:
         law = law_of([term], (small,))
-        sought = push_at([LawTerm(term.on, term.factors)], states(), model(), PLACE)[0]
+        sought = evaluate_wrenches_at([LawTerm(term.on, term.factors)], states(), model(), PLACE)[0]
         np.testing.assert_allclose(wrenches(law), 0.7 * small * sought, rtol=1e-4, atol=1e-11)
 
 
@@ -106,7 +110,9 @@ def test_terms_along_the_body_turn_with_the_mirror():
     mirrored[:, 1] *= -1.0
     for i in range(6):
         terms = list(list_body_terms(i, np.arange(6)))
-        one, other = (push_at(terms, s, model(), PLACE * 0.0 + 1.0) for s in (state, mirrored))
+        one, other = (
+            evaluate_wrenches_at(terms, s, model(), PLACE * 0.0 + 1.0) for s in (state, mirrored)
+        )
         np.testing.assert_allclose(other, one * turned, atol=1e-12)
 
 

@@ -12,8 +12,8 @@ from rovsim.diagnosis.equations.with_thrust import (
     ThrustTerm,
     WithThrust,
     build_law,
+    evaluate_thrust_at,
     list_thrust_terms,
-    push_at,
 )
 from rovsim.dynamics.engine.kernel_inputs import Actuators, example_reading
 from rovsim.dynamics.laws.thrust_law import MAX_THRUSTERS, SECOND_THRUST
@@ -69,7 +69,7 @@ def written_wrenches(effect):
 @EVERY
 def test_the_search_the_engine_and_the_file_push_alike(term, tmp_path):
     law = law_of(term)
-    (sought,) = push_at([term], NU, FORCE @ model().body.B.T)
+    (sought,) = evaluate_thrust_at([term], NU, FORCE @ model().body.B.T)
     assert np.abs(sought).max() > 1e-3
     np.testing.assert_allclose(wrenches(law.effect), 2.0 / 0.7 * sought, rtol=1e-9, atol=1e-12)
     cls, written = write_and_read(WithThrust(term), law, tmp_path)
@@ -86,7 +86,7 @@ def test_terms_turn_with_the_mirror():
     """Port and starboard exchanged: sway, roll and yaw change sign, and so does the push."""
     turned = np.where(np.isin(np.arange(6), LATERAL_AXES), -1.0, 1.0)
     terms, thrust = list_thrust_terms(runs(), model()), FORCE @ model().body.B.T
-    one, other = (push_at(terms, NU * sign, thrust * sign) for sign in (1.0, turned))
+    one, other = (evaluate_thrust_at(terms, NU * sign, thrust * sign) for sign in (1.0, turned))
     np.testing.assert_allclose(other, one * turned, atol=1e-12)
     assert not any(t.on == t.thrust and t == ThrustTerm(t.on, t.thrust) for t in terms)  # a gain
     assert set(TERMS) <= set(terms)

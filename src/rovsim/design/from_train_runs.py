@@ -150,22 +150,22 @@ def _fit(h: Hypothesis, runs: Sequence[ObservedRun]) -> tuple[Fit, FilterBank]:
 
 
 def _summarise(
-    found: Fit,
+    best: Fit,
     bank: FilterBank,
     wanted: Sequence[str],
     penalty: float = 0.0,
     widest: Hypothesis | None = None,
 ) -> FittedHypothesis:
-    names = found.hypothesis.parameter_names
+    names = best.hypothesis.parameter_names
     chosen = np.array([names.index(name) for name in wanted], int)
-    penalties = penalty * sum(term.choices for term in found.hypothesis.terms)
-    two_log_likelihood, h = found.two_log_likelihood - penalties, found.hypothesis
-    information = of_widest = gram(bank.flatten(found.linearised.J, found.noise))
+    penalties = penalty * sum(term.choices for term in best.hypothesis.terms)
+    two_log_likelihood, h = best.two_log_likelihood - penalties, best.hypothesis
+    information = of_widest = gram(bank.flatten(best.linearised.J, best.noise))
     if widest is not None:
         linear = bank.linearise(widest)
         if linear.is_finite:  # else such a model diverges, and no more than what was fitted is free
-            h, of_widest = widest, gram(bank.flatten(linear.J, found.noise))
-    return FittedHypothesis(found.hypothesis, information, chosen, two_log_likelihood, h, of_widest)
+            h, of_widest = widest, gram(bank.flatten(linear.J, best.noise))
+    return FittedHypothesis(best.hypothesis, information, chosen, two_log_likelihood, h, of_widest)
 
 
 def _fit_rivals(

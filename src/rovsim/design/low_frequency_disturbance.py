@@ -107,8 +107,8 @@ def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     return force
 
 
-def _average(run: ObservedRun, push: Array) -> list[Array]:
+def _average(run: ObservedRun, disturbance: Array) -> list[Array]:
     """Means (6,) of a push (n, 6) over blocks; those shorter than half a block are left out."""
-    settled, number = push[run.settled], number_blocks([run])
+    settled, number = disturbance[run.settled], number_blocks([run])
     blocks = (settled[number == k] for k in np.unique(number))
     return [block.mean(axis=0) for block in blocks if len(block) * run.period > 0.5 * BLOCK_SECONDS]

@@ -81,9 +81,11 @@ class ModelPilot:
         tilted = self.starts(np.zeros(2))
         tilted[0, 4], tilted[1, 5] = 0.5 * TILT_DIFFERENCE_RAD, 0.5 * TILT_DIFFERENCE_RAD
         rest = self._drive_at_rest(2)
-        push = self._accelerate(rest, tilted)
+        accelerations = self._accelerate(rest, tilted)
         inertia = self._inertia[3:5]
-        righting = -inertia * np.array([push[0, 3], push[1, 4]]) / TILT_DIFFERENCE_RAD
+        righting = (
+            -inertia * np.array([accelerations[0, 3], accelerations[1, 4]]) / TILT_DIFFERENCE_RAD
+        )
         return inertia * ANGLE_BANDWIDTH**2 + np.maximum(righting, 0.0)
 
     @cached_property

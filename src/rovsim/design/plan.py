@@ -150,7 +150,7 @@ def _draw(
 def _choose(
     problem: DesignProblem,
     baselines: Mapping[str, list[CandidateFlight]],
-    found: Sequence[Array],
+    designed_numbers: Sequence[Array],
     question: Question,
     random: np.random.Generator,
 ) -> Plan:
@@ -161,7 +161,7 @@ def _choose(
     Args:
         problem: with the scenarios of the search; new ones are drawn here.
         baselines: the usual manoeuvres by name, each at several amplitudes, the best first.
-        found: numbers of the designed flights, the best first.
+        designed_numbers: numbers of the designed flights, the best first.
         question: what is asked.
         random: generator of scenarios and models.
 
@@ -173,7 +173,9 @@ def _choose(
     some = [rival.draw(DRAWS_PER_RIVAL, random) for rival in prior.rivals]
     check = FinalCheck(problem, scenarios, some)
     usual = {name: next(check.find_safe(flights), None) for name, flights in baselines.items()}
-    designed = (flight for part in in_parts(found) for flight in problem.evaluate_numbers(part))
+    designed = (
+        flight for part in in_parts(designed_numbers) for flight in problem.evaluate_numbers(part)
+    )
     finalists = [
         *islice(check.find_safe(designed), FINALISTS),
         *(flight for flight in usual.values() if flight),

@@ -51,7 +51,7 @@ class Scenarios:
         """Predict states (s, k+1, 13) under one command log, from near a state (13,)."""
         models, edges = self.models, self.setup.edges
         pairs = zip(drives.of(models), self._wrenches, strict=True)
-        disturbed = [drive.with_wrench(push) for drive, push in pairs]
+        disturbed = [drive.with_wrench(wrench) for drive, wrench in pairs]
         states = np.tile(start, (len(models), 1, 1))
         floats = models[0].vehicle.floats
         states[:, 0, :3] += self.shift * np.where(np.arange(3) == 2, not floats, 1)
@@ -69,7 +69,7 @@ class Scenarios:
     def _wrenches(self) -> list[Array]:
         """The disturbance of each scenario as a wrench (k, 6), N and N m."""
         pairs = zip(self.disturbances, self.models, strict=True)
-        return [push @ model.M.T for push, model in pairs]
+        return [disturbance @ model.M.T for disturbance, model in pairs]
 
     @cached_property
     def _turns(self) -> Array:

@@ -141,10 +141,10 @@ def add_uncertainty(
     return with_uncertainty(model, entry, catalogue, source)
 
 
-def choose_effects(diagnosis: Diagnosis, known: Container[str]) -> tuple[FittedEffect, ...]:
-    """Choose the selected effects; if a proposed law is `known`, it and the effects beside it."""
+def choose_effects(diagnosis: Diagnosis, known_ids: Container[str]) -> tuple[FittedEffect, ...]:
+    """Choose the selected effects; if a proposed law is known, it and the effects beside it."""
     law = diagnosis.unexplained.proposal
-    if law is None or law.effect not in known:
+    if law is None or law.effect not in known_ids:
         return diagnosis.selected
     return *law.beside, FittedEffect(effect=law.effect, parameters=law.parameters)
 

@@ -33,11 +33,11 @@ class Catalogue(Mapping[str, type[Effect]]):
 
     def __init__(
         self,
-        found: Mapping[str, type[Effect]],
+        effects: Mapping[str, type[Effect]],
         files: Sequence[Path] = (),
         impossible: Mapping[str, Requirement] = MappingProxyType({}),
     ) -> None:
-        self._by_id = dict(sorted(found.items()))
+        self._by_id = dict(sorted(effects.items()))
         self.files = tuple(files)
         self.impossible = impossible
 

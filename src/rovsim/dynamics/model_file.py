@@ -130,17 +130,17 @@ def with_uncertainty(
     return replace(model, uncertainty=Uncertainty(entry.noise, main, alternatives))
 
 
-def _describe_uncertainty(found: Uncertainty) -> UncertaintyEntry:
+def _describe_uncertainty(uncertainty: Uncertainty) -> UncertaintyEntry:
     return UncertaintyEntry(
-        noise=found.noise,
-        correlation=found.own.correlation,
+        noise=uncertainty.noise,
+        correlation=uncertainty.own.correlation,
         instead=tuple(
             PossibilityEntry(
                 probability=probability,
                 effects=tuple(map(describe_effect, draws.effects)),
                 correlation=draws.correlation,
             )
-            for probability, draws in found.instead
+            for probability, draws in uncertainty.instead
         ),
     )
 

@@ -93,7 +93,9 @@ def linearise_candidates(
     return Sensitivities(base.model, bank, absent, matrices, tuple(blocks))
 
 
-def relinearise_candidates(bank: FilterBank, at: Hypothesis, known: Sensitivities) -> Sensitivities:
+def relinearise_candidates(
+    bank: FilterBank, at: Hypothesis, previous: Sensitivities
+) -> Sensitivities:
     """Make the columns of the same candidates anew, with all effects of a hypothesis in place.
 
     Those of an effect that the hypothesis has itself are made beside its other effects. Columns are
@@ -101,7 +103,7 @@ def relinearise_candidates(bank: FilterBank, at: Hypothesis, known: Sensitivitie
     """
     bases: dict[str, tuple[Hypothesis, list[Array]]] = {}
     parts = []
-    for candidate in known.candidates:
+    for candidate in previous.candidates:
         terms = tuple(term for term in at.terms if term.id != candidate.effect.id)
         effect_id = candidate.effect.id if len(terms) < len(at.terms) else ""
         if effect_id not in bases:
@@ -112,7 +114,7 @@ def relinearise_candidates(bank: FilterBank, at: Hypothesis, known: Sensitivitie
         parts.append(columns if finite else [np.zeros_like(x) for x in columns])
     matrices = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
     base, added_ids = bank.innovations(at.model), tuple(term.id for term in at.terms)
-    return replace(known, bank=bank, base=base, columns=matrices, added_ids=added_ids)
+    return replace(previous, bank=bank, base=base, columns=matrices, added_ids=added_ids)
 
 
 def _place(candidate: Candidate, first: int) -> CandidateColumns:

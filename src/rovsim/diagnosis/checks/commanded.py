@@ -31,10 +31,10 @@ def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
     if logs[0].kind == "thruster":
         return _named(vehicle.command_columns, resting & ~np.array(vehicle.angles, bool))
     silent = np.isin(AXES, usable.still)
-    return _named(AXES, resting & vehicle.free & ~silent & _pushed(vehicle, logs[0].kind))
+    return _named(AXES, resting & vehicle.free & ~silent & _mark_pushable(vehicle, logs[0].kind))
 
 
-def _pushed(vehicle: Vehicle, kind: str) -> Array:
+def _mark_pushable(vehicle: Vehicle, kind: str) -> Array:
     """Mask (6,) of the axes that commands of a kind can push."""
     if kind == "wrench" or vehicle.thrusters.mixer is None:
         return np.ones(len(AXES), bool)

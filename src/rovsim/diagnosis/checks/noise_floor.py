@@ -13,7 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.dynamics.model import Model
-from rovsim.estimation.observer.drifting_current import push_by_current
+from rovsim.estimation.observer.drifting_current import differentiate_by_current
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import Windows
@@ -88,7 +88,7 @@ class _PerfectModel:
         """Velocity errors (n, 6) in the windows of one run, of all draws, m/s and rad/s."""
         windows, measured_state = Windows(run), run.motion.state
         draws = self.noise.draws(run, self.random)
-        pushes = self._push(draws, run)
+        wrenches = self._draw_wrench(draws, run)
         noisy = draws.resample_measurement_noise(
             run.motion, self.model.mocap_view, self.signals, DRAWS_PER_RUN
         )
@@ -96,13 +96,13 @@ class _PerfectModel:
         truth = np.tile(measured_state[windows.first], (DRAWS_PER_RUN, 1, 1))
         starts = np.array([state[windows.first] for state in reported])
         models = [self.model] * DRAWS_PER_RUN
-        actual = windows.compare(models, truth, pushes)
+        actual = windows.compare(models, truth, wrenches)
         predicted = windows.compare(models, starts)
         at = windows.compared
         reading_errors = np.array([state[at, 7:] - measured_state[at, 7:] for state in reported])
         return (predicted - actual - reading_errors).reshape(-1, 6)
 
-    def _push(self, draws: NoiseDraws, run: ObservedRun) -> Array:
+    def _draw_wrench(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Draw the disturbance of k integration steps: a wrench (draws, k, 6), N and N m."""
         disturbance = draws.draw_disturbance(np.diff(run.grid), DRAWS_PER_RUN)
         if self.noise.drift:
@@ -115,9 +115,11 @@ class _PerfectModel:
         The current is a random walk in the horizontal plane, whose `rate` is the standard deviation
         in m/s after 1 s.
         """
-        push = push_by_current(self.model, run, np.zeros((len(run.time), 2)))
+        per_current = differentiate_by_current(self.model, run, np.zeros((len(run.time), 2)))
         at, steps = run.grid[:-1] - run.edges[0], np.diff(run.grid)
-        response = np.stack([[np.interp(at, run.time, a) for a in p.T] for p in push])  # (2, 6, k)
+        response = np.stack(
+            [[np.interp(at, run.time, a) for a in p.T] for p in per_current]
+        )  # (2, 6, k)
         lead = run.motion.commands.before
         kicks = self.random.normal(size=(DRAWS_PER_RUN, 2, len(steps)))
         kicks *= rate * np.sqrt(np.append(lead, steps[:-1]))

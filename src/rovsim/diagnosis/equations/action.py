@@ -38,7 +38,9 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
         runs: at whose readings the law is evaluated.
     """
     model, parts = split_law(fit.hypothesis)[0].model, form.divide(get_law(fit.hypothesis))
-    accelerations = np.concatenate([_push(model, parts, run) for run in runs], axis=1)
+    accelerations = np.concatenate(
+        [_evaluate_accelerations(model, parts, run) for run in runs], axis=1
+    )
     rms = np.sqrt(np.mean(accelerations.sum(axis=0) ** 2, axis=0))
     sizes = np.sqrt(np.mean(np.sum((accelerations @ model.M.T) ** 2, axis=2), axis=1))
     return Action(tuple(sizes.tolist()), AXES[int(np.argmax(rms / fit.noise.disturbance_std))])
@@ -50,7 +52,7 @@ def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0)
     return any(s.axis == axis and s.times_limit > margin for s in structures)
 
 
-def _push(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
+def _evaluate_accelerations(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:
     """Accelerations that effects add to a model at the measured states of a run.
 
     Args:

@@ -10,7 +10,7 @@ from scipy.stats import chi2
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, get_law
 from rovsim.diagnosis.equations.products.columns import Columns, Wrenches, project
-from rovsim.diagnosis.equations.products.library import push
+from rovsim.diagnosis.equations.products.library import evaluate_wrenches
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE
@@ -117,7 +117,11 @@ class LawFits:
         return likeliest.beats(rivals)
 
     def project(
-        self, fit: Fit, candidates: Sequence[Any], middle: Array, wrenches: Wrenches = push
+        self,
+        fit: Fit,
+        candidates: Sequence[Any],
+        middle: Array,
+        wrenches: Wrenches = evaluate_wrenches,
     ) -> Columns:
         """Columns of candidate terms and what a fit leaves; see `columns.project`."""
         return project(candidates, fit, self.workspace.bank, middle, wrenches)

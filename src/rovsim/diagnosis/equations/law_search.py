@@ -13,7 +13,12 @@ from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import select_terms
 from rovsim.diagnosis.equations.with_memory import FORMS, WithMemory
-from rovsim.diagnosis.equations.with_thrust import WithThrust, begin, list_thrust_terms, push_thrust
+from rovsim.diagnosis.equations.with_thrust import (
+    WithThrust,
+    begin,
+    evaluate_thrust,
+    list_thrust_terms,
+)
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
 from rovsim.estimation.candidates import list_means
@@ -88,7 +93,7 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
     terms = list_thrust_terms(fits.runs, fit.hypothesis.model)
     if not terms or not fit.is_finite:
         return None
-    columns = fits.project(fit, terms, middle_of(fits.runs), push_thrust)
+    columns = fits.project(fit, terms, middle_of(fits.runs), evaluate_thrust)
     explained = find_alone(columns.gram) - fits.penalty
     threshold = max(
         fits.chance, 0.0 if grown is None else MIN_SHARE_OF_PRODUCTS * (grown.score - score)

@@ -122,11 +122,11 @@ class Wake(WithMemory):
     def equation(self) -> str:
         """The law in LaTeX."""
         indices = [AXES.index(axis) for axis in self.names]
-        pushes = [
+        equations = [
             rf"{FORCE[i]} = -{self._symbol(AXES[i])}\,({VELOCITY[i]} - m_{VELOCITY[i]})"
             for i in indices
         ]
-        return r",\quad ".join((*pushes, r"T \dot m = \nu_r - m"))
+        return r",\quad ".join((*equations, r"T \dot m = \nu_r - m"))
 
     @property
     def meaning(self) -> str:

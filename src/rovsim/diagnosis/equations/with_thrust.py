@@ -132,7 +132,7 @@ def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterato
             yield ThrustTerm(i, j, True, SECOND_THRUST, k)
 
 
-def push_thrust(
+def evaluate_thrust(
     terms: Sequence[ThrustTerm], run: ObservedRun, model: Model, middle: Array
 ) -> Array:
     """Evaluate terms with a coefficient of 1 at the n readings of a run.
@@ -148,10 +148,10 @@ def push_thrust(
     """
     step = np.minimum(run.at[run.innovation_samples], len(run.grid) - 2)
     force = run.replay_drives.of([model])[0].force[step]
-    return push_at(terms, earlier_states(run)[:, 7:], force @ model.body.B.T)
+    return evaluate_thrust_at(terms, earlier_states(run)[:, 7:], force @ model.body.B.T)
 
 
-def push_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
+def evaluate_thrust_at(terms: Sequence[ThrustTerm], nu: Array, thrust: Array) -> Array:
     """Evaluate terms with a coefficient of 1 at given velocities and thrusts.
 
     Args:

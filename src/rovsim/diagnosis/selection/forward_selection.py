@@ -100,7 +100,7 @@ def swap_and_list_rivals(workspace: SearchWorkspace, current: Fit) -> tuple[Fit,
 
 
 def _try_swaps(
-    workspace: SearchWorkspace, current: Fit, trials: int, min_gain: float, known: float
+    workspace: SearchWorkspace, current: Fit, trials: int, min_gain: float, tracked_deficit: float
 ) -> tuple[Fit, list[Rival]]:
     """Try other effects in the place of each term, from the beginning after each swap.
 
@@ -112,8 +112,8 @@ def _try_swaps(
         current: the fit so far.
         trials: how many effects are refitted in the place of each term, at least.
         min_gain: by how much the score has to be larger after a swap.
-        known: by how much the score of a rival may be smaller for that to be found out; a fit that
-            will surely be worse is given up.
+        tracked_deficit: by how much the score of a rival may be smaller for that to be found out; a
+            fit that will surely be worse is given up.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
     removals = workspace.first_order.remove_each(current)
@@ -127,12 +127,14 @@ def _try_swaps(
             ):
                 start, deficit = removed.hypothesis.with_term(p.term), HOPELESS_LR
                 start = place_thresholds(workspace, start, p.term)
-                trial = workspace.fit_unless_below(start, current, workspace.score(current) - known)
+                trial = workspace.fit_unless_below(
+                    start, current, workspace.score(current) - tracked_deficit
+                )
             if trial is not None:
                 deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -min_gain and not (loose and file.explains(trial, p.term.id)):
                     swapped = prune(workspace, trial)
-                    return _try_swaps(workspace, swapped, trials, min_gain, known)
+                    return _try_swaps(workspace, swapped, trials, min_gain, tracked_deficit)
                 weight = file.weigh(Contender(current, term), Contender(trial, p.term), deficit)
                 deficit = max(0.0, weight)  # likelier, but not beside a loose file: undecided
             rivals.append(Rival(p.term.id, term.id, deficit, trial))

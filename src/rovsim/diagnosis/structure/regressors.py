@@ -127,9 +127,9 @@ def list_dependences(
     basis = np.linalg.qr(derivatives.T)[0] if len(derivatives) else np.empty((len(target), 0))
     blocks = number_blocks(residual.runs) if residual.of_channels else None
     for name in tables[0]:
-        pushes = [table[name] for table in tables]
-        size = np.sqrt(np.mean(np.concatenate(pushes) ** 2))
-        column = residual.respond(pushes)
+        disturbances = [table[name] for table in tables]
+        size = np.sqrt(np.mean(np.concatenate(disturbances) ** 2))
+        column = residual.respond(disturbances)
         independent = column - basis @ (basis.T @ column)
         power, total_power = float(independent @ independent), float(column @ column)
         if power < MIN_INDEPENDENT_SHARE * total_power or size == 0.0:

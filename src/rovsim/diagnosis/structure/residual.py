@@ -85,14 +85,14 @@ class AxisResidual:
         """Factor of the limits that chance allows, as what is left of channels is not white."""
         return CHANNELS_LIMIT_FACTOR if self.of_channels else 1.0
 
-    def respond(self, pushes: Sequence[Array]) -> Array:
+    def respond(self, disturbances: Sequence[Array]) -> Array:
         """Filter pushes (n_run,) of each run, m/s2 or rad/s2, as the innovations would show them.
 
         Returns:
             The response (n,) in the whitened settled innovations of all runs, one after the other.
         """
-        inputs = zip(pushes, self.filters, self.runs, strict=True)
-        return np.concatenate([respond(push, f, run) for push, f, run in inputs])
+        inputs = zip(disturbances, self.filters, self.runs, strict=True)
+        return np.concatenate([respond(disturbance, f, run) for disturbance, f, run in inputs])
 
     def weigh(
         self, what: str, *, size: float, statistic: float, limit: float, moment: bool = False
@@ -112,11 +112,11 @@ class AxisResidual:
             yield Structure(self.axis, what, float(share), float(statistic / limit), moment)
 
 
-def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
+def respond(disturbance: Array, f: AxisFilter, run: ObservedRun) -> Array:
     """Filter pushes on one axis as the innovations of a run would show them.
 
     Args:
-        push: accelerations (..., n) at all readings of the run, m/s2 or rad/s2.
+        disturbance: accelerations (..., n) at all readings of the run, m/s2 or rad/s2.
         f: filter of that axis.
         run: the run.
 
@@ -124,9 +124,9 @@ def respond(push: Array, f: AxisFilter, run: ObservedRun) -> Array:
         The response (..., m) in the whitened innovations of the settled readings.
     """
     b, a = f.response
-    out = np.empty(push.shape)
+    out = np.empty(disturbance.shape)
     for begin, end in run.innovation_segments:
-        out[..., begin:end] = lfilter(b, a, push[..., begin:end])
+        out[..., begin:end] = lfilter(b, a, disturbance[..., begin:end])
     return out[..., run.settled]
 
 

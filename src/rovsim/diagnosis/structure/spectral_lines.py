@@ -108,13 +108,15 @@ def _judge_comb(
     overtones = ", with overtones" if len(comb) > 1 else ""
     yield from residual.weigh(
         f"a period of {1.0 / spectrum.frequency[k]:.3g} s{overtones}{growth}",
-        size=np.sqrt(_push_power(spectrum, lines, residual)),
+        size=np.sqrt(_disturbance_power(spectrum, lines, residual)),
         statistic=float(np.sum(spectrum.total[lines])),
         limit=limit,
     )
 
 
-def _push_power(spectrum: Periodogram, lines: Sequence[int], residual: AxisResidual) -> float:
+def _disturbance_power(
+    spectrum: Periodogram, lines: Sequence[int], residual: AxisResidual
+) -> float:
     """Mean square of the push, m2/s4 or rad2/s4, that causes lines in the innovations.
 
     Args:

@@ -63,8 +63,8 @@ def find_kicks(residual: AxisResidual) -> Iterator[Structure]:
 
 def _kick(few: int, f: AxisFilter, run: ObservedRun) -> Array:
     """How a push of unit size over `few` readings shows in the innovations, until it has faded."""
-    push = np.concatenate([np.ones(few), np.zeros(round(ECHO_SECONDS / run.period))])
-    return lfilter(*f.response, push)
+    kick = np.concatenate([np.ones(few), np.zeros(round(ECHO_SECONDS / run.period))])
+    return lfilter(*f.response, kick)
 
 
 def _judge_kick(
@@ -73,7 +73,7 @@ def _judge_kick(
     template: Array,
     duration: float,
     run: ObservedRun,
-    known: Array,
+    possible_begins: Array,
 ) -> Iterator[Structure]:
     """Judge the largest push of one duration in a run.
 
@@ -83,11 +83,11 @@ def _judge_kick(
         template: how a push of unit size shows in them.
         duration: of the push, s.
         run: the run.
-        known: mask (n,) of readings at which a push may begin.
+        possible_begins: mask (n,) of readings at which a push may begin.
     """
     power = float(template @ template)
     factor = np.correlate(w, template, "valid") / power
-    factor *= known[: len(factor)]
+    factor *= possible_begins[: len(factor)]
     k = int(np.argmax(np.abs(factor)))
     moments = len(factor) * len(residual.runs)
     limit = UNEVEN_FACTOR**2 * chi2.isf(

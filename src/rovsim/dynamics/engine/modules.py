@@ -188,9 +188,9 @@ def _parts(wrenches: Sequence[Any], channel: int) -> dict[str, str]:
     }
 
 
-def _kernel(wrench: Any, known: Sequence[Any]) -> str:
+def _kernel(wrench: Any, distinct: Sequence[Any]) -> str:
     """Source lines that name the kernel of an effect and the types of its arguments."""
-    name = _name(wrench, known)
+    name = _name(wrench, distinct)
     types = CHANNELS_TEMPLATE.format(id=wrench.id, name=name) if wrench.channels else ""
     return KERNEL_TEMPLATE.format(id=wrench.id, name=name) + types
 
@@ -203,13 +203,13 @@ def _reading(wrench: Any, first: int) -> str:
     )
 
 
-def _name(wrench: Any, known: Sequence[Any]) -> str:
+def _name(wrench: Any, distinct: Sequence[Any]) -> str:
     """Name of a class in the module: where two have the same name, their ids are appended."""
-    namesakes = [cls for cls in known if cls.__name__ == wrench.__name__]
+    namesakes = [cls for cls in distinct if cls.__name__ == wrench.__name__]
     return wrench.__name__ if len(namesakes) == 1 else f"{wrench.__name__}_{wrench.id}"
 
 
-def _alias(wrench: Any, known: Sequence[Any]) -> str:
+def _alias(wrench: Any, distinct: Sequence[Any]) -> str:
     """The `as` clause of the import of a class, where two have the same name; else empty."""
-    name = _name(wrench, known)
+    name = _name(wrench, distinct)
     return "" if name == wrench.__name__ else f" as {name}"

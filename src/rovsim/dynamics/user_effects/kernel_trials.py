@@ -36,7 +36,7 @@ class Actuating(NamedTuple):
         return self.forces + self.surfaces
 
     @property
-    def told(self) -> str:
+    def description(self) -> str:
         """What a kernel may read of the actuators, in words for messages."""
         return (
             f"indices within the actuators of this vehicle: {self.forces} forces, {self.commands} "

@@ -81,7 +81,9 @@ def try_on(cls: type[Effect], vehicle: Tried) -> None:
                 fault = f"'{trial.method}' fails with {type(error).__name__}: {error}"
                 raise refused(fault, where + _line_of(error, cls), trial.expected) from None
             if not fits:
-                raise refused(f"'{trial.method}' returns {_told(result)}", where, trial.expected)
+                raise refused(
+                    f"'{trial.method}' returns {_describe_result(result)}", where, trial.expected
+                )
 
 
 def _place_of(cls: type[Effect]) -> str:
@@ -217,7 +219,7 @@ def _try_wrench(e: Wrench, vehicle: Tried) -> Iterator[Trial]:
         vehicle.thruster_count, len(vehicle.command_columns), len(vehicle.surface_names)
     )
     call = partial(largest_wrench, e, actuating)
-    yield Trial("wrench", call, actuating.told, lambda _: True)
+    yield Trial("wrench", call, actuating.description, lambda _: True)
     if not e.given():
         yield Trial("wrench", call, "0 with its default values: then nothing acts", _is_none)
 
@@ -238,7 +240,7 @@ def _is_array(made: Any, shape: tuple[int, ...]) -> bool:
     return np.shape(made) == shape and bool(np.isfinite(np.asarray(made, float)).all())
 
 
-def _told(made: Any) -> str:
+def _describe_result(made: Any) -> str:
     """Describe what a method returned, for messages."""
     if isinstance(made, np.ndarray):
         return f"an array {made.shape}" + ("" if np.isfinite(made).all() else " with NaN or inf")

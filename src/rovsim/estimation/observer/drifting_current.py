@@ -45,7 +45,7 @@ class DriftFit(NamedTuple):
         return self.rate.lr_statistic > MIN_LR_OF_DRIFT and self.lr_margin > MIN_LR_MARGIN
 
 
-PushOnRun = Callable[[Model, ObservedRun], Array]
+AccelerationsOnRun = Callable[[Model, ObservedRun], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +63,13 @@ class MovingWater:
     @cached_property
     def walk(self) -> RandomWalk:
         """A current that wanders, north and east."""
-        return self._walk(self._pushes)
+        return self._walk(self._per_current)
 
     @cached_property
-    def _pushes(self) -> list[Array]:
+    def _per_current(self) -> list[Array]:
         """Accelerations (2, n, 6) of each run per m/s of a faster current."""
         pairs = zip(self.runs, self._currents, strict=True)
-        return [push_by_current(self.model, run, current) for run, current in pairs]
+        return [differentiate_by_current(self.model, run, current) for run, current in pairs]
 
     @cached_property
     def bends(self) -> list[Array]:
@@ -81,7 +81,7 @@ class MovingWater:
         if not self.paths:
             return [np.zeros((len(run.time), 6)) for run in self.runs]
         accelerations = []
-        for run, current, linear in zip(self.runs, self._currents, self._pushes, strict=True):
+        for run, current, linear in zip(self.runs, self._currents, self._per_current, strict=True):
             in_still_water = _accelerate(self.model, run, np.zeros_like(current))
             change = _accelerate(self.model, run, current) - in_still_water
             accelerations.append(change - np.einsum("dni,nd->ni", linear, current))
@@ -121,8 +121,8 @@ class MovingWater:
     @cached_property
     def _forces(self) -> list[RandomWalk]:
         """Forces that wander."""
-        forces = ([push(self.model, run) for run in self.runs] for push in _FORCES)
-        return [self._walk(pushes) for pushes in forces]
+        forces = ([evaluate(self.model, run) for run in self.runs] for evaluate in _FORCES)
+        return [self._walk(accelerations) for accelerations in forces]
 
     @cached_property
     def _by_lines(self) -> list[Array]:
@@ -137,7 +137,9 @@ class MovingWater:
 
         `fields` (k, n) of each run: how each part of it varies along the way.
         """
-        inputs = zip(self.runs, self.run_filters, fields, self._pushes, self.bends, strict=True)
+        inputs = zip(
+            self.runs, self.run_filters, fields, self._per_current, self.bends, strict=True
+        )
         return [self._show(*run_inputs) for run_inputs in inputs]
 
     def _lr_by_place(
@@ -155,20 +157,20 @@ class MovingWater:
         (rate,) = CurrentDrift.parameters
         return self.walk.expected_lr(rate.scale, run_filters) > MIN_LR_OF_DRIFT
 
-    def _walk(self, pushes: Sequence[Array]) -> RandomWalk:
-        inputs = zip(self.runs, self.run_filters, pushes, self.bends, strict=True)
+    def _walk(self, per_unit: Sequence[Array]) -> RandomWalk:
+        inputs = zip(self.runs, self.run_filters, per_unit, self.bends, strict=True)
         columns = (
-            self._show(run, filters, list_terms(run), *push_and_bend)
-            for run, filters, *push_and_bend in inputs
+            self._show(run, filters, list_terms(run), *per_unit_and_bend)
+            for run, filters, *per_unit_and_bend in inputs
         )
         return RandomWalk(self.runs, tuple(columns), self.run_filters)
 
     def _show(
-        self, run: ObservedRun, filters: RunFilters, terms: Array, push: Array, bend: Array
+        self, run: ObservedRun, filters: RunFilters, terms: Array, per_unit: Array, bend: Array
     ) -> Array:
         """Innovations (k d, 6, n) by terms (k, n) along pushes (d, n, 6)."""
-        unit_pushes = (terms[:, None, :, None] * push).reshape(-1, *bend.shape)
-        accelerations = np.concatenate([bend[None], bend + TYPICAL_RATE * unit_pushes])
+        unit_accelerations = (terms[:, None, :, None] * per_unit).reshape(-1, *bend.shape)
+        accelerations = np.concatenate([bend[None], bend + TYPICAL_RATE * unit_accelerations])
         e = observe([self.model] * len(accelerations), run, filters, accelerations)
         return np.asarray((e[0] - e[1:]) / TYPICAL_RATE)  # what a model does not foresee
 
@@ -199,13 +201,13 @@ def _eddies(runs: Sequence[ObservedRun]) -> list[Array]:
     return [vary(place) for place in places]
 
 
-def push_by_current(model: Model, run: ObservedRun, current: Array) -> Array:
+def differentiate_by_current(model: Model, run: ObservedRun, current: Array) -> Array:
     """Accelerations (2, n, 6) per m/s by which the water moves faster north, and east."""
-    pushes = []
+    accelerations = []
     for step in CURRENT_STEP * np.eye(2):
         ahead, back = (_accelerate(model, run, current + sign * step) for sign in (1.0, -1.0))
-        pushes.append((ahead - back) / (2.0 * CURRENT_STEP))
-    return np.stack(pushes)
+        accelerations.append((ahead - back) / (2.0 * CURRENT_STEP))
+    return np.stack(accelerations)
 
 
 def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
@@ -225,7 +227,7 @@ def _accelerate(model: Model, run: ObservedRun, current: Array) -> Array:
     return accelerations
 
 
-def _push_along_tank(model: Model, run: ObservedRun) -> Array:
+def _accelerate_along_tank(model: Model, run: ObservedRun) -> Array:
     """Accelerations (2, n, 6) per newton to the north, and to the east."""
     R = rotations.matrix(run.motion.state[run.innovation_samples, 3:7])
     wrench = np.zeros((2, len(R), 6))
@@ -233,17 +235,17 @@ def _push_along_tank(model: Model, run: ObservedRun) -> Array:
     return np.asarray(np.nan_to_num(wrench) @ model.body.M_inv.T)
 
 
-def _push_along_body(axes: Sequence[int]) -> PushOnRun:
+def _accelerate_along_body(axes: Sequence[int]) -> AccelerationsOnRun:
     """Accelerations (d, n, 6) of 1 m/s2 along some axes of the body."""
 
-    def push(model: Model, run: ObservedRun) -> Array:
+    def evaluate(model: Model, run: ObservedRun) -> Array:
         rows = np.zeros((len(axes), len(run.innovation_samples), 6))
         for row, axis in zip(rows, axes, strict=True):
             row[:, axis] = 1.0
         return rows
 
-    return push
+    return evaluate
 
 
 _AT_REST = np.eye(13)[3]
-_FORCES = (_push_along_tank, *map(_push_along_body, ((0, 1), (0,), (1,))))
+_FORCES = (_accelerate_along_tank, *map(_accelerate_along_body, ((0, 1), (0,), (1,))))

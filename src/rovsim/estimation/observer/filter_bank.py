@@ -235,12 +235,12 @@ class FilterBank:
         inputs = zip(e, self.runs, self.run_filters, self.design_filters(noise), strict=True)
         return [whiten_run(*run_inputs) for run_inputs in inputs]
 
-    def linearise(self, at: Hypothesis, known: Linearised | None = None) -> Linearised:
+    def linearise(self, at: Hypothesis, previous: Linearised | None = None) -> Linearised:
         """Innovations (6, n) of each run, and their derivatives to the k scaled parameters.
 
         Args:
             at: the hypothesis.
-            known: another hypothesis, whose derivatives to the same parameters are used again.
+            previous: another hypothesis, whose derivatives to the same parameters are used again.
         """
         step()
-        return linearise(at, self.evaluate, known)
+        return linearise(at, self.evaluate, previous)

@@ -22,7 +22,10 @@ PERTURBATION = 0.05  # m/s or rad/s, a tenth of usual speeds; m or rad
 
 
 def observe(
-    models: Sequence[Model], run: ObservedRun, filters: RunFilters, pushed: Array | None = None
+    models: Sequence[Model],
+    run: ObservedRun,
+    filters: RunFilters,
+    disturbances: Array | None = None,
 ) -> Array:
     """Innovations (m, 6, n) of m models on one run, without their learned residuals.
 
@@ -34,7 +37,7 @@ def observe(
         models: of one vehicle.
         run: what was measured.
         filters: that correct the models.
-        pushed: further accelerations (m, n, 6) of the models at the readings, m/s2 and rad/s2.
+        disturbances: accelerations (m, n, 6) of the models at the readings, m/s2 and rad/s2.
     """
     readings, row, starts = _read_as_modelled(models, run)
     time = run.since_start(run.edges)
@@ -50,10 +53,10 @@ def observe(
         run.motion.binned,
     )
     drives = run.drives.of(models)
-    if pushed is not None:
+    if disturbances is not None:
         drives = [
             drive.with_wrench(_between(run, a) @ model.M.T)
-            for drive, a, model in zip(drives, pushed, models, strict=True)
+            for drive, a, model in zip(drives, disturbances, models, strict=True)
         ]
     e = batch_of(models, run).innovations(drives, starts, correction)
     reported = np.stack([m.mocap_view.twists(a) for m, a in zip(models, e, strict=True)])

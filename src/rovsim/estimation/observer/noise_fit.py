@@ -147,13 +147,13 @@ class _AxisInnovations:
     def _misfit(self, noise: AxisNoise) -> _Misfit:
         """What the likelihood of a noise is made of, summed over all runs."""
         values, squares, logs, count = np.array(noise), 0.0, 0.0, 0.0
-        for run_data in self._known:
+        for run_data in self._kernel_arguments:
             square, log, n = misfit(values, *run_data)
             squares, logs, count = squares + square, logs + n * log, count + n
         return _Misfit(squares, logs, count)
 
     @cached_property
-    def _known(self) -> list[tuple]:
+    def _kernel_arguments(self) -> list[tuple]:
         """Arguments of the kernel `misfit` for each run, without the noise."""
         inputs = zip(self.e, self.runs, self.filters, strict=True)
         return [self._of_run(run, made_by, e) for e, run, made_by in inputs]
@@ -205,13 +205,15 @@ def _fit_white(axis: _AxisInnovations, start: AxisNoise) -> tuple[AxisNoise, flo
     return at(x)[0], least_cost
 
 
-def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[AxisNoise, float]:
+def _fit_bias(
+    axis: _AxisInnovations, white: AxisNoise, white_cost: float
+) -> tuple[AxisNoise, float]:
     """The noise of one axis with a slow error of the readings, if that is surely more likely.
 
     Args:
         axis: the innovations.
         white: the noise so far, with which the fit begins.
-        known: its cost.
+        white_cost: its cost.
 
     Returns:
         The likelier noise, and its cost.
@@ -224,9 +226,9 @@ def _fit_bias(axis: _AxisInnovations, white: AxisNoise, known: float) -> tuple[A
     x0 = white if white.bias_std else guess
     x, least_cost = _descend(cost, np.log(x0))
     if white.bias_std:
-        white, known = _fit_axis(axis, white._replace(bias_std=0.0))
-    if 2.0 * (known - least_cost) < MIN_LR_OF_BIAS:
-        return white, known
+        white, white_cost = _fit_axis(axis, white._replace(bias_std=0.0))
+    if 2.0 * (white_cost - least_cost) < MIN_LR_OF_BIAS:
+        return white, white_cost
     return AxisNoise(*np.exp(x)), least_cost
 
 

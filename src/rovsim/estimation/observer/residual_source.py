@@ -54,17 +54,17 @@ class ResidualSource(Protocol):
         """Errors (..., 6, n) of all runs, scaled so that each tells as much as any other."""
 
 
-def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -> Linearised:
+def linearise(at: Hypothesis, errors: Errors, previous: Linearised | None = None) -> Linearised:
     """Linearise the errors of a hypothesis by finite differences.
 
     Args:
         at: the hypothesis.
         errors: gives the errors (m, 6, n) of m models on each run.
-        known: another hypothesis, whose derivatives to the same parameters are used again. The
+        previous: another hypothesis, whose derivatives to the same parameters are used again. The
             parameters of a law are never the same: its terms are numbered anew as others go.
     """
     count = len(at.x)
-    reused = {} if known is None else _take(at, known)
+    reused = {} if previous is None else _take(at, previous)
     new = [i for i in range(count) if i not in reused]
     sizes = at.steps[new][:, None, None]
     outputs = errors([at.model, *(at.perturbed[i].model for i in new)])
@@ -76,15 +76,15 @@ def linearise(at: Hypothesis, errors: Errors, known: Linearised | None = None) -
     return Linearised(at, [e[0] for e in outputs], J)
 
 
-def _take(at: Hypothesis, known: Linearised) -> dict[int, list[Array]]:
-    """Derivatives of `known` to parameters that both have, by their place in `at`.
+def _take(at: Hypothesis, previous: Linearised) -> dict[int, list[Array]]:
+    """Derivatives of `previous` to parameters that both have, by their place in `at`.
 
     Each is one array (6, n) per run; parameters of a law, which no catalogue lists, are left out.
     """
-    listed = [term.effect.listed for term in known.hypothesis.terms for _ in term.free]
-    rows = {name: k for k, name in enumerate(known.hypothesis.parameter_names) if listed[k]}
+    listed = [term.effect.listed for term in previous.hypothesis.terms for _ in term.free]
+    rows = {name: k for k, name in enumerate(previous.hypothesis.parameter_names) if listed[k]}
     names = enumerate(at.parameter_names)
-    return {i: [J[rows[name]] for J in known.J] for i, name in names if name in rows}
+    return {i: [J[rows[name]] for J in previous.J] for i, name in names if name in rows}
 
 
 def step_back(at: Hypothesis, i: int) -> Hypothesis | None:

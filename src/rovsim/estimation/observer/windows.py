@@ -84,21 +84,21 @@ class Windows:
         return np.concatenate([np.empty(0, int), *parts])
 
     def compare(
-        self, models: Sequence[Model], starts: Array | None = None, pushes: Array | None = None
+        self, models: Sequence[Model], starts: Array | None = None, wrenches: Array | None = None
     ) -> Array:
         """Predicted minus measured velocity (m, n, 6); zero where none was measured or can be.
 
         Args:
             models: to predict with.
             starts: states (m, w, 13) as measured to start from; None: the measured ones.
-            pushes: further wrench (m, k, 6) over the integration steps, N and N m.
+            wrenches: further wrench (m, k, 6) over the integration steps, N and N m.
         """
         if starts is None:
             begin = [undo_mocap_view(m, self.run.motion).state[self.first] for m in models]
         else:
             pairs = zip(models, starts, strict=True)
             begin = [m.mocap_view.inverse.states(state) for m, state in pairs]
-        paths = self._simulate(models, np.array(begin), pushes)
+        paths = self._simulate(models, np.array(begin), wrenches)
         pairs = zip(models, paths, strict=True)
         nu = [self._report(m, of_model) for m, of_model in pairs]
         # all models at once: a window is short, and there are many
@@ -123,13 +123,15 @@ class Windows:
         ]
 
     def _simulate(
-        self, models: Sequence[Model], begin: Array, pushes: Array | None
+        self, models: Sequence[Model], begin: Array, wrenches: Array | None
     ) -> list[list[Array]]:
         """States (steps + 1, 13) of each model from true states (m, w, 13), every step."""
         run = self.run
         drives = run.replay_drives.of(models)
-        if pushes is not None:
-            drives = [drive.with_wrench(push) for drive, push in zip(drives, pushes, strict=True)]
+        if wrenches is not None:
+            drives = [
+                drive.with_wrench(wrench) for drive, wrench in zip(drives, wrenches, strict=True)
+            ]
         begin_steps = self._steps
         steps = np.array([run.at[b] for _, b in self.spans], np.int64) - begin_steps
         begins = Starts(

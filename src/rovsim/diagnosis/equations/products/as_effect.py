@@ -67,7 +67,7 @@ def place_of(law: Term, site: Site) -> Array:
 
 def add_term(
     h: Hypothesis,
-    known: Sequence[LawTerm],
+    law_terms: Sequence[LawTerm],
     more: LawTerm,
     columns: Columns,
     around: CoveredRegion,
@@ -75,8 +75,8 @@ def add_term(
     """Add a term to the law of a hypothesis, with the coefficient that the regression gives.
 
     Args:
-        h: a hypothesis, with a law of the `known` terms; without a law where there are none.
-        known: terms of its law.
+        h: a hypothesis, with a law of `law_terms`; without a law where there are none.
+        law_terms: those of its law.
         more: the term to add, one of those of `columns`.
         columns: of candidate terms on top of the fit of `h`.
         around: the region that the runs covered, in which the law's place is bounded.
@@ -88,7 +88,7 @@ def add_term(
     """
     without_law, law = split_law(h)
     before = effect_of(law) if law else Law()
-    terms, values = (*known, more), before.others
+    terms, values = (*law_terms, more), before.others
     i = columns.terms.index(more)
     power = columns.gram[1 + i, 1 + i]
     coefficient = columns.gram[0, 1 + i] / power if power > 0.0 else 0.0
@@ -99,7 +99,7 @@ def add_term(
         place[:2] = more.place
     bounds = around.bounds
     free_places = list_moved(terms)
-    old = list_moved(known)
+    old = list_moved(law_terms)
     for n, p, sign in zip("xyz", place, around.site.axes, strict=False):
         if n in free_places and n not in old:
             values[n] = float(np.clip(p * sign, *bounds[n]))

@@ -76,8 +76,8 @@ def project(
     begin = 0
     for run, filters in zip(bank.runs, bank.design_filters(noise), strict=True):
         # the columns of one run at a time
-        pushes = wrenches(acting_terms, run, model, middle) / size[acts, None, None]
-        columns = _respond(pushes, model, run, filters)
+        unit_wrenches = wrenches(acting_terms, run, model, middle) / size[acts, None, None]
+        columns = _respond(unit_wrenches, model, run, filters)
         at = slice(begin, begin + columns.shape[2])
         pieces = [white[:, None, at], columns, derivatives[:, :, at].swapaxes(0, 1)]
         stacked = np.concatenate(pieces, axis=1, dtype=np.float32)
@@ -89,11 +89,11 @@ def project(
     return Columns(acting_terms, size[acts], tuple(own_parts), middle)
 
 
-def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
+def _respond(wrenches: Array, model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     """Filter wrenches as the innovations of a run would show them.
 
     Args:
-        pushes: wrenches (c, n, 6) along the body axes at all readings, N and N m.
+        wrenches: (c, n, 6) along the body axes at all readings, N and N m.
         model: gives the inertia.
         run: the run.
         filters: of each axis of that run.
@@ -102,8 +102,8 @@ def _respond(pushes: Array, model: Model, run: ObservedRun, filters: RunFilters)
         The response (6, c, m) in the whitened innovations of the m settled readings; zero on axes
         that were not measured, or in which the vehicle cannot move.
     """
-    accelerations = pushes @ model.body.M_inv.T
-    out = np.zeros((6, len(pushes), int(run.settled.sum())), np.float32)
+    accelerations = wrenches @ model.body.M_inv.T
+    out = np.zeros((6, len(wrenches), int(run.settled.sum())), np.float32)
     for i in np.flatnonzero(run.axes):
         acceleration = accelerations[:, :, i]
         acts = np.flatnonzero(np.abs(acceleration).max(axis=1) > MIN_ACCELERATION)

@@ -62,7 +62,9 @@ class LawTerm:
 KnownPlace = tuple[float | None, float | None]  # m north and east of a law's place, or None
 
 
-def list_terms(runs: Sequence[ObservedRun], known: KnownPlace = (None, None)) -> list[LawTerm]:
+def list_terms(
+    runs: Sequence[ObservedRun], known_place: KnownPlace = (None, None)
+) -> list[LawTerm]:
     """List all candidate terms that runs could show.
 
     Terms along axes of the world and those of a place are only listed if all axes in which the
@@ -70,14 +72,14 @@ def list_terms(runs: Sequence[ObservedRun], known: KnownPlace = (None, None)) ->
 
     Args:
         runs: the runs.
-        known: coordinates that the law's place has already. All terms of a law share one place, so
-            only places with these coordinates are listed.
+        known_place: coordinates that the law's place has already. All terms of a law share one
+            place, so only places with these coordinates are listed.
     """
     moving = np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))
     terms = [term for i in moving for term in list_body_terms(int(i), moving)]
     if not all((run.axes | ~run.free_axes.astype(bool)).all() for run in runs):
         return terms
-    n, e = known
+    n, e = known_place
     positions = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
     places = list(dict.fromkeys(positions))
     return [*terms, *_along_world(), *(t for place in places for t in _at(place))]
@@ -161,16 +163,20 @@ def drag_of(model: Model) -> tuple[Array, Array]:
     return model.body.linear[:3], model.body.quadratic[:3]
 
 
-def push(terms: Sequence[LawTerm], run: ObservedRun, model: Model, middle: Array) -> Array:
+def evaluate_wrenches(
+    terms: Sequence[LawTerm], run: ObservedRun, model: Model, middle: Array
+) -> Array:
     """Evaluate terms with a coefficient of 1 at the n readings of a run.
 
     The states are those measured a little before each reading, see `earlier_states`. For arguments
-    and result see `push_at`.
+    and result see `evaluate_wrenches_at`.
     """
-    return push_at(terms, earlier_states(run), model, middle)
+    return evaluate_wrenches_at(terms, earlier_states(run), model, middle)
 
 
-def push_at(terms: Sequence[LawTerm], state: Array, model: Model, middle: Array) -> Array:
+def evaluate_wrenches_at(
+    terms: Sequence[LawTerm], state: Array, model: Model, middle: Array
+) -> Array:
     """Evaluate terms with a coefficient of 1 at given states.
 
     A flow acts through the drag, which is linearised about still water.
