@@ -114,8 +114,8 @@ def fit_or_give_up(
         The fit; None where it was given up.
     """
 
-    def monitor(seen: Linearised, predicted_reduction: float) -> None:
-        two_log_likelihood = bank.fit_noise(seen.e, noise).two_log_likelihood
+    def monitor(linearised: Linearised, predicted_reduction: float) -> None:
+        two_log_likelihood = bank.fit_noise(linearised.e, noise).two_log_likelihood
         if two_log_likelihood + MAX_REDUCTION_FACTOR * predicted_reduction < least:
             raise GivenUp
 
@@ -159,21 +159,23 @@ def polish(
 
 
 def fit_noise_only(
-    seen: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None
+    linearised: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None
 ) -> Fit:
     """Fit the noise to what a hypothesis leaves; its parameters stay as they are.
 
     Args:
-        seen: the hypothesis, its innovations and their derivatives.
+        linearised: the hypothesis, its innovations and their derivatives.
         bank: that these innovations come from.
         noise: where the fit of the noise begins.
         prior: what is known of the parameters besides; it makes their covariance smaller.
     """
-    if not seen.is_finite:
-        unknown = np.full((len(seen.hypothesis.x), len(seen.hypothesis.x)), np.inf)
-        return Fit(seen, noise, -np.inf, unknown)
-    fitted_noise, two_log_likelihood = bank.fit_noise(seen.e, noise)
-    information = gram(as_rows(bank.whiten(seen.J, fitted_noise)))
+    if not linearised.is_finite:
+        unknown = np.full((len(linearised.hypothesis.x), len(linearised.hypothesis.x)), np.inf)
+        return Fit(linearised, noise, -np.inf, unknown)
+    fitted_noise, two_log_likelihood = bank.fit_noise(linearised.e, noise)
+    information = gram(as_rows(bank.whiten(linearised.J, fitted_noise)))
     if prior is not None:
-        information = information + np.diag(prior.weights(seen.hypothesis.x))
-    return Fit(seen, fitted_noise, two_log_likelihood, solve(information, np.eye(len(information))))
+        information = information + np.diag(prior.weights(linearised.hypothesis.x))
+    return Fit(
+        linearised, fitted_noise, two_log_likelihood, solve(information, np.eye(len(information)))
+    )

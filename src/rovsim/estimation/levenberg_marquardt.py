@@ -30,7 +30,7 @@ def levenberg_marquardt(
     noise: Noise,
     prior: Prior | None = None,
     first: Linearised | None = None,
-    monitor: Monitor = lambda seen, predicted_reduction: None,
+    monitor: Monitor = lambda linearised, predicted_reduction: None,
 ) -> Linearised:
     """Damped least squares from a hypothesis, beside what is known before: where they lead.
 
@@ -126,14 +126,19 @@ class _LeastSquares:
         """Sum of squares of errors, and what the prior says of the hypothesis."""
         return float(residuals @ residuals) + self.prior.cost(wanted.x)
 
-    def expand(self, seen: Linearised) -> QuadraticModel:
+    def expand(self, linearised: Linearised) -> QuadraticModel:
         """The sum of squares to second order about a hypothesis."""
-        rows = as_rows(self.source.whiten(seen.J, self.noise))
-        residuals = self.source.whiten(seen.e, self.noise).ravel()
-        H = gram(rows) + np.diag(self.prior.weights(seen.hypothesis.x))
-        g = rows @ residuals + self._prior_slope(seen.hypothesis.x)
+        rows = as_rows(self.source.whiten(linearised.J, self.noise))
+        residuals = self.source.whiten(linearised.e, self.noise).ravel()
+        H = gram(rows) + np.diag(self.prior.weights(linearised.hypothesis.x))
+        g = rows @ residuals + self._prior_slope(linearised.hypothesis.x)
         return QuadraticModel(
-            seen.hypothesis, H, g, self.cost(seen.hypothesis, residuals), len(residuals), rows
+            linearised.hypothesis,
+            H,
+            g,
+            self.cost(linearised.hypothesis, residuals),
+            len(residuals),
+            rows,
         )
 
     def shift(self, quadratic: QuadraticModel, step: TrialStep) -> QuadraticModel:

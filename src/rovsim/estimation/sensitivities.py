@@ -137,32 +137,34 @@ def _columns(
     return [c.astype(np.float32) for c in columns]  # six digits are enough
 
 
-def _silence_curvature(bank: FilterBank, seen: Linearised) -> list[Array]:
+def _silence_curvature(bank: FilterBank, linearised: Linearised) -> list[Array]:
     """Derivatives (k, 6, n) of each run, zero where the difference is only curvature or rounding.
 
     A small tilt of a vehicle that moves in a plane acts by its square. Its one-sided difference is
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
-    lengths = measure_columns(bank, seen.J)
+    lengths = measure_columns(bank, linearised.J)
     faint_ones = np.flatnonzero(
         (lengths > MAX_ROUNDING_STDS) & (lengths < MIN_VISIBLE_STDS)
     ).tolist()
-    stepped_back = {i: step_back(seen.hypothesis, i) for i in faint_ones}
+    stepped_back = {i: step_back(linearised.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
     scale = np.where(lengths > MAX_ROUNDING_STDS, 1.0, 0.0)[:, None, None]
-    if not seen.is_finite:
-        return seen.J
+    if not linearised.is_finite:
+        return linearised.J
     if not possible:
         return [scale * J for J in seen.J]
     faint = list(possible)
-    sizes = np.array([(seen.hypothesis.x - h.x)[i] for i, h in possible.items()])[:, None, None]
+    sizes = np.array([(linearised.hypothesis.x - h.x)[i] for i, h in possible.items()])[
+        :, None, None
+    ]
     outputs = bank.evaluate([h.model for h in possible.values()])
     central = [
         0.5 * (J[faint] + (e - e_back) / sizes)
-        for J, e, e_back in zip(seen.J, seen.e, outputs, strict=True)
+        for J, e, e_back in zip(linearised.J, linearised.e, outputs, strict=True)
     ]
     scale[faint, 0, 0] = measure_columns(bank, central) >= MIN_CENTRAL_SHARE * lengths[faint]
-    return [scale * J for J in seen.J]
+    return [scale * J for J in linearised.J]
 
 
 def measure_columns(bank: FilterBank, columns: Sequence[Array]) -> Array:

@@ -76,12 +76,12 @@ class WhiteColumns:
         bank = self.bank.redesign(at.model, self.noise)
         return relinearise_candidates(bank, at, self.sensitivities)
 
-    def have_changed(self, seen: Linearised) -> bool:
+    def have_changed(self, linearised: Linearised) -> bool:
         """Whether the accepted effects have changed their own derivatives, and so perhaps others.
 
         Always False where axes drive each other: the columns are then made anew with every noise.
         """
-        h = seen.hypothesis
+        h = linearised.hypothesis
         if self.bank.coupled:
             return False
         by_name = {
@@ -91,7 +91,7 @@ class WhiteColumns:
         }
         names = [(term.id, name) for term in h.terms for name in term.free]
         pairs = [(k, by_name[name]) for k, name in enumerate(names) if name in by_name]
-        rows = self.bank.flatten([J.astype(np.float32) for J in seen.J], self.noise)
+        rows = self.bank.flatten([J.astype(np.float32) for J in linearised.J], self.noise)
         columns = self._whiten(h).columns
         return any(_turned(rows[k], columns[j]) > MAX_TURNED_SQUARE for k, j in pairs)
 
@@ -107,20 +107,20 @@ class WhiteColumns:
         """Lengths (c,) of the whitened columns, beside the loops on board of a hypothesis."""
         return np.sqrt(np.diag(self._whiten(at).gram))
 
-    def gram(self, seen: Linearised) -> Array:
+    def gram(self, linearised: Linearised) -> Array:
         """Gram matrix (1 + c, 1 + c) of the innovations and the candidates' columns.
 
         What the free parameters of the hypothesis can explain is projected out of both. The result
         is kept, since proposals, swaps and a loose file all need it.
         """
-        if seen not in self._grams:
-            self._grams[seen] = self._multiply(seen)
-        return self._grams[seen]
+        if linearised not in self._grams:
+            self._grams[linearised] = self._multiply(linearised)
+        return self._grams[linearised]
 
-    def _multiply(self, seen: Linearised) -> Array:
-        rows = [row.astype(np.float32) for row in seen.rows]
+    def _multiply(self, linearised: Linearised) -> Array:
+        rows = [row.astype(np.float32) for row in linearised.rows]
         white_rows = self.bank.flatten(rows, self.noise)
-        columns, gram_columns = self._whiten(seen.hypothesis)
+        columns, gram_columns = self._whiten(linearised.hypothesis)
         cross = white_rows @ columns.T
         G = np.block([[gram(white_rows), cross], [cross.T, gram_columns]])
         places = [0, *range(len(white_rows), len(G))]

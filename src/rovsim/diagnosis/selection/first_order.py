@@ -99,12 +99,12 @@ class FirstOrder:
         """
         return [self._step(linearised) for linearised in self._without(current, groups)]
 
-    def _step(self, seen: Linearised) -> Hypothesis:
+    def _step(self, linearised: Linearised) -> Hypothesis:
         """The hypothesis at the values for which a Gauss-Newton step predicts the least errors."""
-        if not seen.is_finite:
-            return seen.hypothesis
-        step = newton_step(gram(self.columns.bank.flatten(seen.rows, self.columns.noise)))
-        return seen.hypothesis.at(seen.hypothesis.x + step)
+        if not linearised.is_finite:
+            return linearised.hypothesis
+        step = newton_step(gram(self.columns.bank.flatten(linearised.rows, self.columns.noise)))
+        return linearised.hypothesis.at(linearised.hypothesis.x + step)
 
     def _without(self, current: Fit, groups: Sequence[Sequence[Term]]) -> list[Linearised]:
         """Without each group of terms in turn: innovations anew, derivatives of the current fit."""

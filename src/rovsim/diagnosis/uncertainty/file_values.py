@@ -31,7 +31,7 @@ from scipy.stats import chi2
 
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART
-from rovsim.diagnosis.selection.vehicle_file.whole_file import know_file, mark_new
+from rovsim.diagnosis.selection.vehicle_file.whole_file import make_file_prior, mark_new
 from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale, describe_scale
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
@@ -60,7 +60,11 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     tested, count = new & (share > 0.0), int(np.sum(share > 0.0))
     if not tested.any() or whole.distance(tested) > chi2.isf(FALSE_ALARM_RATE, tested.sum()):
         return False
-    prior_std, spread, one = know_file(selected, h).std[tested], share[tested], np.eye(tested.sum())
+    prior_std, spread, one = (
+        make_file_prior(selected, h).std[tested],
+        share[tested],
+        np.eye(tested.sum()),
+    )
     information = solve(whole.covariance[np.ix_(tested, tested)], one)
     pull = information @ (h.x - h.absence)[tested]
     by_runs = information - np.diag(prior_std**-2.0)  # by the runs: the fit knew the file as well
@@ -83,7 +87,7 @@ def settle_whole_file(
         The final fit, and the common scale; None where that is known.
     """
     h, new = whole.hypothesis, mark_new(selected, whole.hypothesis)
-    undetermined = new & (whole.std > MAX_STD_RATIO * know_file(selected, h).std)
+    undetermined = new & (whole.std > MAX_STD_RATIO * make_file_prior(selected, h).std)
     owner = np.array([term.id for term in h.terms for _ in term.free])
     accepted = {term.id for term in selected.terms}
     sure_gain = _name_gain(whole)

@@ -78,7 +78,7 @@ class TetherTension(Wrench):
 
 
 @inlined
-def known(value, otherwise):
+def replace_nan(value, otherwise):
     """The value, or `otherwise` if it is NaN."""
     return value if value == value else otherwise
 
@@ -129,11 +129,11 @@ class TetherDrag(Wrench):
     def wrench(at, p):
         """Drag at the attachment, and its moment about CO."""
         (x0, x1), (y0, y1), surface = at.tank[0], at.tank[1], at.tank[2][0]
-        north = known(p.anchor_x * at.axes[0], 0.5 * (x0 + x1)) - at.position[0]
-        east = known(p.anchor_y * at.axes[1], 0.5 * (y0 + y1)) - at.position[1]
-        down = known(p.anchor_z * at.axes[2], surface) - at.position[2]
+        north = replace_nan(p.anchor_x * at.axes[0], 0.5 * (x0 + x1)) - at.position[0]
+        east = replace_nan(p.anchor_y * at.axes[1], 0.5 * (y0 + y1)) - at.position[1]
+        down = replace_nan(p.anchor_z * at.axes[2], surface) - at.position[2]
         # 0, where the place is unknown: the coefficient is then 0
-        r = known(sqrt(north * north + east * east + down * down), 0.0)
+        r = replace_nan(sqrt(north * north + east * east + down * down), 0.0)
         v = at.nu_r[:3]
         drag = -p.coefficient * r * sqrt(dot3(v, v))
         return attached(p, (drag * v[0], drag * v[1], drag * v[2]))

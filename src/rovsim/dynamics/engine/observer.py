@@ -64,15 +64,15 @@ def headed(q, y):
 
 
 @inline_internal
-def axes_of_errors(q, known):
+def axes_of_errors(q, measured):
     """Rotation to NED from the axes of position errors: body axes, or level ones at its yaw."""
-    if known[4] == 1.0:
+    if measured[4] == 1.0:
         return rotation(heading(q))
     return rotation(q)
 
 
 @inline_internal
-def pose_error(x, y, known):
+def pose_error(x, y, measured):
     """Innovation (6) of a pose: measured y (7,) minus predicted, m and rad (rotation vector).
 
     Position errors are along `axes_of_errors`, rotations along body axes.
@@ -80,19 +80,19 @@ def pose_error(x, y, known):
     Args:
         x: predicted state.
         y: measured position in NED, m, and quaternion body to world.
-        known: (5,) 1 where x, y, z and yaw were measured, 0 where the prediction stands in for
+        measured: (5,) 1 where x, y, z and yaw were measured, 0 where the prediction stands in for
             them. The last element is 1 where different sensors measure height and horizontal
             position: position errors are then along level axes, which keeps their noise apart.
     """
     moved = (
-        known[0] * (y[0] - x.position[0]),
-        known[1] * (y[1] - x.position[1]),
-        known[2] * (y[2] - x.position[2]),
+        measured[0] * (y[0] - x.position[0]),
+        measured[1] * (y[1] - x.position[1]),
+        measured[2] * (y[2] - x.position[2]),
     )
-    d = into_body(axes_of_errors(x.attitude, known), moved)
+    d = into_body(axes_of_errors(x.attitude, measured), moved)
     w, i, j, k = x.attitude
     a, b, c, e = y[3], y[4], y[5], y[6]
-    if known[3] == 0.0:
+    if measured[3] == 0.0:
         a, b, c, e = headed(x.attitude, y)
     real = w * a + i * b + j * c + k * e
     two = 2.0 if real >= 0.0 else -2.0
@@ -120,7 +120,7 @@ def velocity_error(mean, y):
 
 
 @inline_internal
-def corrected(x, y, e, known, gain_pose, gain_nu, by_velocity):
+def corrected(x, y, e, measured, gain_pose, gain_nu, by_velocity):
     """The state corrected by an innovation e (6), with gains (6) on the pose and on nu.
 
     With `by_velocity`, e corrects nu alone, and the measured pose of y replaces the predicted one.
@@ -129,7 +129,7 @@ def corrected(x, y, e, known, gain_pose, gain_nu, by_velocity):
     if by_velocity:
         return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
     k = each6(gain_pose, e)
-    position = add3(x.position, 1.0, into_world(axes_of_errors(x.attitude, known), k[:3]))
+    position = add3(x.position, 1.0, into_world(axes_of_errors(x.attitude, measured), k[:3]))
     return State(position, turned(x.attitude, k[3:]), nu)
 
 
@@ -144,7 +144,7 @@ def observe(extra, jobs, world, correction, out):
         correction: the readings and the filters, a `rovsim.simulation.correction.Correction`.
         out: (.., 6) innovations, m or m/s and rad or rad/s.
     """
-    inputs, time, ends, known = world.inputs, correction.time, correction.ends, correction.known
+    inputs, time, ends, measured = world.inputs, correction.time, correction.ends, correction.known
     by_velocity, decay, gains = correction.by_velocity, correction.decay, correction.gains
     constants, parameter_sets = world.constants, world.parameters
     surroundings = surroundings_of(world.site)
@@ -171,9 +171,9 @@ def observe(extra, jobs, world, correction, out):
                 mean = add6(mean, h / duration, average)
                 a, n = each6(vector6(decay[n]), a), n + 1
             y = correction.readings[correction.row[m], k]
-            e = velocity_error(mean, y) if by_velocity else pose_error(x, y, known)
+            e = velocity_error(mean, y) if by_velocity else pose_error(x, y, measured)
             e = each6(vector6(correction.seen[k]), e)
-            x = renormalised(corrected(x, y, e, known, gain_pose, gain_nu, by_velocity))
+            x = renormalised(corrected(x, y, e, measured, gain_pose, gain_nu, by_velocity))
             a = add6(a, 1.0, each6(gain_a, e))
             for i in range(6):
                 out[at + k - first - 1, i] = e[i]

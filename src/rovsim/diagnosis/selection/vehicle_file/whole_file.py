@@ -30,7 +30,7 @@ def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit 
     if not has_loose_file(selected):
         return None
     hypothesis = free_rest(selected)
-    prior = know_file(selected, hypothesis)
+    prior = make_file_prior(selected, hypothesis)
     linearised = levenberg_marquardt(hypothesis, bank, noise, prior)
     return fit_noise_only(linearised, bank, noise, prior) if linearised.is_finite else None
 
@@ -43,10 +43,10 @@ def measure_misfit(whole: Fit, selected: Hypothesis) -> float:
         selected: what was selected, as it was fitted.
     """
     x = whole.hypothesis.x
-    return know_file(selected, free_rest(selected)).cost(x) - whole.two_log_likelihood
+    return make_file_prior(selected, free_rest(selected)).cost(x) - whole.two_log_likelihood
 
 
-def know_file(selected: Hypothesis, freed: Hypothesis) -> Prior:
+def make_file_prior(selected: Hypothesis, freed: Hypothesis) -> Prior:
     """Of numbers that were not selected, what such files are off by; of a selected gain as well."""
     new, gain = mark_new(selected, freed), mark_gain(freed)
     std = np.full(len(new), np.inf)
