@@ -12,7 +12,7 @@ from numpy import ndarray as Array
 from rovsim.core.axes import AXES
 
 TICK_SECONDS = 0.1  # s between two positions of a stick: a hand does not move it faster than 5 Hz
-MIN_HZ, MAX_HZ = 0.02, 1.0  # once in most of a minute; half of what a hand can do
+MIN_HZ, MAX_HZ = 0.02, 1.0  # of a swing: once in most of a minute; half of what a hand can do
 MAX_STEEPNESS = 6.0  # a sine sharpened so far stands at its ends for two thirds of the time
 SWELL_SECONDS = 30.0  # s from strong to weak and back
 MIN_AMPLITUDE = 0.08  # of a stick: moved less, it rests
@@ -88,7 +88,7 @@ def _steps(t: Array, axes: Array, random: np.random.Generator) -> Array:
     return inputs
 
 
-TONES_PER_AXIS = 5
+TONES_PER_AXIS = 5  # sines of a multisine
 
 
 def _multisine(t: Array, axes: Array, random: np.random.Generator) -> Array:

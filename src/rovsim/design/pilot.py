@@ -24,7 +24,7 @@ from rovsim.simulation.rest import rest_state
 # get through, an angle within a second, as an autopilot does
 PLACE_BANDWIDTH, ANGLE_BANDWIDTH, DAMPING_RATIO = 0.3, 2.0, 0.7
 STEPS_PER_TICK = 2  # of Heun's method
-TILT_DIFFERENCE_RAD = 0.05
+TILT_DIFFERENCE_RAD = 0.05  # of a finite difference
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,10 +27,7 @@ from rovsim.design.settings import DesignSettings
 # Where one axis at a time is tried: swings of 20 s to 2 s, soft and sharp.
 FREQUENCY_GRID, SQUARE_GRID, AMPLITUDE_GRID = (0.05, 0.12, 0.25, 0.5), (0.0, 0.8), (0.3, 0.6, 1.0)
 # Of the usual manoeuvres: sticks in the plane, and out of it.
-IN_PLANE_SCALES, OUT_OF_PLANE_SCALES = (
-    (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0),
-    (0.05, 0.1, 0.2, 0.4, 0.8),
-)
+IN_PLANE, OUT_OF_PLANE = (0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0), (0.05, 0.1, 0.2, 0.4, 0.8)
 MUTATION_STD = 0.05  # of the range of each number, by which mixtures of two flights are varied
 MAX_INFEASIBLE_RANK = -100.0  # the rank from which on flights leave the limits
 FLIGHTS_PER_BATCH = 96  # side by side: ten minutes of each take some megabytes
@@ -137,7 +134,7 @@ class DesignProblem:
 def evaluate_baselines(problem: DesignProblem, seed: int) -> dict[str, list[CandidateFlight]]:
     """Evaluate each usual manoeuvre at all amplitudes: by name, the largest utility first."""
     by_name, t = {}, ticks(problem.setup.seconds)
-    levels = list(product(IN_PLANE_SCALES, OUT_OF_PLANE_SCALES))
+    levels = list(product(IN_PLANE, OUT_OF_PLANE))
     for name, baseline in BASELINES.items():
         full = baseline.move(t, problem.axes, np.random.default_rng(seed))
         scales = [np.where(np.isin(np.arange(6), VERTICAL_AXES), b, a) for a, b in levels]

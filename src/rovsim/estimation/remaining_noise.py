@@ -14,7 +14,7 @@ from rovsim.estimation.observer.noise import FIRST_NOISE, Noise
 from rovsim.estimation.observer.noise_fit import NoiseFit
 from rovsim.estimation.sensitivities import Sensitivities
 
-SEED = 0
+SEED = 0  # of the remainders that are drawn
 MIN_READINGS = 10_000  # of fewer, several remainders are drawn, or their noise would be chance
 MAX_NOISE_ROUNDS = 10  # at most, where the noise is not yet known
 LOG_STD_TOLERANCE = 0.1  # of the disturbance: it has converged if it changes by less

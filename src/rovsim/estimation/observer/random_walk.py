@@ -21,7 +21,7 @@ MAX_FREQUENCY_HZ = 0.5  # what is faster is too little to be told from the distu
 LEAD_SECONDS = 60.0  # for which it has wandered when a recording begins: a flight made ready
 MIN_POWER_SHARE = 1e-9  # of the largest: directions that show nothing
 MIN_RATE, MAX_RATE, RATES_TRIED = 1e-5, 10.0, 80  # rates, from none that shows to larger than any
-SEED = 0
+SEED = 0  # of the noise that is drawn
 LOG_RATE_STEP = 0.05  # for the second derivative
 
 
