@@ -117,7 +117,7 @@ def _free(
         return replace(h, terms=terms)
     added = next((e for e in h.base.added if e.id == effect), None)
     if added is not None:
-        return _without(h, effect).with_term(Term(added, (parameter,)))
+        return _drop_effects(h, effect).with_term(Term(added, (parameter,)))
     starts = [c.start for c in candidates if c.effect.id == effect]
     trials = [h.with_term(Term(start, (parameter,))) for start in starts]
     if len(trials) == 1:
@@ -126,7 +126,7 @@ def _free(
     return max(fits, key=lambda trial: trial.two_log_likelihood).hypothesis
 
 
-def _without(h: Hypothesis, *names: str) -> Hypothesis:
+def _drop_effects(h: Hypothesis, *names: str) -> Hypothesis:
     """The hypothesis without these effects, whether they were fitted or not.
 
     Effects that the vehicle has by itself stay.
@@ -175,7 +175,7 @@ def _fit_rivals(
     candidates: Sequence[Candidate],
 ) -> PriorInformation:
     """Each rival fitted in the other's absence, beside all else."""
-    rest, fits, penalty = _without(start, *question.between), [], 0.0
+    rest, fits, penalty = _drop_effects(start, *question.between), [], 0.0
     for name in question.between:
         start_term = next((t for t in start.terms if t.id == name), None)
         starts = [c for c in candidates if c.effect.id == name]

@@ -91,13 +91,15 @@ def estimate_disturbance(
     slow = Noise(noise.disturbance_std, np.full(6, OBSERVER_MEMORY_SECONDS), noise.measurement_std)
     blocks: list[Array] = []
     for run in runs:
-        blocks += _average(run, _follow(model, run, design_filters(slow, error_dynamics, run)))
+        blocks += _average(
+            run, _estimate_at_readings(model, run, design_filters(slow, error_dynamics, run))
+        )
     return LowFrequencyDisturbance.of_blocks(
         np.array(blocks) * model.body.free, BLOCK_SECONDS, noise
     )
 
 
-def _follow(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
+def _estimate_at_readings(model: Model, run: ObservedRun, filters: RunFilters) -> Array:
     """The disturbance (n, 6) that the filters estimate at the readings, m/s2 and rad/s2."""
     e = np.nan_to_num(observe([model], run, filters)[0])
     force, decay = np.zeros(e.T.shape), filters.decay(np.array([run.period]))[0]

@@ -71,7 +71,7 @@ class FittedHypothesis:
         A parameter that the runs do not tell varies by one scale, the size of a change that is
         worth looking for. A model that is impossible is replaced by the likeliest one.
         """
-        h, root = self.hypothesis, _root(self.covariance(prior_std=1.0))
+        h, root = self.hypothesis, _square_root(self.covariance(prior_std=1.0))
         models = [h.model]
         while len(models) < count:
             model = h.at(h.x + root @ random.normal(size=len(h.x))).model
@@ -79,7 +79,7 @@ class FittedHypothesis:
         return models
 
 
-def _root(covariance: Array) -> Array:
+def _square_root(covariance: Array) -> Array:
     values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
     return vectors * np.sqrt(np.maximum(values, 0.0))
 

@@ -173,12 +173,12 @@ def search(problem: DesignProblem, settings: DesignSettings, seed: int) -> list[
     def rate(x: Array) -> Array:
         rated = []
         for batch in in_parts(np.clip(x.T, 0.0, 1.0)):
-            rated += [Rated(f.numbers, _ranked(f)) for f in problem.evaluate_numbers(batch)]
+            rated += [Rated(f.numbers, _rank(f)) for f in problem.evaluate_numbers(batch)]
         archive.extend(rated)
         return np.array([-f.rank for f in rated])
 
     rate(_one_axis_each(problem).T)
-    first = _begin(archive, problem, settings.population, np.random.default_rng(seed))
+    first = _begin_generation(archive, problem, settings.population, np.random.default_rng(seed))
     scipy.optimize.differential_evolution(
         cast(Any, rate),  # whole generations, which its types do not know
         scipy.optimize.Bounds(np.zeros(first.shape[1]), np.ones(first.shape[1])),
@@ -202,7 +202,7 @@ def in_parts(x: Sequence[Array]) -> list[Sequence[Array]]:
     return [x[first : first + FLIGHTS_PER_BATCH] for first in range(0, len(x), FLIGHTS_PER_BATCH)]
 
 
-def _ranked(one: CandidateFlight) -> float:
+def _rank(one: CandidateFlight) -> float:
     """The rank of a flight: any flight within the limits is above all flights beyond them."""
     if one.expected:
         return float(np.log(max(one.utility, 1e-12)))
@@ -224,7 +224,7 @@ def _one_axis_each(problem: DesignProblem) -> Array:
     return np.array(rows)
 
 
-def _begin(
+def _begin_generation(
     archive: Sequence[Rated], problem: DesignProblem, population: int, random: np.random.Generator
 ) -> Array:
     """The first generation (population, 1 + 5 j).

@@ -66,14 +66,14 @@ def advise(
         catalogue: says what reveals each effect.
     """
     if not diagnosis.enough:
-        return _begin_again(diagnosis)
+        return _advise_new_data(diagnosis)
     parts = _doubt_units(diagnosis)
     doubts = {s.doubt for s in diagnosis.selected}
     parts += [text for doubt, text in ADVICE_ON_DOUBT.items() if doubt in doubts]
     if groups:
         names = " and ".join(groups[0])
         parts.append(
-            f"{names} cannot be told apart with these runs. {_revealed(groups[0], catalogue)}"
+            f"{names} cannot be told apart with these runs. {_list_revealing(groups[0], catalogue)}"
         )
         pair = ",".join(groups[0][:2])
         parts.append(
@@ -81,10 +81,10 @@ def advise(
             "that can stay in one place."
         )
     if joint:
-        parts.append(_apart(joint, catalogue, diagnosis.base.vehicle.thruster_names))
+        parts.append(_advise_separation(joint, catalogue, diagnosis.base.vehicle.thruster_names))
     if diagnosis.scale:
         parts.append(FIX_SCALE)
-    parts += _show_more(diagnosis)
+    parts += _advise_excitation(diagnosis)
     if diagnosis.structures:
         structure = diagnosis.structures[0]
         parts.append(
@@ -95,7 +95,7 @@ def advise(
     return " ".join(parts) or _confirm(diagnosis)
 
 
-def _begin_again(diagnosis: TrainDiagnosis) -> str:
+def _advise_new_data(diagnosis: TrainDiagnosis) -> str:
     """Say what is needed where there was too little to judge anything."""
     if diagnosis.usable.lost:
         return CORRECT_DIVERGING_MODEL
@@ -113,7 +113,7 @@ def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
-def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
+def _advise_excitation(diagnosis: TrainDiagnosis) -> list[str]:
     """Say which axes to move, what to command and what to measure, where nobody did."""
     parts = []
     if at_rest := diagnosis.usable.still:
@@ -130,18 +130,20 @@ def _show_more(diagnosis: TrainDiagnosis) -> list[str]:
     ]
 
 
-def _revealed(names: Sequence[str], catalogue: Catalogue) -> str:
+def _list_revealing(names: Sequence[str], catalogue: Catalogue) -> str:
     """What reveals each of these effects, in sentences of the catalogue."""
     return " ".join(text for name in names if (text := catalogue[name].revealed_by))
 
 
-def _apart(joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequence[str]) -> str:
+def _advise_separation(
+    joint: Sequence[Sequence[str]], catalogue: Catalogue, thrusters: Sequence[str]
+) -> str:
     """Say how to tell values apart: by what reveals the effect to which most of them belong."""
     owners = [name.split(".")[0] for group in joint for name in group]
     commonest = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{commonest}.") for name in g))
     names = ", ".join(with_thruster_names(group, thrusters))
-    return f"To know {names} one by one: {_how(catalogue[commonest], group)}"
+    return f"To know {names} one by one: {_advise_on(catalogue[commonest], group)}"
 
 
 def _confirm(diagnosis: TrainDiagnosis) -> str:
@@ -150,10 +152,10 @@ def _confirm(diagnosis: TrainDiagnosis) -> str:
         return "Nothing is needed: drive faster or in other places to look for rarer effects."
     weakest = min(diagnosis.selected, key=lambda s: s.error_reduction)
     parameters = [f"{weakest.term.id}.{name}" for name in weakest.term.free]
-    return f"To be surer of {weakest.term.id}: {_how(type(weakest.term.effect), parameters)}"
+    return f"To be surer of {weakest.term.id}: {_advise_on(type(weakest.term.effect), parameters)}"
 
 
-def _how(effect: type[Effect], parameters: Sequence[str]) -> str:
+def _advise_on(effect: type[Effect], parameters: Sequence[str]) -> str:
     """Say what reveals an effect, or how to plan a flight, where a user's effect does not say.
 
     Args:

@@ -79,7 +79,9 @@ def diagnose_campaign(
         failing: is told under which conditions the base fails, as soon as these are known.
     """
     begin_stage("reading")
-    searched_models, standstills = _look(base, runs, settings) if runs.of("train") else ([], ())
+    searched_models, standstills = (
+        _scan_train_runs(base, runs, settings) if runs.of("train") else ([], ())
+    )
     conditions = list_conditions(searched_models)
     failing(conditions)
     train = prepare_train(
@@ -90,7 +92,7 @@ def diagnose_campaign(
     )
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
-    ladder, diverged_runs = _climb(diagnosis, runs, settings, catalogue)
+    ladder, diverged_runs = _build_ladder(diagnosis, runs, settings, catalogue)
     context = CampaignContext(
         recordings, shares, ladder, train.looked_at, standstills, diverged_runs
     )
@@ -100,7 +102,7 @@ def diagnose_campaign(
     )
 
 
-def _look(
+def _scan_train_runs(
     base: Model, runs: Runs, settings: DiagnosisSettings
 ) -> tuple[Sequence[SearchedModel], Sequence[Standstill]]:
     """Find under which conditions the base fails, and where vehicles stand still although it moves.
@@ -121,7 +123,7 @@ def _look(
     return [search.result], standstills
 
 
-def _climb(
+def _build_ladder(
     diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
 ) -> tuple[Ladder, Sequence[str]]:
     """Make the ladder: errors of the base and with one effect more each, on the test runs.
@@ -140,7 +142,7 @@ def _climb(
             prediction = replay(model, motion, window_settings, open_loop=False)
             score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
     steps = [score.step for score in scores]
-    floor = _floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
+    floor = _estimate_noise_floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
     return Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
 
 
@@ -149,7 +151,7 @@ def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:
     return [*diagnosis.models(), *([diagnosis.proposed.model] if diagnosis.proposed else [])]
 
 
-def _floor(
+def _estimate_noise_floor(
     diagnosis: TrainDiagnosis,
     runs: Runs,
     settings: DiagnosisSettings,

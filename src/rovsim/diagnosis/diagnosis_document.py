@@ -92,15 +92,15 @@ def assemble_diagnosis(
     joint = _list_joint(diagnosis)
     return Diagnosis(
         verdict=diagnosis.verdict,
-        selected=tuple(map(_selected, diagnosis.selected)),
-        ranking=tuple(map(_ranked, _listed(diagnosis))),
+        selected=tuple(map(_describe_selected, diagnosis.selected)),
+        ranking=tuple(map(_describe_ranked, _list_ranking(diagnosis))),
         indistinguishable=tuple(map(tuple, groups)),
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
         where=tuple(context.where),
         unexplained=describe_structures(diagnosis),
         next_experiment=advise(diagnosis, groups, joint, catalogue),
-        error=_errors(context.ladder, len(diagnosis.selected)),
+        error=_summarise_errors(context.ladder, len(diagnosis.selected)),
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,
         not_commanded=diagnosis.not_commanded,
@@ -112,7 +112,7 @@ def assemble_diagnosis(
             for r in diagnosis.rivals
             if np.isfinite(r.deviance_difference)
         ),
-        noise=_noise(diagnosis),
+        noise=_describe_noise(diagnosis),
         posterior=_describe_posterior(diagnosis),
         looked_at=context.looked_at,
         not_followed_from_s={run: round(at, 1) for run, at in diagnosis.usable.lost.items()},
@@ -140,7 +140,7 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     return ScaleOfForces(std=rounded(scale.std), parameters=scale.parameters)
 
 
-def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
+def _summarise_errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     """Normalised errors in windows of 2 s (docs/signals.md); None where no test run can be scored.
 
     Args:
@@ -153,7 +153,7 @@ def _errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     )
 
 
-def _selected(one: OrderedEffect) -> SelectedEffect:
+def _describe_selected(one: OrderedEffect) -> SelectedEffect:
     """Report an accepted effect."""
     return SelectedEffect(
         effect=one.term.id,
@@ -164,7 +164,7 @@ def _selected(one: OrderedEffect) -> SelectedEffect:
     )
 
 
-def _ranked(one: RankedEffect) -> FittedEffect:
+def _describe_ranked(one: RankedEffect) -> FittedEffect:
     """Report an effect of the ranking; its values are first estimates, without deviations."""
     return FittedEffect(
         effect=one.term.id,
@@ -174,7 +174,7 @@ def _ranked(one: RankedEffect) -> FittedEffect:
     )
 
 
-def _listed(diagnosis: TrainDiagnosis) -> list[RankedEffect]:
+def _list_ranking(diagnosis: TrainDiagnosis) -> list[RankedEffect]:
     """List the first effects of the ranking, and the selected ones wherever they stand in it."""
     selected_ids = {s.term.id for s in diagnosis.selected}
     return [
@@ -207,7 +207,7 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     return Unexplained(
         fraction=rounded(share),
         significant=True,
-        hint=_hint(diagnosis.structures) if diagnosis.structures else REFUSED_EFFECTS_HINT,
+        hint=_format_hint(diagnosis.structures) if diagnosis.structures else REFUSED_EFFECTS_HINT,
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
         stand_ins=tuple(
             sorted(s.term.id for s in diagnosis.selected if s.doubt in STAND_IN_DOUBTS)
@@ -216,7 +216,7 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     )
 
 
-def _hint(structures: Sequence[Structure]) -> str:
+def _format_hint(structures: Sequence[Structure]) -> str:
     """Say on which axes something is left, and what it depends on; the most surprising first."""
     strongest = structures[0]
     # the first of each other axis
@@ -260,7 +260,7 @@ def _list_effects(fit: Fit) -> tuple[FittedEffect, ...]:
     )
 
 
-def _noise(diagnosis: TrainDiagnosis) -> FittedNoise:
+def _describe_noise(diagnosis: TrainDiagnosis) -> FittedNoise:
     """Report the noise of the fit: the disturbance on each axis, and the errors of the readings."""
     if diagnosis.fit is None:
         return FittedNoise()

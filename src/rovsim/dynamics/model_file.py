@@ -223,12 +223,12 @@ def describe_model(model: Model) -> dict[str, Any]:
     is_shipped = known_vehicle(name) is not None and load_vehicle(name) == model.vehicle
     return {
         "schema": SCHEMA,
-        "vehicle": name if is_shipped else _described(model.vehicle),
+        "vehicle": name if is_shipped else _describe_vehicle(model.vehicle),
         "effects": [describe_effect(effect).plain() for effect in model.added],
     }
 
 
-def _described(vehicle: Vehicle) -> dict[str, Any]:
+def _describe_vehicle(vehicle: Vehicle) -> dict[str, Any]:
     """The content of a vehicle's file."""
     return vehicle.model_dump(mode="json", by_alias=True, exclude_unset=True)
 

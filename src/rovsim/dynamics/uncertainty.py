@@ -43,9 +43,9 @@ class Draws:
     def draw(self, random: np.random.Generator) -> tuple[Effect, ...]:
         """Draw the effects' values from the Gaussian, each clipped to its range."""
         names = self.correlation.between
-        sample = _root(self.correlation) @ random.normal(size=len(names))
+        sample = _square_root(self.correlation) @ random.normal(size=len(names))
         errors = dict(zip(names, sample, strict=True))
-        return tuple(_move(effect, errors, random) for effect in self.effects)
+        return tuple(_add_errors(effect, errors, random) for effect in self.effects)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ class Uncertainty:
         return [self.own, *(draws for _, draws in self.instead)][chosen].draw(random)
 
 
-def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator) -> Effect:
+def _add_errors(effect: Effect, errors: dict[str, float], random: np.random.Generator) -> Effect:
     """Add errors, in standard deviations, to an effect's values; draw errors not given."""
     z = {name: errors.get(f"{effect.id}.{name}", random.normal()) for name in effect.std}
     return effect.with_values(
@@ -82,7 +82,7 @@ def _move(effect: Effect, errors: dict[str, float], random: np.random.Generator)
     )
 
 
-def _root(correlation: Correlation) -> Array:
+def _square_root(correlation: Correlation) -> Array:
     """A root A (k, k) of the correlation, A A' = C; eigenvalues below 0 by rounding are clipped."""
     values, vectors = np.linalg.eigh(correlation.lower)  # eigh reads only the lower triangle
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))

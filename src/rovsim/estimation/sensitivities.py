@@ -86,7 +86,7 @@ def linearise_candidates(
     for candidate in candidates:
         columns = _columns(bank, base, candidate, absent)
         if all(np.isfinite(x).all() for x in columns):
-            blocks.append(_place(candidate, count))
+            blocks.append(_number_columns(candidate, count))
             parts.append(columns)
             count += len(columns[0])
     matrices = [np.concatenate(of_run) for of_run in zip(*parts, strict=True)]
@@ -117,7 +117,7 @@ def relinearise_candidates(
     return replace(previous, bank=bank, base=base, columns=matrices, added_ids=added_ids)
 
 
-def _place(candidate: Candidate, first: int) -> CandidateColumns:
+def _number_columns(candidate: Candidate, first: int) -> CandidateColumns:
     """Number the candidate's columns, beginning at `first`."""
     if candidate.absent:
         return CandidateColumns(candidate, None, tuple(range(first, first + len(candidate.sloped))))

@@ -93,7 +93,7 @@ class WhiteColumns:
         pairs = [(k, by_name[name]) for k, name in enumerate(names) if name in by_name]
         rows = self.bank.flatten([J.astype(np.float32) for J in linearised.J], self.noise)
         columns = self._whiten(h).columns
-        return any(_turned(rows[k], columns[j]) > MAX_TURNED_SQUARE for k, j in pairs)
+        return any(_measure_turned(rows[k], columns[j]) > MAX_TURNED_SQUARE for k, j in pairs)
 
     def _whiten(self, at: Hypothesis) -> _White:
         loops = _list_loops(at.model)
@@ -133,7 +133,7 @@ class WhiteColumns:
         return projected
 
 
-def _turned(a: Array, b: Array) -> float:
+def _measure_turned(a: Array, b: Array) -> float:
     """Share of the square of a that is not along b."""
     return 1.0 - float((a @ b) ** 2 / max((a @ a) * (b @ b), 1e-30))
 

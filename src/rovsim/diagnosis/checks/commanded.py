@@ -29,9 +29,11 @@ def list_not_commanded(usable: UsableRuns, vehicle: Vehicle) -> tuple[str, ...]:
     amplitude = np.max([np.max(np.abs(log.value), axis=0) for log in logs], axis=0)
     resting = amplitude <= MAX_IDLE_AMPLITUDE
     if logs[0].kind == "thruster":
-        return _named(vehicle.command_columns, resting & ~np.array(vehicle.angles, bool))
+        return _select_names(vehicle.command_columns, resting & ~np.array(vehicle.angles, bool))
     silent = np.isin(AXES, usable.still)
-    return _named(AXES, resting & vehicle.free & ~silent & _mark_pushable(vehicle, logs[0].kind))
+    return _select_names(
+        AXES, resting & vehicle.free & ~silent & _mark_pushable(vehicle, logs[0].kind)
+    )
 
 
 def _mark_pushable(vehicle: Vehicle, kind: str) -> Array:
@@ -41,6 +43,6 @@ def _mark_pushable(vehicle: Vehicle, kind: str) -> Array:
     return np.asarray(vehicle.thrusters.mixing().any(axis=0))
 
 
-def _named(names: Sequence[str], which: Array) -> tuple[str, ...]:
+def _select_names(names: Sequence[str], which: Array) -> tuple[str, ...]:
     """Names whose place in a mask (n,) is set."""
     return tuple(name for name, flag in zip(names, which, strict=True) if flag)

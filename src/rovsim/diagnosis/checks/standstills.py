@@ -173,7 +173,7 @@ def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> S
         to_s=round(rest.end, 2),
         axis=AXES[axis],
         gained=float(f"{gain:.3g}"),
-        use=tuple(_without(spans, rest.begin, rest.end)),
+        use=tuple(_remove_span(spans, rest.begin, rest.end)),
     )
 
 
@@ -201,7 +201,7 @@ def _list_spans(motion: Motion) -> Spans:
     return spans
 
 
-def _without(spans: Spans, begin: float, end: float) -> Spans:
+def _remove_span(spans: Spans, begin: float, end: float) -> Spans:
     """Take the stretch from `begin` to `end` out of spans, s; short remains are left out."""
     parts = [x for a, b in spans for x in ((a, min(b, begin)), (max(a, end), b))]
     return [(round(a, 2), round(b, 2)) for a, b in parts if b - a >= MIN_REST_SECONDS]

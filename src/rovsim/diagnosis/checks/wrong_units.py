@@ -58,14 +58,14 @@ def _tell_stated(base: Model, term: Term) -> Iterator[str]:
     values = base.body.stated.get(term.id, np.zeros(len(term.effect.parameters)))
     for parameter, nominal in zip(term.effect.parameters, values.tolist(), strict=True):
         total = nominal + term.effect[parameter.name]
-        if nominal > 0.0 and total > _highest(base, term, parameter):
+        if nominal > 0.0 and total > _find_highest(base, term, parameter):
             yield (
                 f"{term.id}.{parameter.name} comes to {total:.3g}, {total / nominal:.0f} times "
                 "what the vehicle file states"
             )
 
 
-def _highest(base: Model, term: Term, parameter: Parameter) -> float:
+def _find_highest(base: Model, term: Term, parameter: Parameter) -> float:
     """Highest value of a parameter, in its unit, that is not absurd."""
     share = FILE_RELATIVE_STDS[term.id]
     spread = spread_of_file(base, type(term.effect), parameter) * parameter.scale

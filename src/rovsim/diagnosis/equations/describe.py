@@ -69,7 +69,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
                 time_s=round(p.time, 2),
                 axis=p.axis,
                 force=float(f"{p.force:.4g}"),
-                place_m=_triple(p.place),
+                place_m=_round_place(p.place),
             )
             for p in force.pushes
         ),
@@ -92,7 +92,7 @@ def _describe_run(run: str, time: Array, place: Array, force: Array) -> ForceOfR
     return ForceOfRun(
         run=run,
         time_s=tuple(np.round(time[::stride], 2).tolist()),
-        place_m=tuple(map(_triple, place[::stride])),
+        place_m=tuple(map(_round_place, place[::stride])),
         force=tuple(map(tuple, _round_all(force[::stride]).tolist())),
     )
 
@@ -129,7 +129,7 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
     )
 
 
-def _triple(place: Array) -> tuple[float, float, float]:
+def _round_place(place: Array) -> tuple[float, float, float]:
     """A place (3,) to the millimetre."""
     x, y, z = np.round(place, 3).tolist()
     return x, y, z

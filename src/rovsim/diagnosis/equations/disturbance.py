@@ -157,7 +157,7 @@ def _gather(
     rms = np.sqrt(np.mean(total**2, axis=0))
     index = [AXES.index(a) for a in axes]
     places = [run.motion.state[run.innovation_samples, :3] * run.motion.site.axes for run in runs]
-    strongest = max(index, key=lambda i: rms[i] / _usual(residuals[AXES[i]], runs))
+    strongest = max(index, key=lambda i: rms[i] / _find_acceleration_std(residuals[AXES[i]], runs))
     spectrum = find_spectrum(forces, runs[0].period)
     return ForceInTime(
         tuple(run.motion.run.id for run in runs),
@@ -177,7 +177,7 @@ def _tell_time(run: ObservedRun) -> Array:
     return np.asarray(run.edges[0] + run.time)
 
 
-def _usual(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
+def _find_acceleration_std(residual: AxisResidual, runs: Sequence[ObservedRun]) -> float:
     """Standard deviation of an axis' acceleration: the unit that makes axes comparable."""
     i = AXES.index(residual.axis)
     nu_dot = np.concatenate([run.motion.nu_dot[run.motion.usable, i] for run in runs])

@@ -116,7 +116,7 @@ def propose_law(
     if not installed("equations"):
         return None
     law = search_laws(selection)
-    if law is None or not _holds(law, selection, best, holdout):
+    if law is None or not _is_confirmed(law, selection, best, holdout):
         return None
     fit, bank = polish(law.fit)
     if not fit.is_finite:
@@ -133,7 +133,7 @@ def propose_law(
     )
 
 
-def _holds(
+def _is_confirmed(
     judged: FittedLaw, selection: SearchResult, best: Catalogued, holdout: HoldoutValidation
 ) -> bool:
     """Whether a law helps on blocks of time it was not fitted to, and in replays of all runs."""

@@ -82,7 +82,7 @@ class WithMemory(Form):
     def simplify(self, h: Hypothesis) -> list[tuple[Form, Hypothesis]]:
         """List the laws without one of the parameters in `names`, as long as another is left."""
         return [
-            (type(self)(_all_but(name, self.names)), drop_number(h, name))
+            (type(self)(_drop_name(name, self.names)), drop_number(h, name))
             for name in (self.names if len(self.names) > 1 else ())
         ]
 
@@ -136,7 +136,7 @@ class Wake(WithMemory):
     def divide(self, law: Term) -> list[Effect]:
         """Return the wake of each axis by itself."""
         return [
-            law.effect.with_values(dict.fromkeys(_all_but(name, self.names), 0.0))
+            law.effect.with_values(dict.fromkeys(_drop_name(name, self.names), 0.0))
             for name in self.names
         ]
 
@@ -184,11 +184,11 @@ class Play(WithMemory):
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
     """Return a hypothesis whose law has one parameter less: it is zero, and no longer free."""
     without_law, law = split_law(h)[0], get_law(h)
-    reduced = Term(law.effect.with_values({gone: 0.0}), _all_but(gone, law.free))
+    reduced = Term(law.effect.with_values({gone: 0.0}), _drop_name(gone, law.free))
     return replace(without_law, terms=(*without_law.terms, reduced))
 
 
-def _all_but(gone: str, names: Sequence[str]) -> tuple[str, ...]:
+def _drop_name(gone: str, names: Sequence[str]) -> tuple[str, ...]:
     """All names except one."""
     return tuple(name for name in names if name != gone)
 

@@ -106,11 +106,15 @@ def list_thrust_terms(runs: Sequence[ObservedRun], model: Model) -> list[ThrustT
         return []
     moving = [int(i) for i in np.flatnonzero(np.logical_and.reduce([run.axes for run in runs]))]
     driven = [j for j in range(6) if np.abs(B[j]).max() > 1e-3]
-    terms = (term for i in moving for j in driven for term in _of(i, j, moving, driven))
+    terms = (
+        term for i in moving for j in driven for term in _list_between_axes(i, j, moving, driven)
+    )
     return [term for term in dict.fromkeys(terms) if term.odd == (term.on in LATERAL_AXES)]
 
 
-def _of(i: int, j: int, moving: Sequence[int], driven: Sequence[int]) -> Iterator[ThrustTerm]:
+def _list_between_axes(
+    i: int, j: int, moving: Sequence[int], driven: Sequence[int]
+) -> Iterator[ThrustTerm]:
     """Yield terms on axis `i` of the thrust along axis `j`.
 
     Args:

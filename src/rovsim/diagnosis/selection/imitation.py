@@ -33,7 +33,7 @@ def drop_imitations(workspace: SearchWorkspace, current: Fit) -> Fit:
             continue
         names = [name for name, k in zip(term.free, own, strict=True) if loose[k]]
         imitation = others[np.argmax(correlation[loose][:, others].max(axis=0))]
-        start = h.replaced(i, _begin_anew(workspace, term, names))
+        start = h.replaced(i, _restart_term(workspace, term, names))
         start = drop_parameters(start, numbers == imitation)
         trial = prune(workspace, workspace.fit(start))
         if workspace.score(trial) > workspace.score(current):
@@ -41,7 +41,7 @@ def drop_imitations(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
-def _begin_anew(workspace: SearchWorkspace, term: Term, names: Sequence[str]) -> Term:
+def _restart_term(workspace: SearchWorkspace, term: Term, names: Sequence[str]) -> Term:
     """The term with these parameters where a fit of its effect begins, if it begins with them."""
     values = {
         name: start.effect[name]

@@ -79,7 +79,7 @@ def draw_chance_decreases(
         draws: how many.
         seed: of the draws.
     """
-    scale = _sizes(G)
+    scale = _measure_lengths(G)
     values, vectors = np.linalg.eigh(G / np.outer(scale, scale))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     z = np.random.default_rng(seed).normal(size=(draws, len(G))) @ root.T * scale
@@ -104,6 +104,6 @@ def _chance_decreases(G: Array, z: Array, block: CandidateColumns, penalty: floa
     return np.einsum("dk,kd->d", b, x) - 2.0 * z[:, s] - G[s, s] - penalty * len(columns)
 
 
-def _sizes(G: Array) -> Array:
+def _measure_lengths(G: Array) -> Array:
     """Lengths (c,) of the columns with this Gram matrix."""
     return np.sqrt(np.maximum(np.diag(G), 1e-300))

@@ -27,13 +27,15 @@ def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> H
     ]
     for parameter, column in parameters:
         if parameter.tried:
-            h = _choose(workspace, h, column, np.array(parameter.tried) / parameter.scale)
+            h = _choose_value(workspace, h, column, np.array(parameter.tried) / parameter.scale)
             nearby = NEARBY_STEPS * parameter.resolution / parameter.scale
-            h = _choose(workspace, h, column, h.x[column] + nearby)
+            h = _choose_value(workspace, h, column, h.x[column] + nearby)
     return h
 
 
-def _choose(workspace: SearchWorkspace, h: Hypothesis, column: int, values: Array) -> Hypothesis:
+def _choose_value(
+    workspace: SearchWorkspace, h: Hypothesis, column: int, values: Array
+) -> Hypothesis:
     """The hypothesis with the best of some scaled values of one parameter, its own among them."""
     trials = [h]
     for value in values:

@@ -180,7 +180,7 @@ def fit_lines(white: Array, envelope: Array, time: Array, count: int) -> Array:
     )
 
 
-def _even(run: ObservedRun) -> Array:
+def _constant(run: ObservedRun) -> Array:
     """Constant amplitude at the settled readings."""
     return np.ones(run.settled.sum())
 
@@ -192,4 +192,4 @@ def _speed_squared(run: ObservedRun) -> Array:
     return squares / np.sqrt(np.mean(squares**2))
 
 
-ENVELOPES: dict[str, Envelope] = {"": _even, ", growing with speed squared": _speed_squared}
+ENVELOPES: dict[str, Envelope] = {"": _constant, ", growing with speed squared": _speed_squared}

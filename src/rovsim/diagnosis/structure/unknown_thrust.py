@@ -58,15 +58,15 @@ def mark_undecided(h: Hypothesis, run: ObservedRun) -> Array:
     either side.
     """
     times = [find_different(run, *models) for models in _list_either_side(h)]
-    return _mark(run, np.vstack([np.empty((0, 2)), *times]))
+    return _mark_overlapping(run, np.vstack([np.empty((0, 2)), *times]))
 
 
 def mark_unlogged(run: ObservedRun, lost: Array) -> Array:
     """Mask (n,) of innovations in gaps (g, 2), and after them until thrusters have followed."""
-    return _mark(run, lost + np.array([0.0, SPIN_UP_SECONDS]))
+    return _mark_overlapping(run, lost + np.array([0.0, SPIN_UP_SECONDS]))
 
 
-def _mark(run: ObservedRun, times: Array) -> Array:
+def _mark_overlapping(run: ObservedRun, times: Array) -> Array:
     """Mask (n,) of innovations that overlap any of the times (g, 2)."""
     mask = np.zeros(len(run.time), bool)
     for begin, end in times:

@@ -99,7 +99,7 @@ def settle_whole_file(
         trials = [
             _leave_out(whole, dropped & ((owner != name) | undetermined)) for name in candidates
         ]
-        error_all, error_reduced, *errors_extended = _measure(
+        error_all, error_reduced, *errors_extended = _measure_errors(
             [h, _leave_out(whole, dropped), *trials], bank
         )
         if error_reduced <= (1.0 + MAX_ERROR_GROWTH) * error_all:
@@ -137,11 +137,11 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
     To first order: the others take their conditional mean. The common gain stays as it is.
     """
     h = whole.hypothesis
-    step = _follow(whole, gone | mark_gain(h), np.where(gone, h.absence - h.x, 0.0))
+    step = _condition_steps(whole, gone | mark_gain(h), np.where(gone, h.absence - h.x, 0.0))
     return drop_parameters(h.at(h.x + step), gone)
 
 
-def _follow(whole: Fit, led: Array, step: Array) -> Array:
+def _condition_steps(whole: Fit, led: Array, step: Array) -> Array:
     """Steps (k,) of all parameters where those of a mask (k,) take theirs: conditional means."""
     V = whole.covariance
     step = step.copy()
@@ -153,7 +153,11 @@ def _measure_offset(whole: Fit, keeps_gain: bool) -> Array:
     """How far the values (k,) are from the file's, at the gain that was found or at the file's."""
     h, gain = whole.hypothesis, mark_gain(whole.hypothesis)
     offset = h.x - h.absence
-    return offset if keeps_gain else offset + _follow(whole, gain, np.where(gain, -offset, 0.0))
+    return (
+        offset
+        if keeps_gain
+        else offset + _condition_steps(whole, gain, np.where(gain, -offset, 0.0))
+    )
 
 
 def _is_sure(whole: Fit, offset: Array, own: Array) -> bool:
@@ -172,7 +176,7 @@ def _is_sure(whole: Fit, offset: Array, own: Array) -> bool:
     return bool(distance > chi2.isf(FALSE_ALARM_RATE, max(1, own.sum())))
 
 
-def _measure(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
+def _measure_errors(hypotheses: Sequence[Hypothesis], bank: FilterBank) -> list[float]:
     """Normalised errors of hypotheses in windows of 2 s; infinite where a model diverges."""
     errors = score_windows([h.model for h in hypotheses], bank.runs).normalised
     return [np.inf if error is None else error for error in errors]

@@ -46,7 +46,7 @@ def check_exported(data: Any, features: FeatureSettings, where: object) -> Array
     Raises:
         BadInput: wrong type, not finite, sizes that do not fit, or other features than named.
     """
-    fault = _fault(data, features)
+    fault = _find_fault(data, features)
     if fault is None:
         return np.ascontiguousarray(data)
     raise BadInput(
@@ -57,7 +57,7 @@ def check_exported(data: Any, features: FeatureSettings, where: object) -> Array
     )
 
 
-def _fault(data: Any, features: FeatureSettings) -> str | None:
+def _find_fault(data: Any, features: FeatureSettings) -> str | None:
     """What is wrong with an exported residual, for a message; None if nothing is."""
     if not isinstance(data, np.ndarray) or data.dtype != np.float64 or data.ndim != 1:
         return "the exported residual is not a flat float64 array"

@@ -66,7 +66,7 @@ class Autoregression:
         out = z.astype(float)
         for axes in SUBSYSTEMS:
             for j in axes:
-                for group, past in enumerate(_past(z[..., j, :], stretches.first)):
+                for group, past in enumerate(_sum_past(z[..., j, :], stretches.first)):
                     for i in axes:
                         out[..., i, :] -= self.weights[i, j, group] * past
         return np.asarray(out * (stretches.shown.T / self.spread[:, None]), z.dtype)
@@ -83,7 +83,7 @@ def fit_autoregression(
     """
     weights, spread, lr_statistic = np.zeros((6, 6, len(LAG_GROUPS))), np.ones(6), 0.0
     for axes in SUBSYSTEMS:
-        past = [np.concatenate([_past(z[j], stretches.first) for j in axes]) for z in draws]
+        past = [np.concatenate([_sum_past(z[j], stretches.first) for j in axes]) for z in draws]
         for i in axes:
             mask = stretches.shown[:, i]
             regressors = np.concatenate([draw[:, mask] for draw in past], axis=1)
@@ -98,7 +98,7 @@ def fit_autoregression(
     return Autoregression(weights, spread), lr_statistic
 
 
-def _past(z: Array, first: Array) -> Array:
+def _sum_past(z: Array, first: Array) -> Array:
     """Sums (g, ..., n) of each group of readings (..., n) before, within the stretch."""
     total = np.concatenate([np.zeros((*z.shape[:-1], 1)), np.cumsum(z, axis=-1, dtype=float)], -1)
     index = np.arange(z.shape[-1])

@@ -104,7 +104,7 @@ class NoiseSpectrum:
 def measure_spectra(base: Model, runs: Sequence[ObservedRun]) -> list[NoiseSpectrum]:
     """Spectra of the noise of all runs of motion capture, one for each rate of their frames."""
     cameras = [run for run in runs if not run.motion.binned and run.motion.measured is None]
-    spectra = [spectrum for run in cameras if (spectrum := _measure(base, run)) is not None]
+    spectra = [spectrum for run in cameras if (spectrum := _measure_run(base, run)) is not None]
     groups: dict[tuple[float, int], list[NoiseSpectrum]] = {}
     for spectrum in spectra:
         groups.setdefault((round(spectrum.period, 9), len(spectrum.frequency)), []).append(spectrum)
@@ -118,7 +118,7 @@ def _pool(some: Sequence[NoiseSpectrum]) -> NoiseSpectrum:
     return NoiseSpectrum(np.asarray(power), some[0].frequency, count, some[0].period)
 
 
-def _measure(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
+def _measure_run(base: Model, run: ObservedRun) -> NoiseSpectrum | None:
     """Of a run's frames, from its longest stretch; None where that is too short."""
     motion, period = run.motion, run.frame_period
     a, b = max(motion.segments(), key=lambda one: one[1] - one[0], default=(0, 0))

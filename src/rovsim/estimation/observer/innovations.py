@@ -108,7 +108,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
     for run in runs:
         states = undo_mocap_view(model, run.motion).state
         index = np.flatnonzero(np.isfinite(states).all(axis=1) & run.motion.usable)
-        states = _nudge(states[index], level=bool(run.pose_measured[4]))
+        states = _perturb(states[index], level=bool(run.pose_measured[4]))
         accelerations = accelerate(model, run, index, states)
         slopes.append((accelerations[0] - accelerations[1:]) / PERTURBATION)
     slope = np.concatenate(slopes, axis=1)
@@ -116,7 +116,7 @@ def estimate_errors(model: Model, runs: Sequence[ObservedRun]) -> ErrorDynamics:
     return ErrorDynamics(mean[:6].T, largest.T, mean[6:].T)
 
 
-def _nudge(states: Array, level: bool) -> Array:
+def _perturb(states: Array, level: bool) -> Array:
     """Thirteen variants (13, k, 13) of states (k, 13).
 
     The states themselves, then with a faster velocity on each of the six axes, then displaced along

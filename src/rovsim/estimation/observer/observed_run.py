@@ -68,7 +68,7 @@ class ObservedRun(Steps):
         return tuple(
             (-(-a // self.group), b // self.group - 1)
             for a, b in self.motion.segments()
-            if _lasts(self.motion, a, b)
+            if _is_long_enough(self.motion, a, b)
         )
 
     @cached_property
@@ -248,7 +248,7 @@ def prepare_run(
     )
 
 
-def _lasts(motion: Motion, a: int, b: int) -> bool:
+def _is_long_enough(motion: Motion, a: int, b: int) -> bool:
     """Whether the stretch from sample or bin a to b - 1 is long enough to be observed."""
     if motion.binned:
         return bool(motion.time[b - 1] - motion.time[a] > MIN_STRETCH_SECONDS)

@@ -64,7 +64,7 @@ def linearise(at: Hypothesis, errors: Errors, previous: Linearised | None = None
             parameters of a law are never the same: its terms are numbered anew as others go.
     """
     count = len(at.x)
-    reused = {} if previous is None else _take(at, previous)
+    reused = {} if previous is None else _reuse_derivatives(at, previous)
     new = [i for i in range(count) if i not in reused]
     sizes = at.steps[new][:, None, None]
     outputs = errors([at.model, *(at.perturbed[i].model for i in new)])
@@ -76,7 +76,7 @@ def linearise(at: Hypothesis, errors: Errors, previous: Linearised | None = None
     return Linearised(at, [e[0] for e in outputs], J)
 
 
-def _take(at: Hypothesis, previous: Linearised) -> dict[int, list[Array]]:
+def _reuse_derivatives(at: Hypothesis, previous: Linearised) -> dict[int, list[Array]]:
     """Derivatives of `previous` to parameters that both have, by their place in `at`.
 
     Each is one array (6, n) per run; parameters of a law, which no catalogue lists, are left out.

@@ -85,7 +85,7 @@ def project(
             in_block = stacked[:, :, block[at] == k]
             parts[int(k)] += sum(axis @ axis.T for axis in in_block)
         begin = at.stop
-    own_parts = _without(list(parts.values()), 1 + len(acts))
+    own_parts = _project_out(list(parts.values()), 1 + len(acts))
     return Columns(acting_terms, size[acts], tuple(own_parts), middle)
 
 
@@ -127,7 +127,7 @@ def _measure_size(
     return np.asarray(np.sqrt(square / count))
 
 
-def _without(parts: Sequence[Array], kept: int) -> list[Array]:
+def _project_out(parts: Sequence[Array], kept: int) -> list[Array]:
     """Project directions out of Gram matrices: the Schur complement, as for the sum of all parts.
 
     Args:

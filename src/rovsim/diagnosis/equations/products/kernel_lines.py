@@ -41,14 +41,14 @@ def write_body(names: Sequence[str], terms: Sequence[LawTerm], law: Term) -> Ite
     body = {f: f for f in FORCE if f in values}
     world = [v if v in values else "0.0" for v in WORLD_FORCES]
     if any(v != "0.0" for v in world):
-        yield from _turned(world)
+        yield from _write_rotation(world)
         body |= {
             f: f"{body[f]} + force_{f.lower()}" if f in body else f"force_{f.lower()}"
             for f in FORCE[:3]
         }
     flow = [v if v in values else "0.0" for v in FLOWS]
     if any(v != "0.0" for v in flow):
-        yield from _carried(flow, law)
+        yield from _write_drag_change(flow, law)
         body |= {
             f: f"{body[f]} + drag_{f.lower()}" if f in body else f"drag_{f.lower()}"
             for f in FORCE[:3]
@@ -82,14 +82,14 @@ def _surroundings(used: set[int], terms: Sequence[LawTerm]) -> Iterator[str]:
         yield "near = exp(-(north * north + east * east) / (2.0 * p.width * p.width))"
 
 
-def _turned(world: Sequence[str]) -> Iterator[str]:
+def _write_rotation(world: Sequence[str]) -> Iterator[str]:
     """Yield lines that turn a force from NED into body axes; `world` are its three components."""
     for j, f in enumerate("xyz"):
         parts = [f"at.R[{i}][{j}] * {v}" for i, v in enumerate(world) if v != "0.0"]
         yield f"force_{f} = " + " + ".join(parts)
 
 
-def _carried(flow: Sequence[str], law: Term) -> Iterator[str]:
+def _write_drag_change(flow: Sequence[str], law: Term) -> Iterator[str]:
     """Yield lines that compute by how much moving water changes the drag of the vehicle.
 
     Args:

@@ -82,7 +82,7 @@ def list_terms(
     n, e = known_place
     positions = [(a if n is None else n, b if e is None else e) for a, b in list_places(runs)]
     places = list(dict.fromkeys(positions))
-    return [*terms, *_along_world(), *(t for place in places for t in _at(place))]
+    return [*terms, *_along_world(), *(t for place in places for t in _list_near(place))]
 
 
 def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
@@ -134,7 +134,7 @@ def _along_world() -> Iterator[LawTerm]:
         yield from (LawTerm(i, (i, k)) for k in (NORTH, EAST, DEPTH))
 
 
-def _at(place: tuple[float, float]) -> Iterator[LawTerm]:
+def _list_near(place: tuple[float, float]) -> Iterator[LawTerm]:
     """Yield forces, flows and drags near a place, m north and east."""
     for on in (WORLD, WORLD + 1, WORLD + 2, WATER, WATER + 1, SWIRL):
         yield LawTerm(on, (NEARNESS,), place)

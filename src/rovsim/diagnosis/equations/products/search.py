@@ -33,7 +33,7 @@ def propose(columns: Columns, steps: int) -> list[LawTerm]:
     """
     gram = columns.gram
     subsets = [gram, *(gram - part for part in columns.parts)]
-    counts = Counter(k for G in subsets for k in _follow(G, steps))
+    counts = Counter(k for G in subsets for k in _select_forward(G, steps))
     reductions = find_alone(gram)
     order = sorted(counts, key=lambda k: (-counts[k], -reductions[k]))
     order += [
@@ -57,7 +57,7 @@ def find_alone(G: Array) -> Array:
     return np.divide(G[0, 1:] ** 2, power, out=np.zeros(len(power)), where=power > 0.0)
 
 
-def _follow(G: Array, steps: int) -> list[int]:
+def _select_forward(G: Array, steps: int) -> list[int]:
     """List the terms that forward regression selects, in the order of their selection.
 
     Args:
