@@ -21,7 +21,7 @@ from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 FOLDS = 3  # groups of time blocks, each of which is left out once by the regression
 MIN_ACCELERATION = 1e-9  # m/s2 or rad/s2: acceleration of an axis by a wrench with an RMS of 1 N
 
-# Evaluates terms with a coefficient of 1 along a run, as `library.push` does: (c, n, 6).
+# Evaluates terms with a coefficient of 1 along a run, as `library.evaluate_wrenches`: (c, n, 6).
 Wrenches = Callable[[Sequence[Any], ObservedRun, Model, Array], Array]
 
 
