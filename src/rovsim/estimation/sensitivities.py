@@ -144,23 +144,20 @@ def _silence_curvature(bank: FilterBank, linearised: Linearised) -> list[Array]:
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
     lengths = measure_columns(bank, linearised.J)
-    faint_ones = np.flatnonzero(
-        (lengths > MAX_ROUNDING_STDS) & (lengths < MIN_VISIBLE_STDS)
-    ).tolist()
+    meant = lengths > MAX_ROUNDING_STDS
+    faint_ones = np.flatnonzero(meant & (lengths < MIN_VISIBLE_STDS)).tolist()
     stepped_back = {i: step_back(linearised.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
-    scale = np.where(lengths > MAX_ROUNDING_STDS, 1.0, 0.0)[:, None, None]
+    scale = np.where(meant, 1.0, 0.0)[:, None, None]
     if not linearised.is_finite:
         return linearised.J
     if not possible:
-        return [scale * J for J in seen.J]
+        return [scale * J for J in linearised.J]
     faint = list(possible)
-    sizes = np.array([(linearised.hypothesis.x - h.x)[i] for i, h in possible.items()])[
-        :, None, None
-    ]
+    sizes = np.array([(linearised.hypothesis.x - h.x)[i] for i, h in possible.items()])
     outputs = bank.evaluate([h.model for h in possible.values()])
     central = [
-        0.5 * (J[faint] + (e - e_back) / sizes)
+        0.5 * (J[faint] + (e - e_back) / sizes[:, None, None])
         for J, e, e_back in zip(linearised.J, linearised.e, outputs, strict=True)
     ]
     scale[faint, 0, 0] = measure_columns(bank, central) >= MIN_CENTRAL_SHARE * lengths[faint]
