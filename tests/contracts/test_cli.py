@@ -129,6 +129,15 @@ def failing(capsys, *words):
     ("words", "message"),
     [
         (["compar"], "Did you mean 'compare'"),
+        (["--quiet", "compare"], "no campaign was given"),
+        (
+            [
+                "tank",
+                "out=x",
+                "tank.effects=[{effect: thruster_lag, parameters: {time_constant: -1}}]",
+            ],
+            "Expected a number of at least 0 s",
+        ),
         (["compare"], "no campaign was given"),
         (["compare", "campaign=/nowhere"], "/nowhere"),
         (["compare", "campaigm=x"], "campaigm"),

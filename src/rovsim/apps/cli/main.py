@@ -55,7 +55,8 @@ def _main(words: list[str]) -> None:
     if words[0] in ("-V", "--version"):
         print(f"rovsim {__version__}")
         return
-    command, rest = words[0], words[1:]
+    at = next((k for k, word in enumerate(words) if not word.startswith("-")), 0)
+    command, rest = words[at], words[:at] + words[at + 1 :]  # options may stand before it
     if command == "completion":
         from rovsim.apps.cli.completion import HELP, complete
 

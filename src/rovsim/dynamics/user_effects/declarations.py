@@ -67,7 +67,7 @@ def _find_out_of_range(cls: type[Effect]) -> Iterator[tuple[str, str]]:
     for p in cls.parameters:
         for value in [start[p.name] for start in cls.starts if p.name in start]:
             if not (isinstance(value, Real) and np.isfinite(value) and p.low <= value <= p.high):
-                expected = f"a number from {p.low:g} to {p.high:g}"
+                expected = f"a number {p.range_in_words}"
                 yield f"'starts' has {p.name} at {value!r}", expected
 
 

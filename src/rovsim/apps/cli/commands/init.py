@@ -8,7 +8,7 @@ where they are. What cannot be found out is marked ANSWER, with the possible ans
 is a guess (such as `control`: 3dof where nothing turned, else 6dof) says so; CHECK at the top says
 what looks wrong. An existing campaign.yaml is replaced only with force=true.
 
-Then: rovsim ui campaign=DIR
+Then: rovsim compare campaign=DIR, or rovsim ui campaign=DIR
 """
 
 import os
@@ -75,7 +75,8 @@ def _format_proposal(proposal: CampaignProposal, file: Path) -> str:
             for q in proposal.questions
         ]
         parts.append(f"{len(questions)} to be answered in {file}:\n" + "\n".join(questions))
-    parts.append(f"{file}\nThen: rovsim compare {quote(f'campaign={file.parent}')}")
+    first = "Answer these in it. " if proposal.questions else ""
+    parts.append(f"{file}\n{first}Then: rovsim compare {quote(f'campaign={file.parent}')}")
     return "\n\n".join(parts)
 
 

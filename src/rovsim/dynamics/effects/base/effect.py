@@ -78,7 +78,7 @@ class Effect(ABC):
         raise BadInput(
             f"{parameter.name} is {value!r}",
             where=f"effect {self.id}",
-            expected=f"a number from {parameter.low:g} to {parameter.high:g} {parameter.unit}",
+            expected=f"a number {parameter.range_in_words}",
             remedy="Correct that value.",
         )
 

@@ -57,6 +57,16 @@ class Parameter:
         return min(self.high, self.most)
 
     @property
+    def range_in_words(self) -> str:
+        """What values are possible, after "a number": "from 0 to 1", "of at least 0 s"."""
+        low, high = (f"{limit:g} {self.unit}".removesuffix(" 1") for limit in (self.low, self.high))
+        if np.isfinite(self.low) and np.isfinite(self.high):
+            return f"from {self.low:g} to {high}"
+        if np.isfinite(self.low):
+            return f"of at least {low}"
+        return f"of at most {high}" if np.isfinite(self.high) else "that is finite"
+
+    @property
     def neutral_value(self) -> float:
         """The value at which the effect changes nothing: the default, or zero if that is NaN."""
         return self.default if np.isfinite(self.default) else 0.0
