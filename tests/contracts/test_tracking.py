@@ -173,7 +173,10 @@ def test_the_model_with_all_effects_is_ranked_though_it_is_no_step_of_the_ladder
         made[name].write(path)
     uri = f"sqlite:///{tmp_path / 'mlflow.db'}"
     settings = TrackingSettings(uri=uri, artifacts=str(tmp_path / "kept"))
-    runs = track_study(settings, "tank", StudyFiles(models=[], kept=[], **names), {})
+    report = tmp_path / "report.html"
+    report.touch()
+    files = StudyFiles(models=[], figures=[], report=report, **names)
+    runs = track_study(settings, "tank", files, {})
     logged = MlflowClient(tracking_uri=uri).get_run(runs["effects"]).data.metrics
     assert logged["windows_2s"] == error
 
@@ -224,7 +227,9 @@ def test_a_sweep_over_campaigns_takes_those_that_are_there(tmp_path, monkeypatch
     assert override("campaign=a, b=c é", sweep=True) == "campaign='a, b=c é'"
     assert override("campaign=first,third", sweep=True) == "campaign='first,third'"
     assert override("model=nominal,first", sweep=True) == "model='nominal','first'"
-    assert override("campaign=first,a, b=c é") == "campaign='first,a, b=c é'"
+    assert override("campaign=a, b=c é") == "campaign='a, b=c é'"
+    with pytest.raises(BadInput, match="For a run with each, add -m"):
+        override("campaign=first,a, b=c é")
 
 
 MODEL = """vehicle: bluerov2_heavy
