@@ -27,7 +27,7 @@ BAD = {
     "vehicle: own/vehicle.yaml": "relative to",
     HEAVY + "effects: [{effect: lag}]": "unknown effect 'lag'",
     HEAVY + "effects: [{effect: lift, parameters: {coeficient: 1}}]": "coefficient",
-    HEAVY + "effects: [{effect: payload, parameters: {mass: -1}}]": "from 0",
+    HEAVY + "effects: [{effect: payload, parameters: {mass: -1}}]": "of at least 0 kg",
     HEAVY + "effects: [{effect: added_mass, parameters: {surge: -30}}]": "definite",
     HEAVY + "effects: [{effect: thruster_order, parameters: {first: 9, second: 2}}]": "0 to 8",
     HEAVY + "effects: [{effect: thruster_order, parameters: {first: 1.5}}]": "a whole number",
