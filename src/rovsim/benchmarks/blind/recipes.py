@@ -13,7 +13,7 @@ import numpy as np
 
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
-from rovsim.dynamics.effects.base import Parameter
+from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.simulation.synthetic_tank.settings import SUITABLE_TANKS
 
 Range = tuple[float, float]
@@ -41,6 +41,7 @@ class Recipe:
 
 
 TRANSLATION_AXES, HORIZONTAL_AXES = ("surge", "sway", "heave"), ("surge", "sway")
+USUAL_SIZES = (1.0, 2.5)  # scales of a parameter
 PLACE_RANGES: Mapping[str, Range] = {"x": (-0.2, 0.2), "y": (-0.2, 0.2), "z": (-0.15, 0.15)}
 NARROW_TANK = {"tank": {"x": (0.0, 4.2), "y": (0.0, 3.2), "z": (0.0, 3.0)}}  # a walled test basin
 SHALLOW_TANK = {"tank": {"x": (0.0, 10.0), "y": (0.0, 5.0), "z": (0.0, 2.0)}}
@@ -50,7 +51,7 @@ def _each(*names: str) -> tuple[tuple[str, ...], ...]:
     return tuple((name,) for name in names)
 
 
-RECIPES: Mapping[str, Recipe] = {
+OWN_RECIPES: Mapping[str, Recipe] = {
     "net_buoyancy": Recipe(_each("force"), (0.75, 1.5)),
     "buoyancy_center": Recipe(_each("x", "y", "z"), (0.6, 1.8)),
     "payload": Recipe(_each("mass"), (0.6, 1.6), 1, PLACE_RANGES),
@@ -112,6 +113,20 @@ RECIPES: Mapping[str, Recipe] = {
 }
 
 
+def usual_recipe(effect: type[Effect]) -> Recipe:
+    """How an effect is hidden that has no recipe of its own: a change in one of its parameters."""
+    free = [p for p in effect.parameters if p.fitted and not p.discrete]
+    grows = all(p.low >= p.neutral_value for p in free)
+    shrinks = all(p.high <= p.neutral_value for p in free)
+    tank = SUITABLE_TANKS.get(effect.requires, {})
+    return Recipe(_each(*(p.name for p in free)), USUAL_SIZES, grows - shrinks, tank=tank)
+
+
+RECIPES: Mapping[str, Recipe] = OWN_RECIPES | {
+    name: usual_recipe(effect) for name, effect in built_in().items() if name not in OWN_RECIPES
+}
+
+
 def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntry:
     """Draw an effect of the catalogue by its recipe.
 
@@ -124,16 +139,22 @@ def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntr
     """
     if name == "thruster_order":
         return _swapped(random)
-    recipe = RECIPES[name]
-    declared = {p.name: p for p in built_in()[name].parameters}
+    return draw_by(RECIPES[name], built_in()[name], strength, random)
+
+
+def draw_by(
+    recipe: Recipe, effect: type[Effect], strength: float, random: np.random.Generator
+) -> EffectEntry:
+    """Draw an effect by a recipe, see `drawn`."""
+    declared = {p.name: p for p in effect.parameters}
     group = recipe.choices[random.integers(len(recipe.choices))]
     values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
     sign = recipe.sign or random.choice([-1, 1])
     for k in group:
         change = sign * float(random.uniform(*recipe.sizes))
         values[k] = _moved(declared[k], change, strength if recipe.weak else 1.0)
-    values = {k: v for k, v in values.items() if _used(name, k, group)}
-    return EffectEntry(effect=name, parameters={k: Value(value=v) for k, v in values.items()})
+    values = {k: v for k, v in values.items() if _used(effect.id, k, group)}
+    return EffectEntry(effect=effect.id, parameters={k: Value(value=v) for k, v in values.items()})
 
 
 def draw_apart(

@@ -46,7 +46,8 @@ DEVIATION_SHARES = (0.02, 0.05)  # of each coefficient
 DEVIATING_EFFECTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 # Effects of one family push much alike, so that two of them together have no single right answer.
-FAMILIES: tuple[frozenset[str], ...] = (
+# An effect that is not listed here is a family by itself, if it needs no other tank.
+ALIKE: tuple[frozenset[str], ...] = (
     frozenset({"net_buoyancy", "payload", "constant_wrench", "buoyancy_center", "tether_tension",
                "world_tilt", "current", "current_drift"}),
     frozenset({"linear_damping", "quadratic_damping", "cubic_damping", "dry_friction", "lift",
@@ -62,6 +63,14 @@ FAMILIES: tuple[frozenset[str], ...] = (
 )  # fmt: skip
 # Never combined: they need another vehicle or log, or they hide what else is wrong.
 NO_FAMILY = frozenset({"fin_effectiveness", "waterplane_stiffness", "pilot_gain", "thruster_order"})
+FAMILIES = (
+    *ALIKE,
+    *(
+        frozenset({name})
+        for name in RECIPES
+        if name not in frozenset.union(NO_FAMILY, *ALIKE) and not RECIPES[name].tank
+    ),
+)
 
 
 def suite(name: str, seeds: Range) -> list[Case]:
