@@ -60,4 +60,4 @@ class TrainingSettings(SimulationSections):
         """
         from rovsim.learning.learner import learner_settings  # slow: imports every learner
 
-        return learner_settings(self.residual, "conf/residual")
+        return learner_settings(self.residual)

@@ -70,9 +70,7 @@ def measure_pitfalls_by_run(
     Raises:
         BadInput: a value in the settings of a learner is not allowed.
     """
-    checked = {
-        kind: learner_settings(dict(given), "conf/residual") for kind, given in learners.items()
-    }
+    checked = {kind: learner_settings(dict(given)) for kind, given in learners.items()}
     runs = {
         test.run.id: measure_pitfalls(
             model,

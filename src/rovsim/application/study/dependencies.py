@@ -57,7 +57,7 @@ class Dependencies:
 
     def learner(self, kind: str) -> dict[str, Any]:
         """Return the settings of a kind of residual, even if the configuration chose another."""
-        return learner_settings(self._residual(kind), "conf/residual").model_dump(mode="json")
+        return learner_settings(self._residual(kind)).model_dump(mode="json")
 
     def _residual(self, kind: str) -> Mapping[str, object]:
         """Return the section of a kind of residual; composed once, since Hydra is slow."""
