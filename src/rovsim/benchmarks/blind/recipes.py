@@ -122,9 +122,8 @@ def usual_recipe(effect: type[Effect]) -> Recipe:
     return Recipe(_each(*(p.name for p in free)), USUAL_SIZES, grows - shrinks, tank=tank)
 
 
-RECIPES: Mapping[str, Recipe] = OWN_RECIPES | {
-    name: usual_recipe(effect) for name, effect in built_in().items() if name not in OWN_RECIPES
-}
+NEW_EFFECTS = {name: cls for name, cls in built_in().items() if name not in OWN_RECIPES}
+RECIPES = {**OWN_RECIPES, **{name: usual_recipe(cls) for name, cls in NEW_EFFECTS.items()}}
 
 
 def drawn(name: str, strength: float, random: np.random.Generator) -> EffectEntry:
