@@ -26,10 +26,11 @@ from rovsim.reporting.wording import (
     tell_probability,
 )
 from rovsim.reporting.words import terminal
+from rovsim.reporting.words.intervals import interval
 from rovsim.reporting.words.sentences import ladder_sentences, residual_sentences
 from rovsim.reporting.words.sureness import DOUBT_REASONS
 from rovsim.reporting.words.symbols import explain_symbols
-from rovsim.reporting.words.verdict import explain, interval
+from rovsim.reporting.words.verdict import explain
 from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
 from rovsim.results.ladder import Ladder, LadderStep
 from synthetic_study import study

@@ -10,9 +10,14 @@ import pytest
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
-from rovsim.diagnosis.selection.ranking import OrderedEffect
-from rovsim.diagnosis.selection.withdrawn_probability import (
+from rovsim.diagnosis.selection.beside_law import (
     doubt_beside_law,
+    keep_beside_law,
+    list_rivals_beside,
+)
+from rovsim.diagnosis.selection.ranking import OrderedEffect
+from rovsim.diagnosis.selection.search_result import Rival
+from rovsim.diagnosis.selection.withdrawn_probability import (
     find_constant_heave,
     find_leading,
     find_small,
@@ -191,10 +196,26 @@ def test_what_a_law_makes_unnecessary_is_not_sure():
     """A jet in one corner was a current at a probability of one; beside the jet there is none."""
     found = fit(alike())
     drag, thrust = (AcceptedEffect(term, {}, 1.0) for term in found.hypothesis.terms[:2])
-    for proposed, doubt in ((True, "law"), (False, "stand_in")):
-        kept, idle = doubt_beside_law([drag, thrust], [drag], proposed)
-        assert (kept.probability, kept.doubt) == (1.0, None)
-        assert (idle.probability, idle.doubt) == (None, doubt)
+    kept, idle = doubt_beside_law([drag, thrust], [drag])
+    assert (kept.probability, kept.doubt) == (1.0, None)
+    assert (idle.probability, idle.doubt) == (None, "stand_in")
+
+
+def test_what_a_proposed_law_does_without_is_not_selected():
+    """Play of thrusters was a lag, a curve and six more; beside the play there is none of them."""
+    drag, gain = (
+        AcceptedEffect(Term(LinearDamping(sway=9.0), ("sway",)), {"sway": 1.0}, 0.9),
+        AcceptedEffect(Term(ThrusterGain(all=0.9), ("all",)), {"all": 0.1}, 1.0),
+    )
+    there = AcceptedEffect(Term(LinearDamping(sway=10.0), ("sway",)), {"sway": 0.5}, None)
+    (kept,) = keep_beside_law([drag, gain], [there])
+    assert (kept.term, kept.std, kept.probability) == (there.term, there.std, 0.9)
+    rivals = [
+        Rival("lift", "linear_damping", 3.0, fit(alike())),
+        Rival("lift", "thruster_gain", 1.0),
+    ]
+    assert list_rivals_beside(rivals, [kept]) == [Rival("lift", "linear_damping", 3.0)]
+    assert list_rivals_beside(rivals, [kept])[0].fit is None
 
 
 @pytest.mark.parametrize(
@@ -216,8 +237,9 @@ def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted)
         AcceptedEffect(Term(LinearDamping(sway=10.0 * part), ("sway",)), {}, 1.0)
         for part in (1.0, left)
     )
-    (named,) = doubt_beside_law([own], [other], True)
-    assert named.doubt == ("stand_in" if doubted else None)
+    for beside_law in (doubt_beside_law, keep_beside_law):
+        (named,) = beside_law([own], [other])
+        assert named.doubt == ("stand_in" if doubted else None)
 
 
 @pytest.mark.parametrize(("delay", "doubted"), [(-0.02, True), (0.02, False)])
@@ -257,9 +279,9 @@ def test_a_constant_force_in_heave_only_shifts_the_depth_of_what_floats(effect, 
 
 def test_an_effect_keeps_its_first_doubt():
     named = AcceptedEffect(Term(LinearDamping(sway=9.0), ()), {}, 1.0)
-    (once,) = withdraw_probability([named], {"linear_damping"}, "law")
+    (once,) = withdraw_probability([named], {"linear_damping"}, "stand_in")
     (twice,) = withdraw_probability([once], {"linear_damping"}, "unexplained")
-    assert twice.doubt == "law"
+    assert twice.doubt == "stand_in"
 
 
 def test_what_wanders_may_be_what_has_no_name():

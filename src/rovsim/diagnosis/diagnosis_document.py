@@ -50,7 +50,6 @@ REFUSED_EFFECTS_HINT = (
 )
 TOO_LITTLE_DATA_HINT = "There is too little data to say what is left."
 MIN_LISTED_EFFECTS = 10  # of the ranking; those selected are listed in any case
-STAND_IN_DOUBTS = ("law", "stand_in")  # doubts of effects that stand in for a law
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +129,8 @@ def _list_joint(diagnosis: TrainDiagnosis) -> list[list[str]]:
     if diagnosis.fit is None:
         return []
     scaled = set(diagnosis.scale.parameters) if diagnosis.scale else set()
-    return [g for g in group_joint_parameters(diagnosis.fit) if len(set(g) - scaled) > 1]
+    groups = [g for g in group_joint_parameters(diagnosis.fit) if len(set(g) - scaled) > 1]
+    return [g for g in groups if not {name.partition(".")[0] for name in g} & diagnosis.replaced]
 
 
 def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
@@ -204,14 +204,13 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     if diagnosis.verdict != "unexplained":
         return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
     share = diagnosis.structures[0].share if diagnosis.structures else None
+    doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")
     return Unexplained(
         fraction=rounded(share),
         significant=True,
         hint=_format_hint(diagnosis.structures) if diagnosis.structures else REFUSED_EFFECTS_HINT,
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
-        stand_ins=tuple(
-            sorted(s.term.id for s in diagnosis.selected if s.doubt in STAND_IN_DOUBTS)
-        ),
+        stand_ins=tuple(sorted({*diagnosis.replaced, *doubted})),
         disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
     )
 
@@ -228,8 +227,11 @@ def _format_hint(structures: Sequence[Structure]) -> str:
 
 
 def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
-    """Report how the values are correlated, and which rivals may act instead, by their odds."""
-    if diagnosis.fit is None:
+    """Report how the values are correlated, and which rivals may act instead, by their odds.
+
+    Nothing is known of them where a law does without some of the effects that were fitted.
+    """
+    if diagnosis.fit is None or diagnosis.replaced:
         return None
     close_rivals = [
         (r, r.fit)

@@ -38,6 +38,11 @@ from rovsim.diagnosis.selection.accepted_effects import (
     name_smoothing,
     name_terms,
 )
+from rovsim.diagnosis.selection.beside_law import (
+    doubt_beside_law,
+    keep_beside_law,
+    list_rivals_beside,
+)
 from rovsim.diagnosis.selection.ranking import (
     OrderedEffect,
     RankedEffect,
@@ -46,7 +51,6 @@ from rovsim.diagnosis.selection.ranking import (
 )
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.withdrawn_probability import (
-    doubt_beside_law,
     find_constant_heave,
     find_leading,
     find_small,
@@ -89,6 +93,7 @@ class TrainDiagnosis:
         scale: common factor of all forces and inertias; None where it is known.
         not_observable: ids of effects that the runs could not show.
         proposed: a law for what is left; None where no law holds.
+        replaced: ids of accepted effects that the proposed law does without: they are not selected.
         disturbance: what is left as a force in time, where no law holds.
     """
 
@@ -104,6 +109,7 @@ class TrainDiagnosis:
     scale: CommonScale | None = None
     not_observable: Sequence[str] = ()
     proposed: ProposedLaw | None = None
+    replaced: frozenset[str] = frozenset()
     disturbance: ForceInTime | None = None
 
     @property
@@ -185,15 +191,12 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     camera = [name_smoothing(smoothing)] if smoothing else []
     law = _propose(answer, validated, camera) if answer.leaves_physics else None
     rivals = answer.selection.named_rivals
-    terms = name_terms(wide_fit, rivals)
-    effects = [*camera, *terms]
+    accepted = [*camera, *name_terms(wide_fit, rivals)]
     proposed = law if law and law.complete else None
-    if law:
-        effects = doubt_beside_law(effects, law.beside, proposed is not None)
-    if camera:
-        effects = withdraw_probability(effects, find_leading(terms), "looks_ahead")
-    if base.vehicle.floats:
-        effects = withdraw_probability(effects, find_constant_heave(terms), "depth_at_rest")
+    effects = _doubt(accepted, law, base, smooths=bool(camera))
+    replaced = frozenset(e.term.id for e in accepted) - {e.term.id for e in effects}
+    if proposed:
+        rivals = list_rivals_beside(rivals, effects)
     if answer.fit.noise.drift:
         drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
         if drift.sure:
@@ -216,8 +219,31 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         scale=scale,
         not_observable=list_not_observable(answer.selection, problem.catalogue, base.vehicle),
         proposed=proposed,
+        replaced=replaced,
         disturbance=None if proposed else _trace(answer),
     )
+
+
+def _doubt(
+    accepted: Sequence[AcceptedEffect], law: ProposedLaw | None, base: Model, smooths: bool
+) -> list[AcceptedEffect]:
+    """What of the accepted effects is selected, without a probability where there is a doubt.
+
+    Args:
+        accepted: the effects.
+        law: for what they leave; None where there is none.
+        base: the model that is diagnosed.
+        smooths: whether software smooths what the cameras report.
+    """
+    effects = list(accepted)
+    if law:
+        beside_law = keep_beside_law if law.complete else doubt_beside_law
+        effects = beside_law(accepted, law.beside)
+    if smooths:
+        effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
+    if base.vehicle.floats:
+        effects = withdraw_probability(effects, find_constant_heave(effects), "depth_at_rest")
+    return effects
 
 
 def _correlate(fit: Fit) -> Correlation:

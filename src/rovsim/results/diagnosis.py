@@ -104,7 +104,8 @@ class Unexplained(Section):
     """Structure that no effect of the catalogue explains: its share of the disturbance's power.
 
     `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
-    does; `stand_ins`: selected effects whose doubt is `law` or `stand_in`.
+    does; `stand_ins`: effects that were accepted, and that an equation which was tried does
+    without, or changes by more than half. Those that a proposed one does without are not selected.
     """
 
     fraction: float | None

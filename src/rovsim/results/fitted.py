@@ -44,7 +44,6 @@ class FittedEffect(Section):
 
 # Why a name has no probability:
 Doubt = Literal[
-    "law",  # the proposed equation does without it
     "stand_in",  # an equation that was tried does without it, or changes it by more than half
     "unexplained",  # what is left unexplained may make more of the error
     "wanders",  # what is left unexplained may seem a current that wanders

@@ -43,8 +43,8 @@ from rovsim.learning.learner import learners
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import unit
 from rovsim.reporting.wording import listed, significant, title
+from rovsim.reporting.words.intervals import interval
 from rovsim.reporting.words.totals import list_totals, warn
-from rovsim.reporting.words.verdict import interval
 from rovsim.results.comparison import Metrics
 from rovsim.results.fitted import FittedValue
 

@@ -36,7 +36,8 @@ from rovsim.reporting.wording import (
     significant,
     tell_probability,
 )
-from rovsim.reporting.words.verdict import Missing, explain, interval
+from rovsim.reporting.words.intervals import interval
+from rovsim.reporting.words.verdict import Missing, explain
 from rovsim.results.diagnosis import Diagnosis, Disturbance
 from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import FittedEffect

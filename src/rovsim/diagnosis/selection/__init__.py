@@ -20,5 +20,6 @@ cluster_robust         removes effects that few blocks support, where a velocity
 joint_fit              where much is missing at once: fits everything that may be wrong, then prunes
 accepted_effects       accepted effects as they are reported: how sure values and names are
 ranking                orders the accepted effects by the error they remove; ranks each alone
+beside_law             what remains of accepted effects beside a law
 withdrawn_probability  withdraws the probability of effects that may only be stand-ins
 """

@@ -12,9 +12,9 @@ from typing import Iterator, Mapping, Sequence
 from rovsim.core.errors import RovsimError
 from rovsim.reporting.pages.against_published import write_markdown
 from rovsim.reporting.pages.marked import replace_tables, table
+from rovsim.reporting.words.intervals import differs_from_zero, interval
 from rovsim.reporting.words.published_errors import tell_pitfalls
 from rovsim.reporting.words.speed import timing_sentences
-from rovsim.reporting.words.verdict import differs_from_zero, interval
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedValue
 from rovsim.results.pitfalls import Pitfalls

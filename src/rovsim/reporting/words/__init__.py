@@ -9,6 +9,8 @@ published_errors  says how folds compare with published errors, and what pitfall
 experiment        says what a designed flight promises
 shown             says what recordings could not show
 totals            sums of coefficients of the vehicle file and of a diagnosis
+intervals         fitted values with their 95 % intervals
+unexplained       says what no effect explains: a law for it, or the force in time
 symbols           explains the symbols of an equation
 terminal          what `compare`, `train` and `diagnose` print when they are done
 """

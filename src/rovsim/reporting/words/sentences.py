@@ -22,7 +22,7 @@ from rovsim.reporting.wording import (
     title,
 )
 from rovsim.reporting.words.speed import timing_sentences
-from rovsim.reporting.words.verdict import leaves_unexplained
+from rovsim.reporting.words.unexplained import leaves_unexplained
 from rovsim.results.bands import Bands, ModelBands
 from rovsim.results.ladder import Ladder
 from rovsim.results.quality import Quality

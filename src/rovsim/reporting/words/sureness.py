@@ -12,7 +12,6 @@ from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
 
 DOUBT_REASONS: dict[Doubt | None, str] = {
     None: "no other name was tried",
-    "law": "the proposed equation does without it",
     "stand_in": "an equation that was tried takes most of its place",
     "unexplained": "what is left unexplained may make more of the error",
     "wanders": "what is left unexplained may seem a current that wanders",

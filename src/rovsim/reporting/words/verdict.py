@@ -4,13 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import Mapping, Sequence
 
-from rovsim.core.axes import AXES, FORCE_UNITS
-from rovsim.core.normal import Z_95
-from rovsim.core.signs import minus
 from rovsim.dynamics.effects.base import Effect, StochasticCurrent
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import name_parameter
-from rovsim.reporting.units import unit
 from rovsim.reporting.wording import (
     ERROR_MEANING,
     ERROR_NAME,
@@ -20,9 +16,11 @@ from rovsim.reporting.wording import (
     significant,
 )
 from rovsim.reporting.words.apart import apart_sentences, scale_sentences
+from rovsim.reporting.words.intervals import interval
 from rovsim.reporting.words.shown import shown_sentences
 from rovsim.reporting.words.sureness import tell_sureness, unsure_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
+from rovsim.reporting.words.unexplained import leaves_unexplained, unexplained_sentences
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.fitted import FittedEffect, FittedValue
@@ -37,7 +35,6 @@ LOST_SENTENCE = (
     "The recordings cannot tell: before they end the model runs away, although it is corrected at "
     "every reading."
 )
-MAX_TOLD_PUSHES = 3  # moments of a disturbance that are told
 NO_TEST_RUN = (
     "No test run could be used, so there is no error to report. "
     "Write `split: test` for a run in campaign.yaml to hold it out."
@@ -190,21 +187,6 @@ def _removed(share: float | None, above: bool) -> str:
     )
 
 
-def interval(value: FittedValue) -> str:
-    """Return a fitted value with its 95 % interval and unit as text: "0.181 ± 0.002 s"."""
-    half = Z_95 * or_nan(value.std)
-    if not math.isfinite(half) or half <= 0.0:
-        return f"{significant(or_nan(value.value), 4)} {unit(value.unit)}".strip()
-    places = max(0, 1 - math.floor(math.log10(half)))
-    number = minus(f"{or_nan(value.value):.{places}f}")
-    return f"{number} ± {half:.{places}f} {unit(value.unit)}".strip()
-
-
-def differs_from_zero(value: FittedValue) -> bool:
-    """Whether a fitted value's 95 % interval excludes zero; False where it has no interval."""
-    return abs(or_nan(value.value)) > Z_95 * or_nan(value.std) > 0.0
-
-
 def error_sentence(diagnosis: Diagnosis) -> str:
     """Say the error on the test runs without and with the effects, and the noise floor."""
     error = diagnosis.error
@@ -248,53 +230,3 @@ def _away_sentence(runs: Sequence[str], after: float) -> str:
     if not math.isfinite(after):
         return text
     return f"{text} With the effects the {ERROR_NAME} is {significant(after)}. {ERROR_MEANING}."
-
-
-def leaves_unexplained(diagnosis: Diagnosis) -> bool:
-    """Whether significant physics without a law is left, which was then fitted as noise."""
-    return diagnosis.unexplained.significant and diagnosis.unexplained.proposal is None
-
-
-def unexplained_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Say what no effect of the catalogue explains; empty if that is not significant."""
-    unexplained = diagnosis.unexplained
-    return (
-        [f"Unexplained: {unexplained.hint}", *_law_sentences(diagnosis)]
-        if unexplained.significant
-        else []
-    )
-
-
-def _law_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Say which law is proposed for what is unexplained, how good it is, and how to use it."""
-    law = diagnosis.unexplained.proposal
-    if law is None:
-        return _disturbance_sentences(diagnosis)
-    values = ", ".join(f"{name} {interval(v)}" for name, v in law.parameters.items())
-    sentence = f"It removes {percent(law.error_reduction)} of the error on the train runs"
-    step = next((s for s in diagnosis.ladder.models if s.model == f"+{law.effect}"), None)
-    if step is not None and step.windows_2s is not None:
-        sentence += f"; with it the {ERROR_NAME} on the test runs is {significant(step.windows_2s)}"
-    return [
-        f"A law for it: {law.meaning} {law.equation} with {values}. {sentence}.",
-        f"It is in the file {law.file}. Read it, change it if you like, and add it with "
-        f"`rovsim add diagnosis=… effects_file={law.file} model=NEW.yaml`.",
-    ]
-
-
-def _disturbance_sentences(diagnosis: Diagnosis) -> list[str]:
-    """Say how large the force without a law is, how fast it changes, and when it is strongest."""
-    force = diagnosis.unexplained.disturbance
-    if force is None:
-        return []
-    low, high = force.band_hz
-    sizes = [
-        f"{a} {significant(or_nan(force.rms[a]), 2)} {FORCE_UNITS[AXES.index(a)]}"
-        for a in force.axes
-    ]
-    text = f"No law was found for it: a disturbance of {listed(sizes)} (RMS)."
-    text += f" Most of its power lies between {low:.2g} and {high:.2g} Hz."
-    times = [
-        f"{p.time_s:.1f} s of run {p.run} ({p.axis})" for p in force.strongest[:MAX_TOLD_PUSHES]
-    ]
-    return [text + (f" It was strongest at {listed(times)}." if times else "")]
