@@ -177,7 +177,7 @@ def test_models_are_searched_on_train_runs():
     search = ConditionSearch(model(), ["test", "train"], SimulationSettings())
     for one in (run, train):
         search.add_run(one)
-    assert search.found.runs == ("t",)
+    assert search.result.runs == ("t",)
     assert ConditionSearch(model(), ["test"], SimulationSettings()).split == "test"
 
 
@@ -187,7 +187,7 @@ def test_forces_of_a_search_are_those_of_the_model():
     run = replace(run, nu_dot=run.nu_dot + lifted)
     search = ConditionSearch(model(), ["test"], SimulationSettings())
     search.add_run(run)
-    heave = next(f for f in search.found.explanation.findings if f.axis == "heave")
+    heave = next(f for f in search.result.explanation.findings if f.axis == "heave")
     assert heave.condition == "throughout"
     samples = sample_run(model(), run, SimulationSettings())
     mean = average_blocks(run, samples).error.mean(axis=0)

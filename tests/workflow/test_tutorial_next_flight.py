@@ -37,7 +37,7 @@ ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial_next_flight.md"
 KNOWN = "linear_damping.sway"
 SHORTER = ("seconds=20", "design.population=8", "design.rounds=1")
-FEWER = {"FREQUENCIES": (0.12, 0.5), "SQUARES": (0.0,), "AMPLITUDES": (0.6,),
+FEWER = {"FREQUENCY_GRID": (0.12, 0.5), "SQUARE_GRID": (0.0,), "AMPLITUDE_GRID": (0.6,),
          "IN_PLANE": (0.1, 0.3), "OUT_OF_PLANE": (0.05, 0.2)}  # fmt: skip
 
 
