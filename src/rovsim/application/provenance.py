@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Collection, Iterable, Mapping, Sequence
 
 import rovsim
+from rovsim.core.files import sha256_of
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.vehicle import vehicle_file
@@ -221,9 +222,3 @@ def _digest_each(
 ) -> dict[str, str]:
     present = {relpath(path, campaign.folder): path for path in files if path.is_file()}
     return {name: computed.get(name) or sha256_of(path)[:16] for name, path in present.items()}
-
-
-def sha256_of(path: Path) -> str:
-    """The SHA-256 of a file, in hexadecimal digits."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -2,13 +2,13 @@
 
 import errno
 import glob
+import hashlib
 import json
 import os
 import shutil
 import tempfile
 from contextlib import contextmanager
-from hashlib import sha256
-from itertools import count
+from itertools import chain, count
 from pathlib import Path
 from socket import gethostname
 from typing import Any, Iterator, Mapping, TextIO
@@ -93,7 +93,7 @@ def _beside(path: Path, a_folder: bool = False) -> Path:
     Its name contains a hash of the final name, the machine and the process, so that what a killed
     process left behind is recognised and removed here.
     """
-    file = sha256(os.fsencode(path.name)).hexdigest()[:12]
+    file = hashlib.sha256(os.fsencode(path.name)).hexdigest()[:12]
     prefix = f".{file}-{gethostname()[:40]}-"
     try:
         if path.is_dir() and not a_folder:
@@ -176,6 +176,23 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
+def sha256_of(path: Path) -> str:
+    """The SHA-256 of a file, in hexadecimal digits."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def find_free(path: Path, joint: str) -> Path:
+    """This path, or the first one with a number behind its stem, at which nothing stands yet.
+
+    Args:
+        path: that is wanted.
+        joint: stands before the number, which begins with 2.
+    """
+    numbered = (path.with_stem(f"{path.stem}{joint}{k}") for k in count(2))
+    return next(p for p in chain([path], numbered) if not p.exists())
+
+
 def write_beside(path: Path, text: str) -> Path | None:
     """Write UTF-8 text atomically; what stood there and says something else is kept beside it.
 
@@ -185,8 +202,7 @@ def write_beside(path: Path, text: str) -> Path | None:
     """
     kept, content = None, text.encode("utf-8")
     if path.is_file() and path.read_bytes() not in (b"", content):
-        names = (f".earlier-{k}" if k > 1 else ".earlier" for k in count(1))
-        kept = next(p for name in names if not (p := path.with_stem(path.stem + name)).exists())
+        kept = find_free(path.with_stem(f"{path.stem}.earlier"), "-")
         copy_file(path, kept)
     write_bytes(path, content)
     return kept

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from rovsim.application.pipeline.models import load_models
 from rovsim.application.pipeline.recorded_run import load_campaign_vehicle
-from rovsim.application.provenance import provenance, sha256_of
+from rovsim.application.provenance import provenance
 from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput
+from rovsim.core.files import sha256_of
 from rovsim.core.model_names import BUILT_IN
 from rovsim.core.names import as_list
 from rovsim.dynamics.catalogue import load_catalogue

@@ -1,6 +1,5 @@
 """An open campaign in a notebook: it calls the functions of the commands, with their settings."""
 
-import hashlib
 from dataclasses import dataclass, field
 from os import PathLike, fspath
 from pathlib import Path
@@ -30,6 +29,7 @@ from rovsim.apps.notebook import html
 from rovsim.apps.notebook.progress import in_a_cell
 from rovsim.apps.notebook.shown import ShownComparison, ShownDiagnosis, ShownExport, ShownModel
 from rovsim.core.extras import require
+from rovsim.core.files import sha256_of
 from rovsim.core.model_names import name_learned
 from rovsim.core.progress import reported
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -193,7 +193,7 @@ class Campaign:
 def _content(spec: str) -> str:
     """Return a model's name, or its path with a digest, so that a changed file is read again."""
     path = Path(spec)
-    return f"{spec} {hashlib.sha256(path.read_bytes()).hexdigest()}" if path.is_file() else spec
+    return f"{spec} {sha256_of(path)}" if path.is_file() else spec
 
 
 def open(

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain, count
 from pathlib import Path
 from typing import Any, Sequence
 
@@ -16,7 +15,7 @@ from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.kept_replays import KeptReplays
 from rovsim.apps.workbench.work import LongWork
 from rovsim.core.errors import BadInput
-from rovsim.core.files import read_text, write_text
+from rovsim.core.files import find_free, read_text, write_text
 from rovsim.core.model_names import BUILT_IN, EFFECTS
 from rovsim.core.names import as_list
 from rovsim.design.settings import Question
@@ -205,9 +204,7 @@ class Workbench:
 
     def free_path(self) -> Path:
         """Return a path for the next model at which there is no file yet."""
-        ends = chain([""], (f"_{k}" for k in count(2)))
-        paths = (self.saved_in / f"with_effects{end}.yaml" for end in ends)
-        return next(path for path in paths if not path.exists())
+        return find_free(self.saved_in / "with_effects.yaml", "_")
 
     def note_opening(self, model: Model) -> int:
         """Note in a file that the test runs were opened for a model; returns how often so far."""

@@ -2,7 +2,6 @@
 
 import zipfile
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,7 +11,7 @@ from pydantic import AfterValidator
 
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
-from rovsim.core.files import plain
+from rovsim.core.files import plain, sha256_of
 from rovsim.core.schema import PathText, Section, checked
 from rovsim.dynamics.learned.checks import check_exported, checked_rows, posterior
 from rovsim.dynamics.learned.layout import POINTS
@@ -88,7 +87,7 @@ def write_residual(folder: Path, residual: Residual) -> StoredResidual:
         kind=residual.kind,
         control=residual.control,
         file=ARRAYS_FILE,
-        sha256=_digest(folder / ARRAYS_FILE),
+        sha256=sha256_of(folder / ARRAYS_FILE),
         features=residual.features.blocks,
         scaling=residual.features.scaling,
         settings=plain(residual.settings),
@@ -121,16 +120,11 @@ def read_residual(description: Any, folder: Path, where: object = "residual") ->
     return Residual(entry.control, entry.kind, features, entry.settings, data, library, entry.info)
 
 
-def _digest(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal digits."""
-    return sha256(path.read_bytes()).hexdigest()
-
-
 def _refuse_altered(path: Path, digest: str) -> None:
     """Refuse a file that is missing, is not an archive or is not the one the model names."""
     if not path.is_file():
         fault = "no such file"
-    elif _digest(path) != digest:
+    elif sha256_of(path) != digest:
         fault = "not the file this model was saved with (its sha256 differs)"
     elif not zipfile.is_zipfile(path):
         fault = "not an .npz archive"

@@ -1,13 +1,13 @@
 """Flights whose commands come from a log, without a pilot."""
 
 from dataclasses import dataclass, replace
-from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
+from rovsim.core.files import sha256_of
 from rovsim.core.rotations import HALF_TURN_X
 from rovsim.core.run import Commands
 from rovsim.measurement.campaign_file import CommandLog
@@ -94,7 +94,7 @@ def read_sent_log(path: Path, log: CommandLog, up: bool) -> SentLog:
 
 def _require_the_same(path: Path, beside: Path, flight: Experiment) -> None:
     """Refuse a plan that describes another log: its start could lead this one into a wall."""
-    if flight.commands_sha256 in (None, sha256(path.read_bytes()).hexdigest()):
+    if flight.commands_sha256 in (None, sha256_of(path)):
         return
     raise BadInput(
         f"its commands are not those that {beside.name} describes",
