@@ -143,14 +143,14 @@ def _silence_curvature(bank: FilterBank, linearised: Linearised) -> list[Array]:
     A small tilt of a vehicle that moves in a plane acts by its square. Its one-sided difference is
     faint, but as random as the readings: scaled to unit size, it would explain all their noise.
     """
+    if not linearised.is_finite:
+        return linearised.J
     lengths = measure_columns(bank, linearised.J)
     meant = lengths > MAX_ROUNDING_STDS
     faint_ones = np.flatnonzero(meant & (lengths < MIN_VISIBLE_STDS)).tolist()
     stepped_back = {i: step_back(linearised.hypothesis, i) for i in faint_ones}
     possible = {i: h for i, h in stepped_back.items() if h is not None}
     scale = np.where(meant, 1.0, 0.0)[:, None, None]
-    if not linearised.is_finite:
-        return linearised.J
     if not possible:
         return [scale * J for J in linearised.J]
     faint = list(possible)

@@ -12,6 +12,8 @@ from rovsim.estimation.observer.hypothesis import Term
 
 CHANGED_SHARE = 0.5  # of an effect: more is not the same effect beside something else
 
+Pair = tuple[AcceptedEffect, AcceptedEffect]
+
 
 def keep_beside_law(
     effects: Sequence[AcceptedEffect], beside: Iterable[AcceptedEffect]
@@ -25,12 +27,9 @@ def keep_beside_law(
         effects: the accepted effects, fitted without the law.
         beside: the effects that are fitted together with the law.
     """
-    sureness = {e.term.id: (e.probability, e.doubt) for e in effects}
-    kept = []
-    for e in beside:
-        probability, doubt = sureness[e.term.id]
-        kept.append(replace(e, probability=probability, doubt=doubt))
-    return withdraw_probability(kept, _find_changed(effects, kept), "stand_in")
+    pairs = _pair(effects, beside)
+    kept = [replace(alone, term=there.term, std=there.std) for alone, there in pairs]
+    return withdraw_probability(kept, _find_changed(pairs), "stand_in")
 
 
 def doubt_beside_law(
@@ -41,9 +40,9 @@ def doubt_beside_law(
     It makes an effect unnecessary, or changes it by more than half. The arguments are those of
     `keep_beside_law`.
     """
-    acting = {e.term.id for e in beside}
-    idle = {e.term.id for e in effects} - acting
-    return withdraw_probability(effects, idle | _find_changed(effects, beside), "stand_in")
+    pairs = _pair(effects, beside)
+    idle = {e.term.id for e in effects} - {alone.term.id for alone, _ in pairs}
+    return withdraw_probability(effects, idle | _find_changed(pairs), "stand_in")
 
 
 def list_rivals_beside(rivals: Iterable[Rival], kept: Iterable[AcceptedEffect]) -> list[Rival]:
@@ -52,11 +51,14 @@ def list_rivals_beside(rivals: Iterable[Rival], kept: Iterable[AcceptedEffect]) 
     return [replace(r, fit=None) for r in rivals if r.instead_of in ids]
 
 
-def _find_changed(effects: Iterable[AcceptedEffect], beside: Iterable[AcceptedEffect]) -> set[str]:
-    acting = {e.term.id: e.term for e in beside}
-    return {
-        e.term.id for e in effects if e.term.id in acting and _differs(e.term, acting[e.term.id])
-    }
+def _pair(effects: Iterable[AcceptedEffect], beside: Iterable[AcceptedEffect]) -> list[Pair]:
+    """Each effect that acts beside the law as well: as it is without the law, and with it."""
+    acting = {e.term.id: e for e in beside}
+    return [(e, acting[e.term.id]) for e in effects if e.term.id in acting]
+
+
+def _find_changed(pairs: Iterable[Pair]) -> set[str]:
+    return {alone.term.id for alone, there in pairs if _differs(alone.term, there.term)}
 
 
 def _differs(own: Term, other: Term) -> bool:
