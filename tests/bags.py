@@ -96,3 +96,15 @@ def poses(swim, kind=POSE, late=0.0, stamped=True):
 def write_swim(path: Path, swim) -> Path:
     """A bag of one topic of poses."""
     return write_bag(path, {"/mocap/BlueROV2/pose": poses(swim)})
+
+
+def write_outputs(path: Path) -> Path:
+    """A bag of outputs to two thrusters, 50 times a second."""
+    kind = "mavros_msgs/msg/RCOut"
+    arrivals = START + np.arange(0.0, 4.0, 0.02)
+    pulses = np.round(1500 + 200 * np.sin(3 * (arrivals - START))).astype(np.uint16)
+    messages = [
+        (t, message(kind, t, channels=np.array([pulse, 3000 - pulse], np.uint16)))
+        for t, pulse in zip(arrivals, pulses, strict=True)
+    ]
+    return write_bag(path, {"/mavros/rc/out": (kind, messages)})

@@ -14,6 +14,7 @@ from rovsim.core.rotations import axes_signs, from_euler, from_matrix, matrix, t
 
 TEXT = {"qtm_tsv": "poses.tsv", "csv": "poses.csv", "motive_csv": "take.csv"}
 FORMATS = {**TEXT, "rosbag2": "poses", "ardupilot": "log.BIN", "c3d": "take.c3d"}
+LOGS = {"csv": "commands.csv", "rosbag2": "outputs", "ardupilot": "log.BIN"}  # of commands
 AXES = {"ardupilot": ("ned", "frd")}  # of formats that have no others
 CLOCKS = {"rosbag2": bags.START}  # s, where a recording does not start at zero
 
@@ -128,6 +129,16 @@ def command_lines(seconds: float = 4.0, name: str = "csv") -> list[str]:
     value = np.round(1500 + 200 * np.sin(3 * t))
     pairs = zip(t, value, strict=True)
     return ["time_s,t1,t2", *(f"{start + a:.4f},{b:.0f},{3000 - b:.0f}" for a, b in pairs)]
+
+
+def write_commands(folder: Path, name: str) -> Path:
+    """Pulses of outputs in the format `name`; every registered format needs a way here."""
+    write = {
+        "csv": lambda path: write_lines(path, command_lines()),
+        "rosbag2": bags.write_outputs,
+        "ardupilot": lambda path: logs.write_dataflash(path, Swim.ned()),
+    }
+    return write[name](folder / LOGS[name])
 
 
 def write_lines(path: Path, lines: list[str], end: str = "\n") -> Path:

@@ -22,12 +22,13 @@ from rovsim.intake.motions import CommandFile, MotionFile
 from rovsim.intake.names import run_ids, run_key
 from rovsim.intake.pairing import pair
 from rovsim.intake.proposal import ANSWER, CampaignProposal, OpenQuestion
-from rovsim.intake.survey import CommandCandidate, Track
+from rovsim.intake.survey import Track
 from rovsim.intake.survey.csv_files import look_into_csv
 from rovsim.intake.survey.starts import find_start
 from rovsim.intake.write import write_proposal
 from rovsim.intake.yaml_file import as_yaml
 from rovsim.measurement.loading import load_campaign
+from rovsim.measurement.recording.candidates import CommandCandidate
 from rovsim.measurement.recording.exports import Export
 from rovsim.measurement.recording.readers import mocap_readers
 from said import unfolded

@@ -14,11 +14,13 @@ from recordings import (
     campaign_content,
     command_lines,
     write_campaign,
+    write_commands,
     write_lines,
     write_poses,
     write_run,
 )
 from rovsim.apps.cli.main import main
+from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix
 from rovsim.intake.survey import look
@@ -29,6 +31,7 @@ from rovsim.measurement.recording import Recording, read_run
 from rovsim.measurement.recording.readers import command_readers, mocap_readers
 
 every_format = pytest.mark.parametrize("name", sorted(mocap_readers()))
+every_log = pytest.mark.parametrize("name", sorted(command_readers()))
 every_text = pytest.mark.parametrize("name", sorted(TEXT))
 
 
@@ -63,15 +66,59 @@ MOCAP_READER = MocapReader(
 '''
 
 
+ONE_LOG = '''
+"""Lines of "time t1 t2", pulses in us, below the word PULSES."""
+
+import numpy as np
+
+from rovsim.measurement.recording.candidates import CommandCandidate, FoundCommands
+from rovsim.measurement.recording.commands import as_commands
+from rovsim.measurement.recording.readers import CommandReader
+from rovsim.measurement.recording.signature import FileSignature, starts_with
+
+NAMES = ("t1", "t2")
+
+
+def find(path):
+    table = np.loadtxt(path, skiprows=1)
+    return FoundCommands(
+        (CommandCandidate("pulses", NAMES, table[:, 0], table[:, 1:], "pwm", "said so"),)
+    )
+
+
+def read(path, log):
+    table = np.loadtxt(path, skiprows=1)
+    value = table[:, [1 + NAMES.index(name) for name in log.names]]
+    return as_commands(table[:, 0], value, log, lambda line, column: f"{path}, line {line + 2}")
+
+
+COMMAND_READER = CommandReader(
+    "pulses", read, find, "a file of pulses", (FileSignature(starts_with(b"PULSES")),)
+)
+'''
+
+
 @pytest.fixture
-def plain_reader(tmp_path, monkeypatch):
-    """A format that one more file in the folder of readers declares."""
-    folder = tmp_path / "readers"
-    write_lines(folder / "plain.py", [ONE_FILE])
+def add_format(tmp_path, monkeypatch):
+    """A function that puts one more file into the folder of formats, by its name and text."""
+    folder, added = tmp_path / "readers", []
     monkeypatch.setattr(formats_package, "__path__", [*formats_package.__path__, str(folder)])
-    yield "plain"
-    sys.modules.pop(f"{formats_package.__name__}.plain", None)
-    vars(formats_package).pop("plain", None)
+
+    def add(name, text):
+        write_lines(folder / f"{name}.py", [text])
+        added.append(name)
+
+    yield add
+    for name in added:
+        sys.modules.pop(f"{formats_package.__name__}.{name}", None)
+        vars(formats_package).pop(name, None)
+
+
+@pytest.fixture
+def plain_reader(add_format):
+    """A format that one more file in the folder of readers declares."""
+    add_format("plain", ONE_FILE)
+    return "plain"
 
 
 def test_a_reader_is_one_file(tmp_path, plain_reader):
@@ -96,6 +143,38 @@ def test_a_reader_is_one_file(tmp_path, plain_reader):
     file.write_text(file.read_text().replace("world_axes: ned", "world_axes: y_up"))
     with pytest.raises(BadInput, match=r"'y_up' with 'mocap.format: plain'"):
         load_campaign(raw)
+
+
+def test_a_reader_of_commands_is_one_file(tmp_path, add_format):
+    add_format("pulses", ONE_LOG)
+    raw, swim = tmp_path / "raw", Swim.ned(frames=1200)
+    write_poses(raw, "qtm_tsv", swim)
+    lines = [line.replace(",", " ") for line in command_lines(12.0)[1:]]
+    write_lines(raw / "poses.log", ["PULSES", *lines])
+    main(["init", str(raw), "-q"])
+    file = raw / "campaign.yaml"
+    text = file.read_text()
+    for line in ("format: pulses", "kind: pwm", "commands: poses.log"):
+        assert line in text
+    for key, answer in (("vehicle", "bluerov2"), ("world_axes", "z_up"), ("body_axes", "flu")):
+        text = text.replace(f"{key}: ANSWER", f"{key}: {answer}")
+    file.write_text(text)
+    campaign = load_campaign(raw)
+    commands = read_run(campaign, campaign.runs[0].id)[0].commands
+    np.testing.assert_allclose(commands.value[:, 0], 0.5 * np.sin(3 * commands.time), atol=2e-3)
+    with pytest.raises(BadInput, match="or a file of pulses"):
+        look(write_lines(tmp_path / "note.txt", ["hello"]), tmp_path)
+
+
+@every_log
+def test_what_init_finds_of_commands_is_read_so(tmp_path, name):
+    path = write_commands(tmp_path, name)
+    held = look(path, tmp_path)
+    candidate = held.drives[0]
+    export = command_readers()[name].read(path, candidate.log())
+    assert (held.format, candidate.format, candidate.kind) == (name, name, "pwm")
+    np.testing.assert_array_equal(export.time, candidate.time)
+    np.testing.assert_allclose(export.value, pwm.to_commands(candidate.value))
 
 
 def swum(recording):

@@ -16,8 +16,9 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     rotations,
 )
 from rovsim.evaluation.commanded_motion.predicted import cause
-from rovsim.intake.survey.contents import CommandCandidate, Track
+from rovsim.intake.survey.contents import Track
 from rovsim.intake.vehicles import VehicleMatch, convert_log
+from rovsim.measurement.recording.candidates import CommandCandidate
 from rovsim.measurement.rough_motion import Velocities, estimate_velocities
 
 MAX_COMPARED_S = 600.0  # of commands that are looked at: minutes tell as much as hours

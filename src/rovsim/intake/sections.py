@@ -8,7 +8,7 @@ from rovsim.core.robust import usual_range
 from rovsim.core.shipped import conf_names
 from rovsim.intake.draft import CampaignDraft
 from rovsim.intake.facts import Facts
-from rovsim.intake.survey.contents import CommandCandidate
+from rovsim.measurement.recording.candidates import CommandCandidate
 from rovsim.measurement.recording.readers import mocap_readers
 
 AXES_MEANINGS = {

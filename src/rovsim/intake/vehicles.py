@@ -10,10 +10,9 @@ from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands
 from rovsim.core.shipped import conf_names
 from rovsim.dynamics.vehicle import Vehicle, load_vehicle
-from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
-from rovsim.intake.survey.csv_commands import within
-from rovsim.measurement.campaign_file import CommandLog
-from rovsim.measurement.recording.commands import as_commands
+from rovsim.measurement.campaign_file import CommandLog, LoggedKind
+from rovsim.measurement.recording.candidates import CommandCandidate
+from rovsim.measurement.recording.commands import as_commands, within
 from rovsim.measurement.recording.tidying import tidy_commands
 
 OUTPUT_PREFIX = "SERVO"  # columns of a log that may hold more outputs than thrusters

@@ -47,6 +47,7 @@ def _distinct(names: list[str]) -> list[str]:
 
 Text = Annotated[Name, BeforeValidator(_as_text), Field(min_length=1)]
 FilePath = Annotated[PathText, BeforeValidator(_as_text), Field(min_length=1)]
+LoggedKind = Literal["pwm", "normalized", "demand", "wrench"]
 FileName = Annotated[str, BeforeValidator(_as_text), AfterValidator(_file_name)]
 Two = Annotated[list[float], Field(min_length=2, max_length=2)]
 Interval = Annotated[Two, _rising("[low, high] with low below high, in m")]
@@ -114,7 +115,7 @@ class CommandLog(Section):
     """
 
     format: str
-    kind: Literal["pwm", "normalized", "demand", "wrench"]
+    kind: LoggedKind
     columns: Annotated[list[Text], Field(min_length=1), AfterValidator(_distinct)]
     axes: Annotated[list[Axis], AfterValidator(_distinct)] = Field(default_factory=list)
     topic: Text | None = None

@@ -4,8 +4,7 @@ gather         lists the files and bags that were named, or lie in named folders
 sniff          recognises the format of a file
 contents       what a file holds: motions, and what looks like commands
 look           looks into a file by the reader of its format
-bags           looks into ROS 2 bags
-logs           looks into ArduPilot logs
+bags           finds motions in ROS 2 bags
 csv_files      looks into csv files
 csv_commands   finds commands among the columns of a csv file
 other_numbers  columns of a csv file that are numbers and no measured channel
@@ -20,8 +19,8 @@ quaternions    refuses numbered columns that may be a quaternion
 timing         rates, jitter and gaps of times
 """
 
-from rovsim.intake.survey.contents import CommandCandidate, Contents, Track
+from rovsim.intake.survey.contents import Contents, Track
 from rovsim.intake.survey.gather import gather
 from rovsim.intake.survey.look import look
 
-__all__ = ["CommandCandidate", "Contents", "Track", "gather", "look"]
+__all__ = ["Contents", "Track", "gather", "look"]

@@ -11,9 +11,10 @@ from rovsim.core import pwm
 from rovsim.core.axes import AXES
 from rovsim.core.pwm import PILOT_CHANNELS
 from rovsim.intake.survey.command_names import find_range, find_wrench, has_other_unit
-from rovsim.intake.survey.contents import CommandCandidate, LoggedKind
 from rovsim.intake.survey.other_numbers import TimedColumns, find_numbers, find_sparse
-from rovsim.measurement.recording.commands import MAX_PERCENT, UNIT_RANGES, are_pulses, guess_unit
+from rovsim.measurement.campaign_file import LoggedKind
+from rovsim.measurement.recording.candidates import CommandCandidate
+from rovsim.measurement.recording.commands import MAX_PERCENT, guess_unit, within
 from rovsim.measurement.recording.tables.delimited import Lines
 
 RADIO_CHANNEL = re.compile(r"(?:rc|rcin_?c?|chan)_?(\d+)(?:_raw)?", re.IGNORECASE)
@@ -162,15 +163,6 @@ def _rests_at_half(values: list[Array]) -> bool:
     low, high = find_range(values)
     usual = float(np.median([np.nanmedian(value) for value in values]))
     return low >= 0.0 and high <= 1.0 and low < 0.5 < high and abs(usual - 0.5) < HALF_TOLERANCE
-
-
-def within(value: Array, kind: LoggedKind) -> bool:
-    """Whether a column can be commands of a kind, by the size of its numbers."""
-    if kind == "pwm":
-        return are_pulses(value)
-    low, high = UNIT_RANGES[kind][:2]
-    finite = value[np.isfinite(value)]
-    return bool(len(finite) and finite.min() >= low and finite.max() <= high)
 
 
 def ordered(names: list[str]) -> list[str]:

@@ -2,26 +2,18 @@
 
 from pathlib import Path
 from types import MappingProxyType
-from typing import Callable, Iterator, Mapping, Sequence
+from typing import Iterator, Mapping, Sequence
 
 from rovsim.core.errors import BadInput
 from rovsim.intake.survey.bags import look_into_bag
 from rovsim.intake.survey.contents import Contents, Track
 from rovsim.intake.survey.csv_files import look_into_csv
-from rovsim.intake.survey.logs import look_into_log
 from rovsim.intake.survey.sizes import Key, Unit
 from rovsim.intake.survey.sniff import sniff
 from rovsim.measurement.campaign_file import Mocap
-from rovsim.measurement.recording.readers import MocapReader, mocap_readers
+from rovsim.measurement.recording.candidates import FoundCommands
+from rovsim.measurement.recording.readers import MocapReader, command_readers, mocap_readers
 from rovsim.measurement.recording.tidying import tidy_export
-
-# Formats whose files may hold commands, or sensors to choose from, and what finds these. For every
-# other format its reader, which is found by itself, lists the bodies.
-LOOKS_BY_FORMAT: dict[str, Callable[[Path, Path, Mapping[Key, Unit]], Contents]] = {
-    "csv": look_into_csv,
-    "rosbag2": lambda path, scratch, units: look_into_bag(path),
-    "ardupilot": lambda path, scratch, units: look_into_log(path),
-}
 
 
 def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType({})) -> Contents:
@@ -37,9 +29,13 @@ def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType
     """
     try:
         name = sniff(path)
-        if name in LOOKS_BY_FORMAT:
-            return LOOKS_BY_FORMAT[name](path, scratch, units)
-        return _of_bodies(path, mocap_readers()[name])
+        if name == "csv":  # its columns may have any name and unit
+            return look_into_csv(path, scratch, units)
+        logs = command_readers()
+        commands = logs[name].find(path) if name in logs else FoundCommands()
+        if name == "rosbag2":  # its sensors are topics to choose from
+            return look_into_bag(path, commands)
+        return _by_readers(path, name, commands)
     except OSError as error:
         raise BadInput(
             f"cannot be read ({error.strerror})",
@@ -49,17 +45,36 @@ def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType
         ) from None
 
 
-def _of_bodies(path: Path, reader: MocapReader) -> Contents:
-    """Read all rigid bodies of a motion-capture export."""
-    names = reader.bodies(path)
-    tracks = tuple(_tracks(path, reader, names))
-    if tracks:
-        return Contents(path, reader.name, tracks)
-    raise BadInput(
-        f"none of the rigid bodies {', '.join(names)} was ever found",
-        where=path,
-        expected="at least one that was",
-        remedy="Check the rigid bodies in the motion capture software, and export again.",
+def _by_readers(path: Path, name: str, commands: FoundCommands) -> Contents:
+    """Read what the readers of a format find in a file: all rigid bodies, and commands.
+
+    Args:
+        path: of the file.
+        name: of its format.
+        commands: that were found in it.
+
+    Raises:
+        BadInput: no body was ever found, or the format is one of commands and there are none.
+    """
+    reader = mocap_readers().get(name)
+    bodies = reader.bodies(path) if reader else ()
+    tracks = tuple(_tracks(path, reader, bodies)) if reader else ()
+    if reader and not tracks:
+        raise BadInput(
+            f"none of the rigid bodies {', '.join(bodies)} was ever found",
+            where=path,
+            expected="at least one that was",
+            remedy="Check the rigid bodies in the motion capture software, and export again.",
+        )
+    if not tracks and not commands.candidates:
+        raise BadInput(
+            "nothing like commands",
+            where=path,
+            expected="commands that changed while the vehicle moved",
+            remedy=" ".join([*commands.notes, commands.unknown]).strip() or "Leave the file out.",
+        )
+    return Contents(
+        path, name, tracks, commands.candidates, notes=commands.notes, unknown=commands.unknown
     )
 
 

@@ -2,9 +2,15 @@
 
 import re
 from pathlib import Path
+from typing import Sequence
 
 from rovsim.core.errors import BadInput
-from rovsim.measurement.recording.readers import mocap_readers
+from rovsim.measurement.recording.readers import (
+    CommandReader,
+    MocapReader,
+    command_readers,
+    mocap_readers,
+)
 from rovsim.measurement.recording.signature import HEAD_BYTES, FileSignature, decoded, head_lines
 from rovsim.measurement.recording.tables.delimited import is_table
 
@@ -48,29 +54,41 @@ TUM_NUMBERS = 8  # a line: time, position, quaternion (x, y, z, w)
 
 
 def sniff(path: Path) -> str:
-    """Tell the format of a file, as `mocap.format` names it; a folder is taken for a bag.
+    """Tell the format of a file, as campaign.yaml names it; a folder is taken for a bag.
 
     Raises:
         BadInput: rovsim does not read this format; the message says what the file seems to be.
     """
-    readers = mocap_readers().values()
+    motions = mocap_readers().values()
     if path.is_dir():
-        return next(reader.name for reader in readers if reader.folder)
+        return next(reader.name for reader in motions if reader.folder)
     with path.open("rb") as file:
         head = file.read(HEAD_BYTES)
+    specific = [reader for reader in motions if not reader.general]
+    name = _match(path, head, [*specific, *command_readers().values()])
+    if not name:
+        _refuse_known(path, head)
+        name = _match(path, head, [reader for reader in motions if reader.general])
+    if not name:
+        raise _unknown(path, head)
+    return name
+
+
+def _match(path: Path, head: bytes, readers: Sequence[MocapReader | CommandReader]) -> str | None:
+    """Name the first format whose files begin with such bytes; None where there is none."""
     for reader in readers:
-        if reader.general:
-            _refuse_known(path, head)
         for signature in reader.signatures:
             if signature.matches(head):
                 _check_ending(path, signature)
                 return reader.name
-    raise _unknown(path, head)
+    return None
 
 
 def _readable() -> str:
     """Say which files can be read."""
-    *others, last = (reader.what for reader in mocap_readers().values())
+    motions, logs = mocap_readers().values(), command_readers().values()
+    names = [*(reader.what for reader in motions), *(reader.what for reader in logs)]
+    *others, last = filter(None, names)
     return f"{', '.join(others)} or {last}"
 
 

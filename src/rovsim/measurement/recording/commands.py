@@ -10,7 +10,7 @@ from rovsim.core import pwm
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Commands, Logged
-from rovsim.measurement.campaign_file import CommandLog
+from rovsim.measurement.campaign_file import CommandLog, LoggedKind
 from rovsim.measurement.recording.attitudes import finite_rows
 from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.readers import COMMAND_KINDS
@@ -76,6 +76,15 @@ def are_pulses(value: Array) -> bool:
     low, high, _ = UNIT_RANGES["pwm"]
     pulses = value[np.isfinite(value) & ~pwm.absent(value)]
     return bool(len(pulses) and pulses.min() >= low and pulses.max() <= high)
+
+
+def within(value: Array, kind: LoggedKind) -> bool:
+    """Whether a column can be commands of a kind, by the size of its numbers."""
+    if kind == "pwm":
+        return are_pulses(value)
+    low, high = UNIT_RANGES[kind][:2]
+    finite = value[np.isfinite(value)]
+    return bool(len(finite) and finite.min() >= low and finite.max() <= high)
 
 
 def _check_range(value: Array, log: CommandLog, unit: str, locate: Locate) -> None:

@@ -10,6 +10,7 @@ from rovsim.core.errors import BadInput, nearest, unlisted
 from rovsim.core.rotations import BodyAxes, WorldAxes
 from rovsim.core.run import CommandKind
 from rovsim.measurement.campaign_file import CommandLog, Mocap
+from rovsim.measurement.recording.candidates import FoundCommands
 from rovsim.measurement.recording.exports import CommandExport, Export
 from rovsim.measurement.recording.signature import FileSignature
 
@@ -102,11 +103,19 @@ class CommandReader:
     Attributes:
         name: of the format, as in `commands.format`.
         read: reads a file.
+        find: finds what may be commands in a file that nobody has described, for `rovsim init`. In
+            csv files, whose columns may have any name, it searches by itself.
+        what: such a file in words; empty where a `MOCAP_READER` of the same name says so.
+        signatures: how files of the format are recognised; none where a `MOCAP_READER` of the same
+            name says so.
         auxiliary: whether `commands.auxiliary` may name further columns.
     """
 
     name: str
     read: Callable[[Path, CommandLog], CommandExport]
+    find: Callable[[Path], FoundCommands] = lambda path: FoundCommands()
+    what: str = ""
+    signatures: tuple[FileSignature, ...] = ()
     auxiliary: bool = False
 
 

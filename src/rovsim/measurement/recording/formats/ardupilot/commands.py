@@ -12,7 +12,6 @@ from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.formats.ardupilot.logs import needs, open_log
 from rovsim.measurement.recording.formats.ardupilot.series import ArduPilotLog, Series
-from rovsim.measurement.recording.readers import CommandReader
 
 # Kind of log -> kind of column -> type of message, and the field of a number.
 LOG_FIELDS = {
@@ -78,6 +77,3 @@ def _without_pulse(value: Array, wanted: str) -> tuple[Array, tuple[str, ...]]:
     if wanted != "RC":
         return pwm.of_outputs(value)
     return pwm.of_inputs(value), ()
-
-
-COMMAND_READER = CommandReader("ardupilot", read_commands)

@@ -6,9 +6,15 @@ messages     take numbers out of messages, by their fields
 stamps       when a message was measured
 motion       poses and channels
 commands     pulses, arrays, wrenches, joysticks
+candidates   finds the topics that hold some
+topic_names  what names and types of topics tell
 """
 
-from rovsim.measurement.recording.formats.rosbag2.commands import COMMAND_READER
+from rovsim.measurement.recording.formats.rosbag2.candidates import find_commands
+from rovsim.measurement.recording.formats.rosbag2.commands import read_commands
 from rovsim.measurement.recording.formats.rosbag2.motion import MOCAP_READER
+from rovsim.measurement.recording.readers import CommandReader
+
+COMMAND_READER = CommandReader("rosbag2", read_commands, find_commands)
 
 __all__ = ["COMMAND_READER", "MOCAP_READER"]

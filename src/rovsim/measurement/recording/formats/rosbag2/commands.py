@@ -14,9 +14,17 @@ from rovsim.measurement.campaign_file import CommandLog
 from rovsim.measurement.recording.commands import as_commands
 from rovsim.measurement.recording.exports import CommandExport
 from rovsim.measurement.recording.formats.rosbag2.bag import Bag, TopicSamples, opened
-from rovsim.measurement.recording.readers import CommandReader
 
-COMMAND_TYPES = ("RCOut", "OverrideRCIn", "RCIn", "ManualControl", "MultiArray", "Wrench")
+# Message types of commands, in order of preference: what was sent to the thrusters comes first.
+COMMAND_TYPES = (
+    "RCOut",
+    "MultiArray",
+    "Wrench",
+    "WrenchStamped",
+    "ManualControl",
+    "OverrideRCIn",
+    "RCIn",
+)
 PULSE_TYPES = ("RCOut", "OverrideRCIn", "RCIn")
 # MAVLink MANUAL_CONTROL as ArduSub takes it: x, y, r in -1000 .. 1000, z in 0 .. 1000 and up
 MANUAL_FIELDS: Mapping[str, tuple[str, int, int]] = {
@@ -144,6 +152,3 @@ def _number(get: Get, message: Any) -> float:
         return get(message)
     except IndexError:
         return float("nan")
-
-
-COMMAND_READER = CommandReader("rosbag2", read_commands)
