@@ -3,6 +3,7 @@
 import re
 import shutil
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,8 @@ from rovsim.measurement.recording.repairs import Anomalies, CommandRepairs, Moti
 from rovsim.measurement.rough_motion import estimate_velocities
 from rovsim.measurement.signals.outliers import KeepAll
 from said import unfolded
+
+LATER_S = 60.0  # from the begin of one run to that of the next, on one log
 
 
 @pytest.fixture(scope="module")
@@ -158,6 +161,42 @@ def test_the_log_of_another_run_is_not_followed(campaign):
         return np.column_stack([table[:, 0], np.vstack([blocks[k] for k in order])])
 
     assert re.search("hardly follows its commands|along other axes", rewritten(campaign, shuffle))
+
+
+@pytest.mark.parametrize(("own", "other"), [*permutations(range(3), 2)])
+def test_a_run_that_names_the_log_of_another_is_told_so(campaign, own, other):
+    content = read_yaml(campaign / "campaign.yaml")
+    content["runs"][own]["commands"] = content["runs"][other]["commands"]
+    write_yaml(campaign / "campaign.yaml", content)
+    said = doubts(campaign, own)
+    named = content["runs"][other]["id"]
+    assert said.startswith(f"Run {named} names the same log of commands, and this motion is unlike")
+    assert "body_axes" not in said
+    assert doubts(campaign, other) == ""
+
+
+def on_one_log(campaign) -> None:
+    """Put the first two runs of a campaign on one log, and its clock."""
+    content = read_yaml(campaign / "campaign.yaml")
+    first, second, *_ = content["runs"]
+    logs = [(campaign / run["commands"]).read_text().splitlines() for run in (first, second)]
+    later = [line.split(",", 1) for line in logs[1][1:]]
+    lines = logs[0] + [f"{float(time) + LATER_S:.4f},{rest}" for time, rest in later]
+    (campaign / "day.csv").write_text("\n".join(lines) + "\n")
+    first["commands"] = second["commands"] = "day.csv"
+    second["commands_shift_s"] = -LATER_S
+    write_yaml(campaign / "campaign.yaml", content)
+
+
+def test_nothing_is_said_of_runs_that_are_parts_of_one_log(campaign):
+    on_one_log(campaign)
+    assert doubts(campaign, 0) == doubts(campaign, 1) == ""
+
+
+def test_wrong_axes_are_told_of_parts_of_one_log_too(campaign):
+    on_one_log(campaign)
+    said = described(campaign, lambda c: c["mocap"].update(body_axes="frd", world_axes="ned"))
+    assert "sway shows as −sway" in said
 
 
 @pytest.mark.parametrize("late", [3.0, -2.0])

@@ -5,7 +5,7 @@ from rovsim.dynamics.vehicle.implausible_numbers import doubt_units
 from rovsim.evaluation.commanded_motion.doubts import find_doubts
 from rovsim.measurement.campaign import Campaign
 from rovsim.measurement.quality.assessment import report_quality
-from rovsim.measurement.quality.copied_runs import doubt_copy
+from rovsim.measurement.quality.copied_runs import doubt_copy, list_same_log
 from rovsim.measurement.recording import Anomalies, Recording
 from rovsim.measurement.signals.outliers import Outliers
 from rovsim.results.quality import Quality
@@ -30,5 +30,6 @@ def judge_recording(
     if quality.unusable is not None:
         return quality
     vehicle = load_campaign_vehicle(campaign)
-    copies = doubt_copy(campaign, campaign.run(recording.run.id))
-    return quality.doubted(*doubt_units(vehicle), *find_doubts(recording, vehicle), *copies)
+    run = campaign.run(recording.run.id)
+    doubts = find_doubts(recording, vehicle, list_same_log(campaign, run))
+    return quality.doubted(*doubt_units(vehicle), *doubts, *doubt_copy(campaign, run))

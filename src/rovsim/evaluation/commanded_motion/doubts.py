@@ -1,6 +1,6 @@
 """Find what contradicts how a campaign describes a run: axes, conventions, tank or clocks."""
 
-from typing import Iterator
+from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -10,7 +10,7 @@ from rovsim.core.rotations import half_turn, matrix, multiply
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.evaluation.commanded_motion.clocks import MIN_PEAK_LEAD, tell_following
-from rovsim.evaluation.commanded_motion.conventions import find_convention
+from rovsim.evaluation.commanded_motion.conventions import OtherReading, find_convention
 from rovsim.evaluation.commanded_motion.cross_correlation import (
     MIN_CORRELATION,
     MIN_LEAD_RATIO,
@@ -36,18 +36,24 @@ MAX_END_GAP_S, MAX_END_GAP_STEPS = 2.0, 5.0
 # Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
 # of a ship that steers reach 0.8 along wrong axes, and of a catamaran 0.98 along the right ones.
 CLEAR_CORRELATION = 0.9
+# Likeness, along any axes or by any convention, beyond which a log is surely that of the run. With
+# the logs of other runs, runs of 12 s reach 0.56 (tank=tiny, seven seeds), of 60 s 0.25.
+SURELY_OWN_CORRELATION = 0.65
 TRANSLATION_AXES = ("surge", "sway", "heave")
 
 
-def find_doubts(recording: Recording, vehicle: Vehicle) -> tuple[str, ...]:
+def find_doubts(
+    recording: Recording, vehicle: Vehicle, same_log: Sequence[str] = ()
+) -> tuple[str, ...]:
     """List what contradicts the description of a run, in sentences; empty if nothing does.
 
     Args:
         recording: of the run, as its campaign describes it.
         vehicle: the vehicle.
+        same_log: ids of other runs that name the same log of commands.
     """
     upside_down = list(_upside_down(recording, vehicle))
-    mismatches = [] if upside_down else list(_unlike_commands(recording, vehicle))
+    mismatches = [] if upside_down else list(_unlike_commands(recording, vehicle, same_log))
     return (*upside_down, *mismatches, *_out_of_tank(recording), *_log_that_ends(recording))
 
 
@@ -63,8 +69,10 @@ def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
         )
 
 
-def _unlike_commands(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
-    """Remark a motion unlike its commands: another convention, other axes or another clock."""
+def _unlike_commands(
+    recording: Recording, vehicle: Vehicle, same_log: Sequence[str]
+) -> Iterator[str]:
+    """Remark a motion unlike its commands: of another run, convention, axes or clock."""
     predicted = _predict_caused(recording, vehicle)
     if predicted is None:
         return
@@ -76,31 +84,58 @@ def _unlike_commands(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
     correlation = cross_correlate(motion, *predicted)
     if not correlation.excited.any() or not correlation.overlaps:
         return
-    score, lag = correlation.best(np.eye(3))
     best_score, axes = max(
         ((correlation.best(a := np.array(o))[0], a) for o in orientations()), key=_first
     )
     if best_score < CLEAR_CORRELATION and not can_push_sideways(vehicle):
         return
+    score, lag = correlation.best(np.eye(3))
     lag = lag if score >= MIN_CORRELATION else 0.0
-    if poses and (
-        message := _read_otherwise(poses, recording.site.axes, predicted, lag, best_score)
-    ):
-        yield message[0].upper() + message[1:]
+    other = (
+        _read_otherwise(poses, recording.site.axes, predicted, lag, best_score) if poses else None
+    )
+    if other is not None:
+        message, own_log = str(other), other.score >= SURELY_OWN_CORRELATION
     elif best_score >= MIN_CORRELATION and best_score > MIN_LEAD_RATIO * score:
-        yield (
-            f"The vehicle moves along other axes than those commanded: {_describe_swaps(axes)} "
-            f"(likeness {best_score:.2f}; as described {score:.2f}). Check 'mocap.body_axes', "
-            "'mocap.world_axes' and the order and signs of 'commands.columns'."
-        )
-    elif message := tell_following(correlation, np.eye(3)):
-        yield message[0].upper() + message[1:]
+        message = _of_other_axes(axes, best_score, score)
+        own_log = best_score >= SURELY_OWN_CORRELATION
+    else:
+        message, own_log = tell_following(correlation, np.eye(3)), score >= MIN_CORRELATION
+    if message:
+        yield _sentence(_of_same_log(same_log, score) if same_log and not own_log else message)
+
+
+def _sentence(half: str) -> str:
+    """Begin with a capital letter."""
+    return half[0].upper() + half[1:]
+
+
+def _of_other_axes(axes: Array, likeness: float, as_described: float) -> str:
+    """Describe the axes (3, 3) along which a motion is like its commands, more than as described.
+
+    Both correlations are means over the excited axes.
+    """
+    return (
+        f"the vehicle moves along other axes than those commanded: {_describe_swaps(axes)} "
+        f"(likeness {likeness:.2f}; as described {as_described:.2f}). Check 'mocap.body_axes', "
+        "'mocap.world_axes' and the order and signs of 'commands.columns'."
+    )
+
+
+def _of_same_log(runs: Sequence[str], likeness: float) -> str:
+    """Say that other runs name the log of a motion that is unlike it (mean correlation)."""
+    named = f"runs {' and '.join(runs)} name" if len(runs) > 1 else f"run {runs[0]} names"
+    return (
+        f"{named} the same log of commands, and this motion is unlike it (likeness "
+        f"{likeness:.2f}): correct 'commands' of the run whose log it is not. If it is one log of "
+        "several runs, check 'commands_shift_s', then the axes."
+    )
 
 
 def _read_otherwise(
     poses: ResampledPoses, signs: Array, caused: tuple[Array, Array], lag: float, best: float
-) -> str:
-    """Describe another convention of attitudes, if it is better than merely other axes.
+) -> OtherReading | None:
+    """Find another convention of poses that is better than merely other axes; None without one.
 
     Args:
         poses: in NED and FRD, as they were read.
@@ -108,9 +143,6 @@ def _read_otherwise(
         caused: times (m,) in s, and the body velocities (m, 6) FRD that commands should cause.
         lag: by which the motion comes after its commands, s.
         best: highest correlation along any axes.
-
-    Returns:
-        A half sentence; empty if no convention is better.
     """
     turn = half_turn(signs)
     # poses along the axes of the file again, as in its columns
@@ -118,11 +150,8 @@ def _read_otherwise(
         poses.time, poses.position * signs, multiply(turn, multiply(poses.attitude, turn))
     )
     convention = find_convention(as_in_file, caused, [np.diag(signs)], lag)
-    return (
-        str(convention)
-        if convention is not None and convention.score > best + MIN_PEAK_LEAD
-        else ""
-    )
+    better = convention is not None and convention.score > best + MIN_PEAK_LEAD
+    return convention if better else None
 
 
 def _first(pair: tuple[float, Array]) -> float:

@@ -5,7 +5,7 @@ excitation            how much it moves along each axis, and whether that suffic
 pose_noise            how noisy its poses are
 velocity_means        are the recorded velocities means from line to line? compares with poses
 velocity_conventions  do the recorded velocities fit the poses, in our units and axes?
-copied_runs           finds test runs that copy train runs
+copied_runs           finds runs with the same files: copies of train runs, shared logs
 remarks               the quality of a recording in sentences
 assessment            puts all of this together, as `quality/RUN.json`
 """

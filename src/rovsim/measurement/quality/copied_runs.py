@@ -1,4 +1,4 @@
-"""Find test runs that copy a train run, so that their data were seen in training."""
+"""Find runs with the same files: test runs that copy a train run, and runs that share a log."""
 
 import filecmp
 from pathlib import Path
@@ -20,6 +20,20 @@ def doubt_copy(campaign: Campaign, run: Run) -> Iterator[str]:
                 f"This test run holds the recording of train run {other.id}: its errors say "
                 "nothing of a run that nobody has seen. Hold another run out."
             )
+
+
+def list_same_log(campaign: Campaign, run: Run) -> list[str]:
+    """List the ids of other runs that name the log of commands of a run, with other recordings."""
+    if not run.commanded:
+        return []
+    mocap, log = campaign.mocap_paths(run), campaign.commands_path(run)
+    return [
+        other.id
+        for other in campaign.runs
+        if other.commanded
+        and campaign.commands_path(other) == log
+        and campaign.mocap_paths(other) != mocap
+    ]
 
 
 def _overlap(run: Run, other: Run) -> bool:
