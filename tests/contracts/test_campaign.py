@@ -119,7 +119,13 @@ REFUSED = {
     ),
     "further columns of a bag": (
         {"commands.format": "rosbag2", "commands.auxiliary": ["voltage"]},
-        ["commands.auxiliary", "rosbag2", "Leave it out"],
+        [
+            "commands.auxiliary",
+            "rosbag2",
+            "further columns of a csv",
+            "format: csv",
+            "Leave it out",
+        ],
     ),
     "capitals": ({"mocap.body_axes": "FLU"}, ["'FLU'", "Did you mean 'flu'?"]),
     "a longer word": ({"runs.0.split": "training"}, ["'training'", "Did you mean 'train'?"]),
@@ -134,7 +140,11 @@ REFUSED = {
     "angles of no column": ({"commands.angles": ["ruder"]}, ["commands.angles", "'ruder'"]),
     "topics of no bag": (
         {"mocap.topics": {"imu": "/imu"}},
-        ["mocap.topics", "qtm_tsv", "Leave it out"],
+        ["mocap.topics", "qtm_tsv", "topics of a ROS 2 bag", "format: rosbag2", "Leave it out"],
+    ),
+    "topic of a csv": (
+        {"commands.topic": "/out"},
+        ["commands.topic", "format: csv", "format: rosbag2", "Leave it out"],
     ),
     "no such user": ({"folder": "~nobody_at_all/x"}, ["~nobody_at_all/x", "set 'folder'"]),
     "no such file": ({"runs.0.commands": "x.csv"}, ["run 'one'", "x.csv", "Put it there"]),

@@ -24,6 +24,7 @@ from rovsim.core import pwm
 from rovsim.core.errors import BadInput
 from rovsim.core.rotations import from_matrix, matrix
 from rovsim.intake.survey import look
+from rovsim.measurement.campaign_file import CommandLog, Mocap
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality.assessment import assess
 from rovsim.measurement.quality.usability import usable_reason
@@ -38,6 +39,12 @@ every_text = pytest.mark.parametrize("name", sorted(TEXT))
 def test_the_formats_of_this_version_are_registered():
     assert set(command_readers()) >= {"csv", "rosbag2", "ardupilot"}
     assert set(mocap_readers()) == set(FORMATS)
+
+
+def test_options_of_a_format_are_keys_of_its_section():
+    for readers, section in ((mocap_readers(), Mocap), (command_readers(), CommandLog)):
+        for reader in readers.values():
+            assert set(reader.options) <= set(section.model_fields)
 
 
 ONE_FILE = '''

@@ -4,18 +4,22 @@ import os
 import re
 import unicodedata
 from pathlib import Path
-from typing import Sequence
+from typing import Mapping, Sequence
 
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.schema import checked
 from rovsim.core.yaml_files import read_yaml
 from rovsim.measurement.campaign import Campaign
-from rovsim.measurement.campaign_file import CampaignFile, Mocap, Run
-from rovsim.measurement.recording.readers import FileAxes, command_readers, mocap_readers
+from rovsim.measurement.campaign_file import CampaignFile, CommandLog, Mocap, Run
+from rovsim.measurement.recording.readers import (
+    CommandReader,
+    FileAxes,
+    MocapReader,
+    command_readers,
+    mocap_readers,
+)
 from rovsim.measurement.unanswered import check_answered
-
-BAG_FORMAT = "rosbag2"  # the format whose channels are topics
 
 
 def load_campaign(path: Path) -> Campaign:
@@ -29,7 +33,10 @@ def load_campaign(path: Path) -> Campaign:
     check_answered(plain, file)
     content = checked(CampaignFile, plain, file)
     check_ids(content.runs, file)
-    _check_mocap(content.mocap, file)
+    _check_options(content.mocap, "mocap", mocap_readers(), file)
+    _check_axes(content.mocap, file)
+    if content.commands is not None:
+        _check_options(content.commands, "commands", command_readers(), file)
     _check_commands(content, file)
     fields = dict(content) | {"runs": tuple(content.runs), "folder": _folder(content.folder, file)}
     campaign = Campaign(file=file, **fields)
@@ -73,18 +80,11 @@ def check_ids(runs: Sequence[Run], where: Path | str) -> None:
         ids[key] = run.id
 
 
-def _check_mocap(mocap: Mocap, file: Path) -> None:
-    """Refuse axes or topics that do not belong to the stated format of the file."""
+def _check_axes(mocap: Mocap, file: Path) -> None:
+    """Refuse axes that do not belong to the stated format of the file."""
     readers, plain = mocap_readers(), FileAxes()
     file_axes = readers[mocap.format].axes if mocap.format in readers else plain
     allowed = {*plain.every, *file_axes.every}
-    if mocap.topics is not None and mocap.format in readers and mocap.format != BAG_FORMAT:
-        raise BadInput(
-            f"'mocap.topics' with 'mocap.format: {mocap.format}'",
-            where=file,
-            expected="topics of a ROS 2 bag; no other format has any",
-            remedy="Leave it out, or correct 'format'.",
-        )
     foreign = [axes for axes in (mocap.world_axes, mocap.body_axes) if axes not in allowed]
     if not foreign:
         return
@@ -118,13 +118,6 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
             expected="axes of what is commanded per axis: kind demand or wrench",
             remedy="Leave 'axes' out, or correct 'kind'.",
         )
-    if log is not None and log.auxiliary and log.format not in _with_further_columns():
-        raise BadInput(
-            f"'commands.auxiliary' with 'commands.format: {log.format}'",
-            where=file,
-            expected="further columns of a csv; no other format has any",
-            remedy="Leave it out; the battery's voltage is read from a log by itself.",
-        )
     if log is not None and (unknown := [name for name in log.angles if name not in log.names]):
         raise unlisted(
             unknown[0],
@@ -141,8 +134,32 @@ def _check_commands(content: CampaignFile, file: Path) -> None:
         )
 
 
-def _with_further_columns() -> list[str]:
-    return [name for name, reader in command_readers().items() if reader.auxiliary]
+def _check_options(
+    section: Mocap | CommandLog,
+    name: str,
+    readers: Mapping[str, MocapReader] | Mapping[str, CommandReader],
+    file: Path,
+) -> None:
+    """Refuse options of another format than the one that a section of the file states.
+
+    Args:
+        section: the section.
+        name: of the section.
+        readers: of all formats that it may state.
+        file: the campaign file, for the error.
+    """
+    if section.format not in readers:  # which is told where the file is read
+        return
+    own = readers[section.format].options
+    for reader in readers.values():
+        for option, meaning in reader.options.items():
+            if option not in own and getattr(section, option):
+                raise BadInput(
+                    f"'{name}.{option}' with '{name}.format: {section.format}'",
+                    where=file,
+                    expected=f"{meaning}: 'format: {reader.name}'",
+                    remedy="Leave it out, or correct 'format'.",
+                )
 
 
 def _folder(text: str, file: Path) -> Path:

@@ -1,10 +1,10 @@
 """The formats that can be read. A new one is a new module of `formats` that declares its reader."""
 
 import pkgutil
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Callable, Sequence, TypeVar
+from typing import Callable, Mapping, Sequence, TypeVar
 
 from rovsim.core.errors import BadInput, nearest, unlisted
 from rovsim.core.rotations import BodyAxes, WorldAxes
@@ -83,6 +83,7 @@ class MocapReader:
         folder: whether a run may be a folder.
         start: tells from the first bytes of a file at which local time it began, as s since 1970;
             None where it is not given.
+        options: keys of the section `mocap` that only this format has, with what they are.
     """
 
     name: str
@@ -94,6 +95,7 @@ class MocapReader:
     general: bool = False
     folder: bool = False
     start: Callable[[bytes], float | None] = lambda head: None
+    options: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ class CommandReader:
         what: such a file in words; empty where a `MOCAP_READER` of the same name says so.
         signatures: how files of the format are recognised; none where a `MOCAP_READER` of the same
             name says so.
-        auxiliary: whether `commands.auxiliary` may name further columns.
+        options: keys of the section `commands` that only this format has, with what they are.
     """
 
     name: str
@@ -116,7 +118,7 @@ class CommandReader:
     find: Callable[[Path], FoundCommands] = lambda path: FoundCommands()
     what: str = ""
     signatures: tuple[FileSignature, ...] = ()
-    auxiliary: bool = False
+    options: Mapping[str, str] = field(default_factory=dict)
 
 
 R = TypeVar("R", MocapReader, CommandReader)

@@ -123,4 +123,11 @@ def format_commands(commands: Commands, log: CommandLog) -> str:
     return text.getvalue()
 
 
-COMMAND_READER = CommandReader("csv", read_commands, auxiliary=True)
+COMMAND_READER = CommandReader(
+    "csv",
+    read_commands,
+    options={
+        "auxiliary": "further columns of a csv (from other logs the battery's voltage is read by "
+        "itself)"
+    },
+)

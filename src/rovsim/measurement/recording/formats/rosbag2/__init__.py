@@ -15,6 +15,8 @@ from rovsim.measurement.recording.formats.rosbag2.commands import read_commands
 from rovsim.measurement.recording.formats.rosbag2.motion import MOCAP_READER
 from rovsim.measurement.recording.readers import CommandReader
 
-COMMAND_READER = CommandReader("rosbag2", read_commands, find_commands)
+COMMAND_READER = CommandReader(
+    "rosbag2", read_commands, find_commands, options={"topic": "the topic of a ROS 2 bag"}
+)
 
 __all__ = ["COMMAND_READER", "MOCAP_READER"]

@@ -91,4 +91,5 @@ MOCAP_READER = MocapReader(
     ),
     axes=FileAxes(usual=("z_up", "flu"), reason="guess: what ROS means by default (REP 103)"),
     folder=True,
+    options={"topics": "topics of a ROS 2 bag"},
 )
