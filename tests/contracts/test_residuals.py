@@ -64,6 +64,10 @@ def is_process(learner):
     return learner.posterior_from is not None
 
 
+def has_library(learner):
+    return learner.library_from is not None
+
+
 def fades(learner):
     return issubclass(learner.settings, GaussianSettings)
 
@@ -97,8 +101,9 @@ def queries(trained):
     return np.concatenate([seen, new, 5.0 * new])
 
 
+@variants(has_library)
 def test_the_exported_prediction_is_the_library_s(trained, queries):
-    expected = learner(trained.kind).library_from(trained.arrays, stored_settings(trained))(queries)
+    expected = library_of(trained)(queries)
     process = is_process(learner(trained.kind))
     found = trained.posterior(queries)[0] if process else trained.predict(queries)
     assert np.abs(found - expected).max() < 1e-9
@@ -158,8 +163,8 @@ def test_saved_and_read_it_predicts_the_same_bits(trained, queries, tmp_path):
     )
     read = read_residual(description, tmp_path)
     assert read.predict(queries).tobytes() == trained.predict(queries).tobytes()
-    expected = learner(trained.kind).library_from(trained.arrays, stored_settings(trained))(queries)
-    assert np.abs(library_of(read)(queries) - expected).max() < 1e-9
+    if has_library(learner(trained.kind)):
+        assert np.abs(library_of(read)(queries) - library_of(trained)(queries)).max() < 1e-9
     assert (stored_settings(read), read.control, read.kind) == (
         stored_settings(trained),
         "6dof",

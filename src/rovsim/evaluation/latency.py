@@ -95,7 +95,7 @@ def _no_collection() -> Iterator[None]:
 def time_both_ways(
     residual: Residual, queries: Array, calls: int, warmup: int, seconds: float
 ) -> BothWays:
-    """Time a trained residual both as a call of its library and as its exported predictor.
+    """Time a trained residual as a call of its library, if it has one, and as it is exported.
 
     Args:
         residual: the trained residual.
@@ -104,10 +104,11 @@ def time_both_ways(
         warmup: calls before the clock starts.
         seconds: for each, no further call is started after this long.
     """
-    from rovsim.learning.learner import library_of
+    from rovsim.learning.learner import learner, library_of
 
     def timed(call: Callable[[Array], Array]) -> Latency:
         return time_calls(call, queries, calls, warmup, points=residual.points, seconds=seconds)
 
-    library = timed(library_of(residual))
+    has_library = learner(residual.kind).library_from is not None
+    library = timed(library_of(residual)) if has_library else None
     return BothWays(library=library, exported=timed(lambda x: evaluate_many(residual.data, x)))

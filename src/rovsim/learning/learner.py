@@ -31,14 +31,14 @@ class Trained:
     Attributes:
         settings: of the learner, with what the training chose.
         data: the exported residual that kernels evaluate.
-        arrays: from which the model of the library that trained it is rebuilt.
+        arrays: from which the model of the library that trained it is rebuilt, if there is one.
         info: numbers to report (points, hyperparameters, final loss), but no times, so that equal
             inputs make equal files.
     """
 
     settings: LearnerSettings
     data: Array
-    arrays: dict[str, Array]
+    arrays: dict[str, Array] = field(default_factory=dict)
     info: dict[str, Any] = field(default_factory=dict)
 
 
@@ -53,7 +53,7 @@ class Learner:
         fit: `fit(X, Y, settings, seed, progress)` trains on features X (n, d) and residual
             accelerations Y (n, 6).
         library_from: `library_from(arrays, settings)` rebuilds the prediction of the library
-            itself from the stored arrays, without pickle.
+            itself from the stored arrays, without pickle; None where no library has this model.
         posterior_from: `posterior_from(arrays, settings, fast)` rebuilds mean and variance of the
             library itself; None for learners without a variance.
         shrinkage: largest share of a target by which a prediction may fall short of it where all
@@ -64,7 +64,7 @@ class Learner:
     meaning: str
     settings: type[LearnerSettings]
     fit: Callable[..., Trained]
-    library_from: Callable[[Mapping[str, Array], Any], Predict]
+    library_from: Callable[[Mapping[str, Array], Any], Predict] | None = None
     posterior_from: Callable[..., Posterior] | None = None
     shrinkage: float = 0.0
 
@@ -115,10 +115,18 @@ def library_of(residual: Residual) -> Predict:
     """Rebuild the prediction of the library that trained a residual, from the stored arrays.
 
     Raises:
-        BadInput: no known learner has these settings, or its library is not installed.
+        BadInput: no known learner has these settings, no library has such a model, or the library
+            is not installed.
     """
     require("learn", by=f"residual={residual.kind}")
-    return learner(residual.kind).library_from(residual.arrays, settings_of(residual))
+    if (rebuild := learner(residual.kind).library_from) is not None:
+        return rebuild(residual.arrays, settings_of(residual))
+    raise BadInput(
+        f"no library has the model of '{residual.kind}'",
+        where="library of a residual",
+        expected="a residual that a library trained, such as knn or gp",
+        remedy="Use predict.",
+    )
 
 
 def train(

@@ -31,10 +31,16 @@ class Latency(Sparse):
 
 
 class BothWays(Section):
-    """A trained residual's own library call, and its exported predictor."""
+    """A trained residual's own library call, None where it has no library, and its export."""
 
-    library: Latency
+    library: Latency | None = None
     exported: Latency
+
+    @property
+    def measured(self) -> dict[str, Latency]:
+        """The ways that were timed, by name."""
+        ways = {"library": self.library, "exported": self.exported}
+        return {way: latency for way, latency in ways.items() if latency is not None}
 
 
 class Timing(Result):

@@ -29,8 +29,9 @@ def draw(*, timing: Timing) -> Figure:
     axes = figure.subplots()
     set_log_scale(axes)
     for row, timings in enumerate(timing.inference.values()):
-        for way, (color, shift) in WAY_STYLES.items():
-            _draw_line(axes, len(names) - 1 - row + shift, getattr(timings, way), color)
+        for way, stats in timings.measured.items():
+            color, shift = WAY_STYLES[way]
+            _draw_line(axes, len(names) - 1 - row + shift, stats, color)
     axes.set_yticks(range(len(names)), [title(n, 24) for n in reversed(names)])
     axes.set_ylim(-0.6, max(len(names), 1) - 0.4)
     axes.set_xlabel("time of one prediction (µs)")
@@ -53,7 +54,7 @@ def _draw_deadlines(axes: Axes, inference: Mapping[str, BothWays]) -> None:
     times = [
         getattr(stats, key)
         for timings in inference.values()
-        for stats in (timings.library, timings.exported)
+        for stats in timings.measured.values()
         for key in MARKERS
     ]
     low = min([t for t in times if t > 0], default=100.0)

@@ -9,7 +9,7 @@ from rovsim.results.timing import CONTROL_RATES_HZ, Latency, Timing
 def timing_sentences(timing: Timing) -> list[str]:
     """Say which exported predictors keep which deadlines, and how the libraries compare."""
     exported = {name: times.exported for name, times in timing.inference.items()}
-    library = {name: times.library for name, times in timing.inference.items()}
+    library = {name: t.library for name, t in timing.inference.items() if t.library}
     return [
         *_tell_range("exported predictors", exported),
         *_tell_deadlines("exported predictors", exported),
@@ -56,7 +56,7 @@ def _names(counted: Mapping[str, int], rate: int) -> str:
 
 
 def _against(exported: Mapping[str, Latency], library: Mapping[str, Latency]) -> list[str]:
-    ratios = [library[name].median_us / exported[name].median_us for name in exported]
+    ratios = [library[name].median_us / exported[name].median_us for name in library]
     if not ratios:
         return []
     low, high = significant(min(ratios), 2), significant(max(ratios), 2)
