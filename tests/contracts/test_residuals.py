@@ -3,7 +3,6 @@
 import hashlib
 import io
 import pickle
-import sys
 import zipfile
 from pathlib import Path
 
@@ -11,10 +10,9 @@ import numpy as np
 import pytest
 import yaml
 
-import rovsim.learning.learners as own
-from rovsim.application.configuration import compose
 from rovsim.core.array_files import read_arrays, write_arrays
 from rovsim.core.errors import BadInput
+from rovsim.core.shipped import conf_names
 from rovsim.dynamics.learned.checks import check_exported, posterior
 from rovsim.dynamics.learned.layout import BLOCKS, COUNT, POINTS
 from rovsim.dynamics.learned.predictor import evaluate, evaluate_many
@@ -33,8 +31,6 @@ from rovsim.learning.learner import (
 from rovsim.learning.learner import settings_of as stored_settings
 from rovsim.learning.posterior_variance import EXACT_TOLERANCE, decompose_exact, rbf
 from rovsim.learning.scaling import fit_scaling
-from rovsim.reporting.figures.palette import is_learned, looks
-from rovsim.reporting.wording import explain_model, title
 
 # the fewest rounds with which a learner still learns: these tests are about promises, not skill
 QUICK = {
@@ -252,6 +248,11 @@ def test_fewer_rows_than_neighbours_are_refused():
 
 
 @pytest.mark.parametrize("kind", learners())
+def test_a_learner_is_called_after_its_kind(kind):
+    assert learner(kind).settings().kind == kind
+
+
+@pytest.mark.parametrize("kind", conf_names("residual"))
 def test_conf_states_the_defaults(kind):
     path = Path(__file__).parents[2] / "conf" / "residual" / f"{kind}.yaml"
     content = yaml.safe_load(path.read_text())
@@ -416,79 +417,6 @@ def test_features_default_to_the_small_set_of_the_thesis():
     assert len(feature_names(FeatureSettings())) == 12
     large = FeatureSettings(blocks=("velocity", "wrench", "acceleration"))
     assert len(feature_names(large)) == 18
-
-
-RIDGE = '''
-"""Kernel ridge regression: an expansion without a variance, and regularised."""
-
-from typing import Literal
-
-import numpy as np
-
-from rovsim.learning.export import Kernel, export_expansion
-from rovsim.learning.learner import Learner, Trained
-from rovsim.learning.posterior_variance import rbf
-from rovsim.learning.scaling import Scaling, fit_scaling
-from rovsim.learning.settings import LearnerSettings
-
-
-class RidgeSettings(LearnerSettings):
-    """Kernel ridge regression."""
-
-    kind: Literal["ridge"] = "ridge"
-    alpha: float = 0.1
-
-
-def fit(X, Y, settings, seed, progress):
-    """Solve for the weights."""
-    scaling = fit_scaling(settings.features.scaling, X)
-    Z, length = scaling.apply(X), np.full(X.shape[1], 3.0)
-    weights = np.linalg.solve(rbf(Z, Z, length) + settings.alpha * np.eye(len(Z)), Y)
-    data = export_expansion(
-        settings.features, scaling, np.zeros(6), [Kernel(Z, length, weights)], fades=True
-    )
-    arrays = {"points": Z, "weights": weights, "shift": scaling.shift, "scale": scaling.scale}
-    progress(1, 1)
-    return Trained(settings, data, arrays, {"points": len(Z)})
-
-
-def library_from(arrays, settings):
-    """The formula."""
-    scaling, Z = Scaling(arrays["shift"], arrays["scale"]), arrays["points"]
-    return lambda X: rbf(scaling.apply(X), Z, np.full(Z.shape[1], 3.0)) @ arrays["weights"]
-
-
-LEARNER = Learner("ridge", "a ridge", RidgeSettings, fit, library_from, shrinkage=0.1)
-'''
-
-
-@pytest.fixture
-def ridge(tmp_path, monkeypatch):
-    """A learner of somebody's own: one file, put into the folder."""
-    (tmp_path / "ridge.py").write_text(RIDGE)
-    monkeypatch.setattr(own, "__path__", [*own.__path__, str(tmp_path)])
-    yield settings_of("ridge")
-    sys.modules.pop(f"{own.__name__}.ridge", None)
-
-
-def test_a_learner_is_one_file(ridge, tmp_path):
-    assert set(learners()) == {"gp", "knn", "svgp", "ridge"}
-    with pytest.raises(BadInput, match=r"conf/residual/ridge\.yaml"):
-        compose(["residual=ridge"])
-    trained = train(*pairs(ridge), ridge, seed=0, control="6dof")
-    assert stored_settings(trained) == ridge
-    new, _ = pairs(ridge, n=50, seed=1)
-    theirs = library_of(trained)(new)
-    assert trained.predict(new) == pytest.approx(theirs, abs=1e-9)
-    description = write_residual(tmp_path, trained).model_dump(mode="json")
-    test_without_a_variance_none_is_given(trained, new)
-    with pytest.raises(BadInput, match="no variance"):
-        read_residual(description, tmp_path).posterior(new)
-    test_identical_rows_are_learnt("ridge")
-    assert title("effects+ridge_6dof") == "effects + ridge (6-DoF)"
-    assert "a ridge that learned the rest" in explain_model("ridge_3dof")
-    assert is_learned("ridge_3dof")
-    assert len({look.color for look in looks(["ridge_3dof", "effects", "gp_3dof"]).values()}) == 3
 
 
 def test_however_noisy_a_process_has_a_variance():

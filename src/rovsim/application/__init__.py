@@ -1,5 +1,6 @@
 """What the commands, the workbench, the notebook and the workflow share.
 
+conf_groups        the options of the groups of the configuration
 conf_search        where Hydra looks for configuration
 sections           sections of the configuration that several steps take
 settings           the settings that each command and rule takes from the configuration

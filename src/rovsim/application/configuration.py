@@ -3,10 +3,11 @@
 from pathlib import Path
 from typing import Any, Sequence
 
+from rovsim.application.conf_groups import list_options
 from rovsim.application.settings import Settings
 from rovsim.core.errors import BadInput, RovsimError, nearest, unlisted
 from rovsim.core.schema import checked
-from rovsim.core.shipped import conf_folders, conf_names
+from rovsim.core.shipped import conf_folders
 
 
 def compose(overrides: Sequence[str]) -> Settings:
@@ -59,12 +60,6 @@ def _allow_unlisted(word: str) -> str:
     return f"++{word}" if word.startswith("tank.") else word
 
 
-def _is_learner(kind: str) -> bool:
-    from rovsim.learning.learner import learners  # loads the compiler
-
-    return kind in learners()
-
-
 def _refused(overrides: Sequence[str], message: str) -> BadInput:
     """Make the error for overrides that Hydra refused, with what was probably meant.
 
@@ -75,14 +70,7 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
     choices = [override for override in overrides if _is_choice(override)]
     for override in overrides:
         key, _, value = override.lstrip("+~").partition("=")
-        options = conf_names(key) if key else []
-        if key == "residual" and value not in options and _is_learner(value):
-            return BadInput(
-                f"the learner '{value}' has no defaults",
-                where=override,
-                expected=f"a file conf/residual/{value}.yaml",
-                remedy=f"Write its settings there, the first of them kind: {value}.",
-            )
+        options = list_options(key) if key else []
         if options and value not in options:
             return unlisted(value, options, found=f"there is no {key} '{value}'", where=override)
         if key and not options and key.split(".")[0] not in ("hydra", "hydra/launcher"):
@@ -113,7 +101,7 @@ def _refused(overrides: Sequence[str], message: str) -> BadInput:
 def _is_choice(word: str) -> bool:
     """Whether an override chooses one of a group's options."""
     key, _, value = word.partition("=")
-    return value in conf_names(key) if key else False
+    return value in list_options(key) if key else False
 
 
 def _keys(chosen: Sequence[str]) -> list[str]:

@@ -1,6 +1,5 @@
 """What every learner declares, how learners are found (one file each in `learners/`), training."""
 
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -9,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-import rovsim.learning.learners
 from rovsim.core.axes import AXES
 from rovsim.core.errors import BadInput, unlisted
 from rovsim.core.extras import require
@@ -17,6 +15,8 @@ from rovsim.core.schema import checked
 from rovsim.dynamics.learned.checks import checked_rows
 from rovsim.dynamics.learned.residual import Residual
 from rovsim.dynamics.learned.settings import Control
+from rovsim.learning import learners as package
+from rovsim.learning.learners import list_kinds
 from rovsim.learning.settings import LearnerSettings
 
 Predict = Callable[[Array], Array]  # features (n, d), unscaled -> acceleration (n, 6)
@@ -71,10 +71,7 @@ class Learner:
 
 def learners() -> Mapping[str, Learner]:
     """Find every learner that a module of `rovsim.learning.learners` declares, by its kind."""
-    package = rovsim.learning.learners
-    names = [module.name for module in pkgutil.iter_modules(package.__path__)]
-    declared = [import_module(f"{package.__name__}.{name}").LEARNER for name in names]
-    return {learner.settings.model_fields["kind"].default: learner for learner in declared}
+    return {kind: import_module(f"{package.__name__}.{kind}").LEARNER for kind in list_kinds()}
 
 
 def learner(kind: str, where: object = "residual") -> Learner:

@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Iterable, Sequence
 
 import rovsim
+from rovsim.application.conf_groups import list_options
 from rovsim.core.errors import BadInput, nearest
 from rovsim.core.model_names import NOMINAL, ZERO_ACCELERATION
-from rovsim.core.shipped import conf_file, conf_names
+from rovsim.core.shipped import conf_file
 
 PACKAGE_FOLDER = Path(rovsim.__file__).parent
 EFFECTS_FOLDER, TARGETS_FOLDER = (
@@ -209,7 +210,7 @@ def _values(command: str, key: str, value: str) -> list[str]:
         return _beginning(
             value, [module.name for module in pkgutil.iter_modules([str(TARGETS_FOLDER)])]
         )
-    names = [*conf_names(key), *settings().get(key, ())]
+    names = [*list_options(key), *settings().get(key, ())]
     if key in EFFECT_KEYS:
         names += effects()
     elif key in ("model", "to"):
