@@ -52,20 +52,3 @@ rule budget:
         code=code_of("budget", MODEL_FILES),
     script:
         "../scripts/budget.py"
-
-
-rule score:
-    "Score one model on all runs; a job for each run would take longer to start than to score."
-    input:
-        motions=expand(f"{R}/motions/{{run}}.npz", run=study.runs()),
-        replays=expand(f"{R}/replay/{{{{model}}}}/{{run}}.npz", run=study.runs()),
-    output:
-        f"{R}/scores/{{model}}.json",
-    log:
-        f"{R}/logs/score/{{model}}.log",
-    benchmark:
-        f"{R}/benchmarks/score/{{model}}.tsv"
-    params:
-        code=code_of("score"),
-    script:
-        "../scripts/score.py"

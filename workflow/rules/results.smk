@@ -15,9 +15,8 @@ FIGURES = [figure.name for figure in folds.figures]
 
 
 rule compare:
-    "Merge all scores; write the ladder, the growth of errors and the error conditions."
+    "Score all models on all runs; write the ladder, the growth of errors and the error conditions."
     input:
-        scores=expand(f"{R}/scores/{{model}}.json", model=models.all),
         replays=expand(
             f"{R}/replay/{{model}}/{{run}}.npz", model=models.all, run=study.runs()
         ),

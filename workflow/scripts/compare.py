@@ -2,7 +2,6 @@
 
 from rovsim.application.pipeline.summary import summarize
 from rovsim.application.snakemake_job import job
-from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 
@@ -11,7 +10,6 @@ if __name__ == "__main__":
         summarize(
             motions=rule.motions(),
             replays=rule.replays(),
-            scores=[Comparison.read(path) for path in rule.paths("scores")],
             searches=[ErrorConditions.read(path) for path in rule.paths("searches")],
             diagnosis=Diagnosis.read(rule.path("diagnosis")),
             out=rule.output("comparison").parent,

@@ -1,6 +1,6 @@
 """`comparison.json`: errors of models by run and horizon (docs/formats.md)."""
 
-from typing import ClassVar, Iterable, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -50,8 +50,3 @@ class Comparison(Result):
 
     schema_: Literal["rovsim.comparison/1"] = Field(default="rovsim.comparison/1", alias="schema")
     models: dict[str, ModelErrors]
-
-    @staticmethod
-    def merged(parts: Iterable["Comparison"]) -> "Comparison":
-        """One of several, their models in the order given."""
-        return Comparison(models={name: m for c in parts for name, m in c.models.items()})

@@ -1,4 +1,4 @@
-"""Bring together the scores, the ladder and the growth of errors of a study."""
+"""Score the models of a study: errors, ladder, growth of errors and conditions in one place."""
 
 from pathlib import Path
 from typing import Sequence
@@ -6,7 +6,6 @@ from typing import Sequence
 from rovsim.application.pipeline.replays import Replays
 from rovsim.evaluation.score_collector import ScoreCollector
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.comparison import Comparison
 from rovsim.results.diagnosis import Diagnosis
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import Ladder
@@ -15,7 +14,6 @@ from rovsim.results.ladder import Ladder
 def summarize(
     motions: Sequence[Motion],
     replays: Replays,
-    scores: Sequence[Comparison],
     searches: Sequence[ErrorConditions],
     diagnosis: Diagnosis,
     out: Path,
@@ -25,7 +23,6 @@ def summarize(
     Args:
         motions: all runs.
         replays: by model, in the order of the ladder.
-        scores: of each model.
         searches: conditions under which each model fails.
         diagnosis: whose effects are added to the ladder one by one.
         out: folder that is written to.
@@ -35,4 +32,4 @@ def summarize(
     ErrorConditions.merged(searches).write(out / "where.json")
     scored_runs.growth.write(out / "growth.json")
     ladder.write(out / "ladder.json")
-    Comparison.merged(scores).write(out / "comparison.json")
+    scored_runs.comparison.write(out / "comparison.json")
