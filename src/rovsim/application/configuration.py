@@ -25,8 +25,9 @@ def compose(overrides: Sequence[str]) -> Settings:
     from rovsim.application.conf_search import first_folder
 
     escaped = [_allow_unlisted(override) for override in overrides]
+    folder = first_folder()  # imports learners: what is wrong there is no fault of the overrides
     try:
-        with initialize_config_dir(first_folder(), version_base="1.3"):
+        with initialize_config_dir(folder, version_base="1.3"):
             return settings_of(hydra_compose("config", overrides=escaped))
     except RovsimError:
         raise
