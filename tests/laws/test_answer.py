@@ -1,10 +1,11 @@
-"""Of two answers that each leave something: which one is given."""
+"""Of answers that leave something: what is tried next, and which of two is given."""
 
 from types import SimpleNamespace
 
 import pytest
 
-from rovsim.diagnosis.answer import choose_answer
+from rovsim.diagnosis import answer
+from rovsim.diagnosis.answer import choose_answer, settle_noticed
 
 UNLIKELY = SimpleNamespace(score=10.0, complete=False, replayed="unlikely", fit="unlikely")
 LIKELY = SimpleNamespace(score=50.0, complete=False, replayed="likely", fit="likely")
@@ -39,3 +40,21 @@ def test_what_replays_better_is_given_or_else_the_likelier(order, held, between,
 def test_what_leaves_nothing_comes_before_what_is_likelier():
     complete = SimpleNamespace(**vars(UNLIKELY) | {"complete": True})
     assert choose_answer(LIKELY, complete, told(None, None)) is complete
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+def test_only_where_the_evidence_ended_a_search_unnoticed_effects_are_sought(monkeypatch, stopped):
+    sought = []
+    selection = SimpleNamespace(best="noticed", stopped=stopped)
+
+    def search_unnoticed(found, seed):
+        sought.append(found)
+        return found
+
+    for name in ("drop_unsure", "drop_idle"):
+        monkeypatch.setattr(answer, name, lambda selection: selection)
+    monkeypatch.setattr(answer, "search_unnoticed", search_unnoticed)
+    left = SimpleNamespace(leaves_physics=True)
+    monkeypatch.setattr(answer, "settle", lambda *of: left)
+    assert settle_noticed(selection, None, None, 0) is left
+    assert sought == ([] if stopped else [selection])

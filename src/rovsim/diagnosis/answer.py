@@ -76,7 +76,8 @@ def settle_noticed(
     """Settle the effects that a user would notice; where those leave physics, the others as well.
 
     An effect goes unnoticed if it hardly changes the error of windows of 2 s. Such effects are only
-    accepted where, together with them, nothing but noise is left.
+    accepted where, together with them, nothing but noise is left. A search that was stopped left
+    more than they could explain.
 
     Args:
         selection: where the search ended.
@@ -86,7 +87,7 @@ def settle_noticed(
     """
     noticed = drop_idle(drop_unsure(selection))
     answer = settle(noticed, usable, holdout)
-    if not answer.leaves_physics:
+    if selection.stopped or not answer.leaves_physics:
         return answer
     unfiltered = drop_unsure(search_unnoticed(selection, seed))
     if unfiltered.best is noticed.best:

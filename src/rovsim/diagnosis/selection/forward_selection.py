@@ -205,6 +205,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     loose = suspect_loose_file(workspace, current)
     if loose is not current:
         workspace, current = _add_and_swap(workspace, loose, seed)
+    stopped = not _may_add(workspace, current)
     workspace = workspace.relinearise_if_changed(current)
     current = swap_terms(workspace, current)
     current = drop_imitations(workspace, change_mode(workspace, current))
@@ -213,14 +214,14 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace, current, wandering = challenge_steady(workspace, current)
     current, rivals = swap_and_list_rivals(workspace, current)
     every = [*rivals, *verdict.rivals, *wandering]
-    return SearchResult(workspace, current, keep_likeliest(every))
+    return SearchResult(workspace, current, keep_likeliest(every), stopped=stopped)
 
 
 def _add_and_swap(
     workspace: SearchWorkspace, current: Fit, seed: int
 ) -> tuple[SearchWorkspace, Fit]:
     """Add effects, and swap after each addition, until no addition beats chance."""
-    while len(current.hypothesis.terms) < workspace.settings.most_effects:
+    while _may_add(workspace, current):
         extended = add_best(workspace, current, workspace.chance_limit(current, seed))
         if extended is None:
             break
@@ -230,6 +231,10 @@ def _add_and_swap(
         polished = free_shape(workspace, move_thresholds(workspace, polished))
         current = swap_terms(workspace, polished, max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain))
     return workspace, current
+
+
+def _may_add(workspace: SearchWorkspace, current: Fit) -> bool:
+    return len(current.hypothesis.terms) < workspace.settings.most_effects
 
 
 def search_unnoticed(selection: SearchResult, seed: int) -> SearchResult:

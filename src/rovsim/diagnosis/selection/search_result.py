@@ -54,12 +54,14 @@ class SearchResult:
         prior_std: standard deviation, in scales of the parameters, of a prior about the start of
             each fit. It is infinite where effects were accepted one by one. In a joint fit, the
             prior keeps parameters that only act together near their start.
+        stopped: whether the most effects that a search may add ended it, and not the evidence.
     """
 
     workspace: SearchWorkspace
     best: Fit
     rivals: tuple[Rival, ...]
     prior_std: float = np.inf
+    stopped: bool = False
 
     @property
     def is_joint(self) -> bool:
