@@ -24,7 +24,11 @@ from rovsim.diagnosis.selection.withdrawn_probability import (
     withdraw_probability,
 )
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
-from rovsim.diagnosis.uncertainty.identifiability import find_doubtful, group_joint_parameters
+from rovsim.diagnosis.uncertainty.identifiability import (
+    find_doubtful,
+    find_perhaps_absent,
+    group_joint_parameters,
+)
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
@@ -90,7 +94,10 @@ def test_a_term_is_doubtful_where_all_its_values_may_be_those_of_absence():
     assert find_doubtful(fit(alike(), sure)) is None
     assert find_doubtful(fit(alike(), unsure)) == 1
     assert find_doubtful(fit(alike(), np.array([0, 0, 0, 0, 0, 0, 9.0]))) == 0
-    assert find_doubtful(fit(alike((2, 6, 0.99)), unsure)) is None  # known together with drag
+    together = fit(alike((2, 6, 0.99)), unsure)
+    assert find_doubtful(together) is None  # known together with drag
+    assert find_perhaps_absent(together) == {"net_buoyancy"}  # no sure name all the same
+    assert find_perhaps_absent(fit(alike(), sure)) == set()
 
 
 def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
@@ -220,14 +227,21 @@ def test_what_a_proposed_law_does_without_is_not_selected():
 
 @pytest.mark.parametrize(
     ("fraction", "sure"),
-    [(0.3, (1.0, None)), (0.1, (1.0, 1.0)), (1.0, (1.0, None)), (None, (1.0, 1.0))],
+    [(0.3, (1.0, None)), (0.1, (1.0, 1.0)), (1.0, (1.0, None)), (0.0, (1.0, 1.0))],
 )
 def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
     """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
     drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
     named = [OrderedEffect(drag, {}, 1.0, 0.6), OrderedEffect(gain, {}, 1.0, 0.05)]
-    told = withdraw_probability(named, find_small(named, fraction), "unexplained")
+    told = withdraw_probability(named, find_small(named, fraction, 0.0), "unexplained")
     assert tuple(one.probability for one in told) == sure
+
+
+def test_what_removes_less_than_the_law_beside_it_is_not_sure():
+    """Jets that came back from a wall: a law that is not theirs, and a coupling of drag at one."""
+    lag, drag = (Term(one, ()) for one in (ThrusterGain(all=0.8), LinearDamping(sway=9.0)))
+    named = [OrderedEffect(lag, {}, 1.0, 0.5), OrderedEffect(drag, {}, 1.0, 0.02)]
+    assert find_small(named, 0.0, removed_by_law=0.09) == {"linear_damping"}
 
 
 @pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])

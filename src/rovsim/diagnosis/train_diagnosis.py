@@ -22,7 +22,7 @@ test runs      diagnosis/campaign_diagnosis            opened once, for the erro
 """
 
 from dataclasses import dataclass, replace
-from typing import Sequence
+from typing import Collection, Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -59,6 +59,7 @@ from rovsim.diagnosis.selection.withdrawn_probability import (
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
+from rovsim.diagnosis.uncertainty.identifiability import find_perhaps_absent
 from rovsim.diagnosis.validated_search import (
     DiagnosisProblem,
     ValidatedSearch,
@@ -193,7 +194,7 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     rivals = answer.selection.named_rivals
     accepted = [*camera, *name_terms(wide_fit, rivals)]
     proposed = law if law and law.complete else None
-    effects = _doubt(accepted, law, base, smooths=bool(camera))
+    effects = _doubt(accepted, law, base, find_perhaps_absent(wide_fit), smooths=bool(camera))
     replaced = frozenset(e.term.id for e in accepted) - {e.term.id for e in effects}
     if proposed:
         rivals = list_rivals_beside(rivals, effects)
@@ -202,8 +203,10 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         if drift.sure:
             effects.append(name_drift(drift, answer.leaves_physics))
     selected = order_accepted(base, effects, usable.runs)
-    if answer.structures and not proposed:
-        small = find_small(selected, answer.structures[0].share)
+    left = proposed.left if proposed else answer.structures
+    if proposed or left:
+        removed_by_law = proposed.error_reduction if proposed else 0.0
+        small = find_small(selected, left[0].share if left else 0.0, removed_by_law)
         selected = withdraw_probability(selected, small, "unexplained")
     start = validated.start
     return TrainDiagnosis(
@@ -225,7 +228,11 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
 
 
 def _doubt(
-    accepted: Sequence[AcceptedEffect], law: ProposedLaw | None, base: Model, smooths: bool
+    accepted: Sequence[AcceptedEffect],
+    law: ProposedLaw | None,
+    base: Model,
+    perhaps_absent: Collection[str],
+    smooths: bool,
 ) -> list[AcceptedEffect]:
     """What of the accepted effects is selected, without a probability where there is a doubt.
 
@@ -233,12 +240,13 @@ def _doubt(
         accepted: the effects.
         law: for what they leave; None where there is none.
         base: the model that is diagnosed.
+        perhaps_absent: ids of those whose values may as well be those of their absence.
         smooths: whether software smooths what the cameras report.
     """
-    effects = list(accepted)
+    effects = withdraw_probability(accepted, perhaps_absent, "perhaps_absent")
     if law:
         beside_law = keep_beside_law if law.complete else doubt_beside_law
-        effects = beside_law(accepted, law.beside)
+        effects = beside_law(effects, law.beside)
     if smooths:
         effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
     if base.vehicle.floats:

@@ -46,7 +46,7 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
     return Action(tuple(sizes.tolist()), AXES[int(np.argmax(rms / fit.noise.disturbance_std))])
 
 
-def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float = 1.0) -> bool:
+def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float) -> bool:
     """Whether a fit leaves structure on an axis: more than `margin` times what chance allows."""
     structures = find_structure(fit, bank)
     return any(s.axis == axis and s.times_limit > margin for s in structures)

@@ -6,7 +6,7 @@ from typing import Callable, NamedTuple, Sequence
 
 from rovsim.core.extras import installed
 from rovsim.core.model_names import PROPOSED
-from rovsim.diagnosis.equations.action import find_action, leaves_structure
+from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.law_search import search_laws
@@ -14,6 +14,8 @@ from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, find_std
 from rovsim.diagnosis.selection.cross_validation import cross_validate
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.structure.residual import Structure
+from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
@@ -54,8 +56,7 @@ class ProposedLaw:
         axis: on which it stands out most from the disturbance.
         rivals: equations that were tried in its place, and by how much less likely each is.
         beside: the effects that act beside it.
-        complete: whether nothing but noise is left on its axis. A law that leaves more is not
-            proposed, but it still shows which accepted effects are unnecessary.
+        left: structure that is left beside it, on any axis.
     """
 
     form: Form
@@ -65,7 +66,16 @@ class ProposedLaw:
     axis: str
     rivals: tuple[tuple[str, float], ...]
     beside: tuple[AcceptedEffect, ...]
-    complete: bool = True
+    left: tuple[Structure, ...] = ()
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing but noise is left on its axis.
+
+        A law that leaves more is not proposed, but it still shows which accepted effects are
+        unnecessary.
+        """
+        return all(s.axis != self.axis for s in self.left)
 
     @property
     def law(self) -> Term:
@@ -122,15 +132,13 @@ def propose_law(
     if not fit.is_finite:
         return None
     action = find_action(law.form, fit, runs)
-    complete = not leaves_structure(action.axis, fit, bank)
     without_law = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, without_law, fit.hypothesis.model], runs).normalised
     error_base, error_without, error_with = (or_nan(e) for e in errors)
     beside = (*camera, *(e for e in name_terms(fit, ()) if e.term.effect.listed))
     share = (error_without - error_with) / error_base
-    return ProposedLaw(
-        law.form, fit, share, action.sizes, action.axis, law.rivals, beside, complete
-    )
+    left = tuple(find_structure(fit, bank))
+    return ProposedLaw(law.form, fit, share, action.sizes, action.axis, law.rivals, beside, left)
 
 
 def _is_confirmed(

@@ -40,16 +40,21 @@ def find_leading(effects: Iterable[AcceptedEffect]) -> set[str]:
     return {e.term.id for e in effects if e.leads}
 
 
-def find_small(effects: Sequence[OrderedEffect], fraction: float | None) -> set[str]:
-    """Ids of effects that remove less error than what is left causes.
+def find_small(
+    effects: Sequence[OrderedEffect], fraction: float, removed_by_law: float
+) -> set[str]:
+    """Ids of effects that remove less error than what the catalogue does not name causes.
 
-    Likelihoods weigh effects rightly only where all else is noise. Where unknown physics is left,
-    they favour the effect that happens to resemble it a little.
+    Likelihoods weigh effects rightly only where all else is noise. Beside unknown physics they
+    favour the effect that happens to resemble it a little, and a law that was found for it need not
+    be its own.
 
     Args:
         effects: the accepted effects.
-        fraction: share of the remaining disturbance's power that follows the largest structure.
+        fraction: share of the remaining disturbance's power that follows the largest structure; 0
+            without one.
+        removed_by_law: share of the base's error that a law removes in addition; 0 without one.
     """
-    remaining = max(0.0, 1.0 - sum(e.error_reduction for e in effects))
-    bound = (fraction or 0.0) * remaining  # share of the base's error that is unexplained at most
+    remaining = max(0.0, 1.0 - removed_by_law - sum(e.error_reduction for e in effects))
+    bound = removed_by_law + fraction * remaining  # share of the base's error, at most
     return {e.term.id for e in effects if e.error_reduction < bound}

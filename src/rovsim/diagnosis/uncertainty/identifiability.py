@@ -37,11 +37,20 @@ def find_doubtful(fit: Fit) -> int | None:
     Terms that are only known together with others are not considered: without one, the others
     would seem sure.
     """
-    h = fit.hypothesis
     joint_ids = {name.split(".")[0] for group in group_joint_parameters(fit) for name in group}
-    chances = np.zeros(len(h.terms))
-    for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
-        if columns and term.id not in joint_ids:
-            chances[i] = chi2.sf(fit.distance(columns), len(columns))
+    joint = np.array([term.id in joint_ids for term in fit.hypothesis.terms], dtype=bool)
+    chances = np.where(joint, 0.0, _chances_of_absence(fit))
     likeliest = int(np.argmax(chances))
     return likeliest if chances[likeliest] > MIN_ABSENCE_CHANCE else None
+
+
+def find_perhaps_absent(fit: Fit) -> set[str]:
+    """Ids of the terms whose values, as far as they are known, may all be those of absence."""
+    pairs = zip(fit.hypothesis.terms, _chances_of_absence(fit), strict=True)
+    return {term.id for term, chance in pairs if chance > MIN_ABSENCE_CHANCE}
+
+
+def _chances_of_absence(fit: Fit) -> Array:
+    """Chance (t,) that absence gives values as far from it, for each term; 0 where none is free."""
+    h = fit.hypothesis
+    return np.array([chi2.sf(fit.distance(own), len(own)) if own else 0.0 for own in h.columns])
