@@ -41,6 +41,12 @@ CHECK_UNITS = (
     "in the recordings."
 )
 
+ASK_WHAT_CHANGED = (
+    "Find out what was changed between the runs, as they differ in {}: the clock of the log "
+    "(`commands_shift_s` of a run in campaign.yaml moves it), the battery, ballast, markers, the "
+    "tether. Then diagnose runs that are alike."
+)
+
 # What settles a doubt, where something does:
 ADVICE_ON_DOUBT: dict[Doubt, str] = {
     "looks_ahead": "A negative input_delay beside a pose_filter is what software leaves that "
@@ -85,7 +91,9 @@ def advise(
     if diagnosis.scale:
         parts.append(FIX_SCALE)
     parts += _advise_excitation(diagnosis)
-    if diagnosis.structures:
+    if diagnosis.difference:
+        parts.append(ASK_WHAT_CHANGED.format(diagnosis.difference.effect_id))
+    elif diagnosis.structures:
         structure = diagnosis.structures[0]
         parts.append(
             f"Record some time without commands, then move slowly in {structure.axis} alone. If "

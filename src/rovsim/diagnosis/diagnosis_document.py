@@ -7,6 +7,7 @@ import numpy as np
 
 from rovsim.core.odds import share_odds
 from rovsim.diagnosis.advice import advise
+from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.describe import (
     describe_force,
     describe_law,
@@ -208,14 +209,27 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     return Unexplained(
         fraction=rounded(share),
         significant=True,
-        hint=_format_hint(diagnosis.structures) if diagnosis.structures else REFUSED_EFFECTS_HINT,
+        hint=_format_hint(diagnosis.structures, diagnosis.difference)
+        if diagnosis.structures
+        else REFUSED_EFFECTS_HINT,
+        between_runs=_describe_difference(diagnosis.difference),
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
         stand_ins=tuple(sorted({*diagnosis.replaced, *doubted})),
         disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
     )
 
 
-def _format_hint(structures: Sequence[Structure]) -> str:
+def _describe_difference(difference: RunDifference | None) -> dict[str, FittedEffect] | None:
+    """Report an effect that has another value in each run, by the run's id."""
+    if difference is None:
+        return None
+    return {
+        run: FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
+        for run, one in difference.by_run.items()
+    }
+
+
+def _format_hint(structures: Sequence[Structure], difference: RunDifference | None) -> str:
     """Say on which axes something is left, and what it depends on; the most surprising first."""
     strongest = structures[0]
     # the first of each other axis
@@ -223,6 +237,8 @@ def _format_hint(structures: Sequence[Structure]) -> str:
     hint = f"{strongest.axis.capitalize()}: the remainder shows {strongest.what}."
     if by_axis:
         hint += f" Also {'; '.join(f'{axis}: {by_axis[axis]}' for axis in reversed(by_axis))}."
+    if difference:
+        hint += f" Runs differ in {difference.effect_id}, which explains most of it."
     return hint
 
 

@@ -13,6 +13,7 @@ unnoticed      diagnosis/selection/forward_selection   then also those that nobo
 masked laws    diagnosis/equations/masked              do names stand in for a law like them?
 joint fit      diagnosis/selection/joint_fit           all that could be wrong together; it competes
 wandering      estimation/observer/drifting_current    if it is a matter of place: anew, without
+between runs   diagnosis/checks/run_differences        has an effect another value in each run?
 replay fit     estimation/replay_fit                   values that replay best, with structure left
 whole file     diagnosis/uncertainty/file_values       all of a file that is off, where none is left
 common scale   diagnosis/uncertainty/common_scale      does a factor of all forces stay open?
@@ -30,6 +31,7 @@ from threadpoolctl import threadpool_limits
 from rovsim.diagnosis.answer import SettledAnswer, finalise_answer, polish_selection
 from rovsim.diagnosis.checks.commanded import list_not_commanded
 from rovsim.diagnosis.checks.observability import list_not_observable
+from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
 from rovsim.diagnosis.selection.accepted_effects import (
@@ -96,6 +98,7 @@ class TrainDiagnosis:
         proposed: a law for what is left; None where no law holds.
         replaced: ids of accepted effects that the proposed law does without: they are not selected.
         disturbance: what is left as a force in time, where no law holds.
+        difference: an effect that has another value in each run.
     """
 
     base: Model
@@ -112,6 +115,7 @@ class TrainDiagnosis:
     proposed: ProposedLaw | None = None
     replaced: frozenset[str] = frozenset()
     disturbance: ForceInTime | None = None
+    difference: RunDifference | None = None
 
     @property
     def enough(self) -> bool:
@@ -190,11 +194,14 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     base, usable = problem.base, problem.usable
     answer, wide_fit, scale = finalise_answer(validated.answer, usable.runs)
     camera = [name_smoothing(smoothing)] if smoothing else []
-    law = _propose(answer, validated, camera) if answer.leaves_physics else None
+    difference = validated.difference
+    seeks_law = answer.leaves_physics and difference is None  # what differs follows no law
+    law = _propose(answer, validated, camera) if seeks_law else None
     rivals = answer.selection.named_rivals
     accepted = [*camera, *name_terms(wide_fit, rivals)]
     proposed = law if law and law.complete else None
-    effects = _doubt(accepted, law, base, find_perhaps_absent(wide_fit), smooths=bool(camera))
+    perhaps_absent = find_perhaps_absent(wide_fit)
+    effects = _doubt(accepted, law, base, perhaps_absent, difference, smooths=bool(camera))
     replaced = frozenset(e.term.id for e in accepted) - {e.term.id for e in effects}
     if proposed:
         rivals = list_rivals_beside(rivals, effects)
@@ -224,6 +231,7 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         proposed=proposed,
         replaced=replaced,
         disturbance=None if proposed else _trace(answer),
+        difference=difference,
     )
 
 
@@ -232,6 +240,7 @@ def _doubt(
     law: ProposedLaw | None,
     base: Model,
     perhaps_absent: Collection[str],
+    difference: RunDifference | None,
     smooths: bool,
 ) -> list[AcceptedEffect]:
     """What of the accepted effects is selected, without a probability where there is a doubt.
@@ -241,6 +250,7 @@ def _doubt(
         law: for what they leave; None where there is none.
         base: the model that is diagnosed.
         perhaps_absent: ids of those whose values may as well be those of their absence.
+        difference: an effect that has another value in each run.
         smooths: whether software smooths what the cameras report.
     """
     effects = withdraw_probability(accepted, perhaps_absent, "perhaps_absent")
@@ -249,6 +259,8 @@ def _doubt(
         effects = beside_law(effects, law.beside)
     if smooths:
         effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
+    if difference:
+        effects = withdraw_probability(effects, {difference.effect_id}, "differs")
     if base.vehicle.floats:
         effects = withdraw_probability(effects, find_constant_heave(effects), "depth_at_rest")
     return effects

@@ -10,6 +10,11 @@ from typing import Iterator, Sequence
 
 from rovsim.core.progress import begin_stage
 from rovsim.diagnosis.answer import SettledAnswer, choose_answer, settle, settle_noticed
+from rovsim.diagnosis.checks.run_differences import (
+    RunDifference,
+    find_harmful,
+    find_run_difference,
+)
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
@@ -69,6 +74,7 @@ class ValidatedSearch:
         start: where the search began.
         smoothing: the filter of the cameras; None where they do not smooth.
         holdout: the stretches that the answer was validated on.
+        difference: an effect that has another value in each run; None where there is none.
     """
 
     problem: DiagnosisProblem
@@ -76,6 +82,7 @@ class ValidatedSearch:
     start: SearchStart
     smoothing: Smoothing | None
     holdout: HoldoutValidation
+    difference: RunDifference | None = None
 
 
 def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
@@ -115,7 +122,11 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
-    return ValidatedSearch(problem, answer, start, smoothing, holdout)
+    difference = None if answer.complete else find_run_difference(answer.selection)
+    if difference:
+        answer = _drop_harmful(answer, usable, holdout)
+        difference = find_run_difference(answer.selection) or difference
+    return ValidatedSearch(problem, answer, start, smoothing, holdout, difference)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:
@@ -124,6 +135,25 @@ def _unmask(answer: SettledAnswer) -> SettledAnswer:
         return answer
     structures = find_masked_laws(answer.selection)
     return replace(answer, structures=(*structures, *answer.structures))
+
+
+def _drop_harmful(
+    answer: SettledAnswer, usable: UsableRuns, holdout: HoldoutValidation
+) -> SettledAnswer:
+    """The answer without effects that do harm in some run, where runs differ.
+
+    What is a mean of several values may do harm in a test run, too.
+    """
+    harmful = find_harmful(answer.fit.hypothesis, holdout)
+    if harmful is None:
+        return answer
+    selection = answer.selection
+    effect_id = answer.fit.hypothesis.terms[harmful].id
+    h = selection.best.hypothesis
+    fit = selection.fit(replace(h, terms=tuple(term for term in h.terms if term.id != effect_id)))
+    if not fit.is_finite:
+        return answer
+    return _drop_harmful(settle(replace(selection, best=fit), usable, holdout), usable, holdout)
 
 
 def _make_starts(

@@ -106,6 +106,7 @@ class Unexplained(Section):
     `proposal`: an equation for it, where one holds; `disturbance`: the force in time, where none
     does; `stand_ins`: effects that were accepted, and that an equation which was tried does
     without, or changes by more than half. Those that a proposed one does without are not selected.
+    `between_runs`: an effect that has another value in each run, by the run's id.
     """
 
     fraction: float | None
@@ -114,6 +115,7 @@ class Unexplained(Section):
     proposal: ProposedEquation | None = None
     stand_ins: tuple[str, ...] = ()
     disturbance: Disturbance | None = None
+    between_runs: dict[str, FittedEffect] | None = None
 
 
 class DiagnosisErrors(Section):

@@ -49,6 +49,7 @@ Doubt = Literal[
     "wanders",  # what is left unexplained may seem a current that wanders
     "looks_ahead",  # the cameras' filter may use later frames as well
     "depth_at_rest",  # another depth at rest would look like it
+    "differs",  # it has another value in each run
     "perhaps_absent",  # its values may all be those of its absence, as far as they are known
 ]
 

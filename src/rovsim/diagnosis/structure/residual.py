@@ -136,7 +136,7 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     Axes that were not in every reading are left out, as their filters run at another rate.
     """
     J = bank.whiten(fit.linearised.J, fit.noise)
-    white = _split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
+    white = split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
     run_filters = bank.design_filters(fit.noise)
     model = fit.hypothesis.model
     lost_commands = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
@@ -158,7 +158,7 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     return residuals
 
 
-def _split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
+def split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
     """Split whitened innovations (6, n) of all runs into those (6, n_run) of each run."""
     counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
     return np.split(white, counts, axis=-1)

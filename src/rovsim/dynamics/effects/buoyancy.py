@@ -8,6 +8,7 @@ class NetBuoyancy(Coefficients):
     """Extra buoyancy at the (moved) centre of buoyancy: foam, trapped air, salt."""
 
     id = "net_buoyancy"
+    differs_between_runs = True
     equation = r"B \to B + \Delta B"
     symbols = (("B", "buoyancy"),)
     neglects = "the mass of what floats"
@@ -30,6 +31,7 @@ class BuoyancyCenter(Coefficients):
     """The centre of buoyancy is elsewhere: it sets how stiffly the vehicle rights itself."""
 
     id = "buoyancy_center"
+    differs_between_runs = True
     equation = r"r_B \to r_B + \Delta r_B"
     symbols = (
         ("r_B", "centre of buoyancy"),

@@ -9,6 +9,7 @@ class InputDelay(CommandTiming):
     """Commands take effect late: transport delay, or a constant offset between two clocks."""
 
     id = "input_delay"
+    differs_between_runs = True
     rank = 1
     equation = r"u(t - \delta)"
     neglects = "jitter"
@@ -35,6 +36,7 @@ class ClockDrift(CommandTiming):
     """The computer that logged the commands has a clock that runs fast."""
 
     id = "clock_drift"
+    differs_between_runs = True
     equation = r"t_\text{command} = (1 + r)\,t"
     symbols = ((r"t_\text{command}", "time on the clock of the command log"),)
     neglects = "a rate that changes with temperature"

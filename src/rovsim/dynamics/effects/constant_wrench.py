@@ -7,6 +7,7 @@ class ConstantWrench(Wrench):
     """A constant wrench in body axes: a trim error, a thruster that idles."""
 
     id = "constant_wrench"
+    differs_between_runs = True
     equation = r"\tau_i = c_i"
     neglects = "everything it might depend on"
     source = "definition"

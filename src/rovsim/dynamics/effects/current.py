@@ -11,6 +11,7 @@ class Current(Coefficients):
     """A uniform and steady current; north is the x axis of the motion capture."""
 
     id = "current"
+    differs_between_runs = True
     equation = r"\nu_r = \nu - R^\top v_c"
     symbols = (("v_c", "velocity of the water north, east, down"),)
     neglects = "shear, turbulence and anything unsteady"

@@ -10,6 +10,7 @@ class PilotGain(DemandTransform):
     """A gain between the logged demand and the mixer: the autopilot gives more or less of it."""
 
     id = "pilot_gain"
+    differs_between_runs = True
     equation = r"\text{demand}_i \to g_i\,\text{demand}_i"
     neglects = "exponential sticks and dead zones, and demands that a loop on board takes"
     source = "definition"

@@ -61,6 +61,7 @@ class Payload(Coefficients):
     """A point mass without volume, carried along."""
 
     id = "payload"
+    differs_between_runs = True
     equation = r"M_{RB} \to M_{RB} + m H^\top(r) H(r),\quad \text{weight } m g \text{ at } r"
     symbols = (
         ("M_{RB}", "matrix of mass and inertia"),

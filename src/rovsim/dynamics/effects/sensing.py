@@ -10,6 +10,7 @@ class MarkerOffset(FrameMisalignment):
     """The rigid body was defined about a point that is not CO."""
 
     id = "marker_offset"
+    differs_between_runs = True
     equation = r"p_\text{measured} = p_{CO} + R\,r"
     symbols = (
         (r"p_\text{measured}", "measured position"),
@@ -35,6 +36,7 @@ class MarkerMisalignment(FrameMisalignment):
     """The rigid body was defined with axes that are not the vehicle's."""
 
     id = "marker_misalignment"
+    differs_between_runs = True
     rank = 1  # the offset is along the vehicle's own axes
     equation = r"R_\text{measured} = R\,\exp([\theta]_\times)"
     symbols = (
@@ -64,6 +66,7 @@ class WorldTilt(FrameMisalignment):
     """The room was calibrated with an L-frame that did not stand level."""
 
     id = "world_tilt"
+    differs_between_runs = True
     equation = r"p, R \text{ measured} = \exp([\theta]_\times) \cdot \text{true, in NED}"
     symbols = (
         ("p", "position"),

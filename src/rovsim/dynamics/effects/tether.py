@@ -33,6 +33,7 @@ class TetherTension(Wrench):
     """A weightless elastic tether from a point on the vehicle to an anchor in the tank."""
 
     id = "tether_tension"
+    differs_between_runs = True
     equation = r"F = k \max(0, L - L_0) \text{ towards the anchor}"
     symbols = (
         ("F", "force on the vehicle"),

@@ -82,6 +82,7 @@ class ThrusterGain(ThrustScaling):
 
     steady = True
     id = "thruster_gain"
+    differs_between_runs = True
     equation = r"F_i \to g\,g_i\,F_i"
     symbols = (
         ("g", "gain of all"),
@@ -162,6 +163,7 @@ class VoltageSag(ThrustScaling):
     """
 
     id = "voltage_sag"
+    differs_between_runs = True
     rank = 2
     equation = r"F \to F\,\max(0,\ 1 - s\,t/T_\text{run} - r\,t)"
     symbols = ((r"T_\text{run}", "length of the run"),)

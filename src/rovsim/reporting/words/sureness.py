@@ -18,6 +18,7 @@ DOUBT_REASONS: dict[Doubt | None, str] = {
     "looks_ahead": "the cameras' filter may look ahead",
     "depth_at_rest": "if it floats at rest elsewhere than in the middle of its depths, that is "
     "the same force in heave",
+    "differs": "runs differ in it, so that no value is right for all of them",
     "perhaps_absent": "as far as its values are known, they may be those of its absence",
 }
 

@@ -4,9 +4,10 @@ from rovsim.core.axes import AXES, FORCE_UNITS
 from rovsim.reporting.wording import ERROR_NAME, listed, percent, significant
 from rovsim.reporting.words.intervals import interval
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, Unexplained
 
 MAX_TOLD_PUSHES = 3  # moments of a disturbance that are told
+MAX_TOLD_RUNS = 6  # whose values of an effect are told
 
 
 def leaves_unexplained(diagnosis: Diagnosis) -> bool:
@@ -18,10 +19,27 @@ def unexplained_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say what no effect of the catalogue explains; empty if that is not significant."""
     unexplained = diagnosis.unexplained
     return (
-        [f"Unexplained: {unexplained.hint}", *_law_sentences(diagnosis)]
+        [f"Unexplained: {unexplained.hint}", *_tell_runs(unexplained), *_law_sentences(diagnosis)]
         if unexplained.significant
         else []
     )
+
+
+def _tell_runs(unexplained: Unexplained) -> list[str]:
+    """Say which value of an effect each run would have; of many runs, of the first of them."""
+    by_run = unexplained.between_runs or {}
+    told = [
+        f"{', '.join(f'{name} {interval(v)}' for name, v in one.parameters.items())} in {run}"
+        for run, one in by_run.items()
+    ]
+    if not told:
+        return []
+    effect = next(iter(by_run.values())).effect
+    more = len(told) - MAX_TOLD_RUNS
+    others = f" (and {more} more in diagnosis.json)" if more > 0 else ""
+    return [
+        f"As if {effect} had another value in each run: {'; '.join(told[:MAX_TOLD_RUNS])}{others}."
+    ]
 
 
 def _law_sentences(diagnosis: Diagnosis) -> list[str]:

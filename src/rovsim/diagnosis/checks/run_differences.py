@@ -1,0 +1,239 @@
+"""Find an effect that has another value in each run, where structure is left.
+
+A clock of the log that is set anew, a battery that was changed, ballast or a tether that was moved:
+no single value is right for all runs, and what is left of each looks like unknown physics. To first
+order, each such effect is fitted to each run by itself, with all else as it is. By how much more
+that explains than one value for all runs is a likelihood-ratio statistic. A hull keeps its drag and
+its added mass: vortices behind it were explained by a coupling in one run alone, of hundreds of N.
+"""
+
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from typing import Iterator, Mapping, NamedTuple, Sequence
+
+import numpy as np
+from numpy import ndarray as Array
+
+from rovsim.diagnosis.selection.accepted_effects import find_std
+from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
+from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.structure.residual import split_by_run
+from rovsim.diagnosis.structure.residual_structure import find_structure
+from rovsim.estimation.fit import Fit, polish
+from rovsim.estimation.fit import fit as fit_values
+from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import as_rows, solve
+from rovsim.estimation.observer.observed_run import ObservedRun
+from rovsim.estimation.observer.residual_source import Linearised
+
+# Of the strongest structure: where more is left with a value for each run, these are not what
+# differs. Runs differ a little in every effect that resembles unknown physics.
+MAX_LEFT_SHARE = 0.5
+
+
+class RunValues(NamedTuple):
+    """An effect at the values of one run, and their standard deviations, in their units."""
+
+    term: Term
+    std: dict[str, float]
+
+
+@dataclass(frozen=True)
+class RunDifference:
+    """An effect that has another value in each run; its values in each, by the run's id."""
+
+    by_run: Mapping[str, RunValues]
+
+    @property
+    def effect_id(self) -> str:
+        """Id of the effect."""
+        return next(iter(self.by_run.values())).term.id
+
+
+class _Products(NamedTuple):
+    """Products, for each of R runs, of k derivatives with each other and with the innovations.
+
+    Attributes:
+        gram: (R, k, k).
+        b: (R, k).
+    """
+
+    gram: Array
+    b: Array
+
+    def of(self, kept: Sequence[int]) -> "_Products":
+        """Of some of the derivatives alone."""
+        return _Products(self.gram[:, kept][:, :, kept], self.b[:, kept])
+
+    @property
+    def steps(self) -> Array:
+        """Steps (R, k) of the parameters that explain each run best."""
+        return -np.stack([solve(G, b) for G, b in zip(self.gram, self.b, strict=True)])
+
+    @property
+    def difference(self) -> float:
+        """By how much steps of each run lower the sum of squares more than common steps do."""
+        common = self.b.sum(axis=0)
+        apart = -float(np.sum(self.steps * self.b))
+        return apart - float(common @ solve(self.gram.sum(axis=0), common))
+
+
+class _Differing(NamedTuple):
+    """A term with those of its parameters free that differ, and the score of that."""
+
+    term: Term
+    score: float
+
+
+def find_run_difference(selection: SearchResult) -> RunDifference | None:
+    """Find the effect that runs differ in most; None where that leaves as much structure.
+
+    Args:
+        selection: where a search ended.
+    """
+    fit, bank = selection.best, selection.workspace.bank
+    runs = _group_runs(bank)
+    if len(runs) < 2 or not fit.is_finite:
+        return None
+    best = max(_list_differing(selection, runs), key=lambda one: one.score, default=None)
+    if best is None:
+        return None
+    linearised = _linearise(fit, best.term, bank)
+    products = _multiply(
+        bank.whiten(fit.linearised.e, fit.noise), bank.whiten(linearised, fit.noise), bank, runs
+    )
+    steps = products.steps
+    innovations = [e.copy() for e in fit.linearised.e]
+    for step, own in zip(steps, runs.values(), strict=True):
+        for k in own:
+            innovations[k] += np.tensordot(step, linearised[k], axes=1)
+    if not _explains(replace(fit.linearised, e=innovations), fit, bank):
+        return None
+    starts = zip(runs.items(), steps, strict=True)
+    return RunDifference(
+        {
+            run: _fit_one(fit, best.term, step, [bank.runs[k] for k in own])
+            for (run, own), step in starts
+        }
+    )
+
+
+def find_harmful(accepted: Hypothesis, validation: HoldoutValidation) -> int | None:
+    """Index of an accepted effect without which some run is surely replayed better; None if none.
+
+    Args:
+        accepted: the accepted effects, at values common to all runs.
+        validation: judges replays; it knows the whole runs.
+    """
+    by_run: dict[str, list[ObservedRun]] = defaultdict(list)
+    for run in validation.whole_runs:
+        by_run[run.motion.run.id].append(run)
+    judges = [replace(validation, runs=own) for own in by_run.values()]
+    for i in range(len(accepted.terms)):
+        without = accepted.without(i).model
+        if any(judge.refuses(accepted.model, without) for judge in judges):
+            return i
+    return None
+
+
+def _group_runs(bank: FilterBank) -> dict[str, list[int]]:
+    """Places in a bank of the parts of each run, by the run's id."""
+    places = defaultdict(list)
+    for k, run in enumerate(bank.runs):
+        places[run.motion.run.id].append(k)
+    return dict(places)
+
+
+def _list_differing(
+    selection: SearchResult, runs: Mapping[str, Sequence[int]]
+) -> Iterator[_Differing]:
+    """List the accepted effects and the candidates whose values differ from run to run."""
+    fit, workspace = selection.best, selection.workspace
+    h, bank, noise = fit.hypothesis, workspace.bank, fit.noise
+    penalty = workspace.penalty * (len(runs) - 1)
+    e = bank.whiten(fit.linearised.e, noise)
+    accepted = bank.whiten(fit.linearised.J, noise)
+    sensitivities = workspace.columns.sensitivities_at(h)
+    columns = sensitivities.bank.whiten(sensitivities.columns, noise)
+    rows = [
+        (term, accepted[own])
+        for term, own in zip(h.terms, h.columns, strict=True)
+        if term.effect.differs_between_runs
+    ]
+    rows += [
+        (block.candidate.term(block.candidate.sloped), columns[list(block.derivatives)])
+        for block in sensitivities.blocks
+        if block.secant is None
+        and block.candidate.effect.differs_between_runs
+        and block.candidate.effect.id not in {t.id for t in h.terms}
+    ]
+    for term, derivatives in rows:
+        products = _multiply(e, derivatives, bank, runs)
+        kept = _eliminate(products, penalty)
+        if kept:
+            score = products.of(kept).difference - penalty * len(kept)
+            yield _Differing(replace(term, free=tuple(term.free[k] for k in kept)), score)
+
+
+def _eliminate(products: _Products, penalty: float) -> list[int]:
+    """Which derivatives differ: from all of them, down to those that are worth their penalty."""
+    kept = np.flatnonzero(np.einsum("rkk->k", products.gram) > 0.0).tolist()
+    while kept:
+        whole = products.of(kept).difference
+        worth = [
+            whole - products.of([j for j in kept if j != k]).difference if len(kept) > 1 else whole
+            for k in kept
+        ]
+        weakest = int(np.argmin(worth))
+        if worth[weakest] >= penalty:
+            break
+        kept.pop(weakest)
+    return kept
+
+
+def _multiply(
+    e: Array, derivatives: Array, bank: FilterBank, runs: Mapping[str, Sequence[int]]
+) -> _Products:
+    """Multiply derivatives (k, 6, n) with each other and with innovations (6, n), both white."""
+    e_parts, J_parts = split_by_run(e, bank.runs), split_by_run(derivatives, bank.runs)
+    rows = [as_rows(part) for part in J_parts]
+    gram = [sum(rows[k] @ rows[k].T for k in own) for own in runs.values()]
+    b = [sum(rows[k] @ e_parts[k].ravel() for k in own) for own in runs.values()]
+    return _Products(np.array(gram, float), np.array(b, float))
+
+
+def _linearise(fit: Fit, term: Term, bank: FilterBank) -> list[Array]:
+    """Derivatives (k, 6, n) of each run to the free parameters of a term, accepted or not."""
+    h, linearised = fit.hypothesis, fit.linearised
+    if term.id not in {accepted.id for accepted in h.terms}:
+        linearised = bank.linearise(h.with_term(term))
+    names = linearised.hypothesis.parameter_names
+    rows = [names.index(f"{term.id}.{name}") for name in term.free]
+    return [J[rows] for J in linearised.J]
+
+
+def _explains(with_steps: Linearised, fit: Fit, bank: FilterBank) -> bool:
+    """Whether values of each run leave at most half of the strongest structure."""
+    strongest, left = (
+        max((s.times_limit for s in find_structure(one, bank)), default=0.0)
+        for one in (fit, replace(fit, linearised=with_steps))
+    )
+    return bool(left <= MAX_LEFT_SHARE * strongest > 0.0)
+
+
+def _fit_one(common: Fit, term: Term, step: Array, runs: Sequence[ObservedRun]) -> RunValues:
+    """Fit a term to one run, with all other effects at their common values.
+
+    Args:
+        common: the fit to all runs.
+        term: with its parameters that differ free, at their common values.
+        step: of these (k,), scaled: where the fit begins.
+        runs: the parts of the run.
+    """
+    h = common.hypothesis
+    others = replace(h, terms=tuple(other for other in h.terms if other.id != term.id)).model
+    start = Hypothesis(others, (term.at(term.x + step),))
+    bank = FilterBank.design(runs, start.model, common.noise)
+    own, _ = polish(fit_values(start, bank, common.noise), runs)
+    return RunValues(own.hypothesis.terms[0], find_std(own, 0))
