@@ -47,7 +47,7 @@ def workshop(special: Sequence[str], k: int, seeds: Range) -> Case:
     kind = f"workshop+{len(special)}"
     case_id = f"{kind}/{'+'.join(special) or 'nothing'}/{k}"
     random = random_of(case_id, seeds)
-    hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special))
+    hidden = (*wrong_file(random), *(drawn(name, 1.0, random) for name in special))
     return Case(
         id=case_id,
         kind=kind,
@@ -99,7 +99,7 @@ def laboratory(families: Sequence[frozenset[str]], k: int, seeds: Range) -> Case
     special = draw_apart(eligible, count, random)
     case_id = f"laboratory/{kind}/{'+'.join(special)}/{k}"
     settings, smoothing = _camera(kind, random)
-    hidden = (*_wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)
+    hidden = (*wrong_file(random), *(drawn(name, 1.0, random) for name in special), *smoothing)
     return Case(
         id=case_id,
         kind="laboratory",
@@ -120,7 +120,7 @@ def _camera(
     return {"camera": settings}, (smoothing,) if how == "smoothed" else ()
 
 
-def _wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
+def wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
     """Draw effects that change every coefficient of the vehicle file by its own share."""
     water = load_vehicle(default_vehicle()).hydrodynamics
     for name in COEFFICIENTS:

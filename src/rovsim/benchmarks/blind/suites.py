@@ -12,7 +12,8 @@ camera     cameras with coloured noise or with smoothing software (field.py)
 laboratory  a wrong file, such a camera, and three or five special effects (field.py)
 deviation  every coefficient of damping and added mass 2 or 5 % off
 none       nothing hidden
-outside    physics that no effect of the catalogue describes, alone or beside an effect
+outside    physics that no effect of the catalogue describes, alone, beside an effect or with a
+           vehicle file that is wrong everywhere
 law        a smooth law outside the catalogue, for which an equation should be found
 """
 
@@ -21,7 +22,14 @@ from typing import Any, Iterator, Mapping, Sequence
 import numpy as np
 
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
-from rovsim.benchmarks.blind.field import CAMERAS, camera, laboratory, workshops
+from rovsim.benchmarks.blind.field import (
+    CAMERAS,
+    NOMINAL_EFFECTS,
+    camera,
+    laboratory,
+    workshops,
+    wrong_file,
+)
 from rovsim.benchmarks.blind.laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
@@ -233,6 +241,22 @@ def outside(name: str, k: int, seeds: Range, beside: bool = False) -> Case:
     )
 
 
+def outside_wrong_file(name: str, seeds: Range) -> Case:
+    """Make a case with a wrong vehicle file, and physics outside the catalogue or a law."""
+    kind = "outside, wrong file"
+    case_id = f"{kind}/{name}"
+    random = random_of(case_id, seeds)
+    draw = drawn_law(name, random) if name in LAWS else drawn_outside(name, 1.0, random)
+    return Case(
+        id=case_id,
+        kind=kind,
+        seed=seed_of(case_id, seeds),
+        hidden=tuple(wrong_file(random)),
+        outside=(Unlisted(name=name, parameters=draw.given()),),
+        forgiven=NOMINAL_EFFECTS,
+    )
+
+
 LAWLESS_EFFECTS = ("tone", "kicks", "square_wave", "shedding", "ingress", "loose_ballast")
 CASES_PER_LAW = 3
 
@@ -246,8 +270,9 @@ def equations(seeds: Range) -> Iterator[Case]:
 
 
 def laboratories(seeds: Range) -> Iterator[Case]:
-    """Yield cases in which everything is a little wrong and several effects are missing."""
+    """Yield cases in which everything is a little wrong, and several effects or a law missing."""
     yield from (laboratory(FAMILIES, k, seeds) for k in range(12))
+    yield from (outside_wrong_file(name, seeds) for name in {**OUTSIDE_EFFECTS, **LAWS})
 
 
 def strong(seeds: Range) -> Iterator[Case]:
