@@ -11,10 +11,12 @@ from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, kee
 from rovsim.diagnosis.selection.paired_comparison import find_sure_improvement, surely_costs
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.dynamics.effects.added_mass import AddedMass
+from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.estimation.observer.windows import Windows
+from worlds import model
 
 
 def test_no_reading_is_on_both_sides(tmp_path):
@@ -123,6 +125,29 @@ def test_an_effect_that_harms_goes_and_one_that_helps_stays(tmp_path):
     assert passed.best.hypothesis.terms == ()
     assert not whole
     assert Windows(holdout[0]).spans
+
+
+class Eroding(HoldoutValidation):
+    """Each of four effects is worth 6 % of the error, all of them two thirds; no window is sure."""
+
+    def _errors(self, models):
+        weights = np.random.default_rng(0).uniform(0.2, 1.8, (len(models), 10))
+        missing = [4 - len(m.added) for m in models]
+        sizes = np.array([3.0 if k == 4 else 1.06**k for k in missing])
+        return (sizes**2)[:, None] * weights / weights.mean(axis=1, keepdims=True)
+
+
+def test_what_nobody_misses_one_by_one_may_be_missed_together():
+    """A thruster that weakened in one run: ten windows were not sure of any effect of the file."""
+    terms = (
+        Term(LinearDamping(sway=9.0), ("sway",)),
+        Term(QuadraticDamping(surge=9.0), ("surge",)),
+        Term(AddedMass(surge=1.0), ("surge",)),
+        Term(NetBuoyancy(force=1.0), ("force",)),
+    )
+    every = SearchResult(Workspace(), Found(Hypothesis(model(), terms)), (), True)
+    kept = Eroding(["a run"], ["a run"]).keep_earning(every).best.hypothesis.terms
+    assert len(kept) == 3
 
 
 def test_of_two_answers_the_one_that_replays_runs_it_was_not_fitted_to_is_better(tmp_path):

@@ -41,6 +41,8 @@ Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 HOLDOUT_SHARE = 0.2  # of each run's time
 MIN_RUN_SECONDS = 60.0  # a fifth of less shows too few windows of 2 s
 SLIGHT_SHARE = 0.005  # of the error: several such losses add up to about WORSE_SHARE
+# Of the error, sure or not: where few windows differ much, ten are not sure of a loss of half.
+LOST_OF_FILE_SHARE = 0.1
 REFIT_SHARE = 0.1  # of the error: what is worse by more, to first order, is not refitted
 FOLDS = 4  # groups of runs that are left out, one after the other; single runs if there are fewer
 
@@ -151,18 +153,32 @@ class HoldoutValidation:
         """Where unknown physics is left, keep only effects without which replays are surely worse.
 
         Any other effect may merely stand in for part of that physics. The file effects are first
-        judged together, then each by itself.
+        judged together, then each by itself: nobody may miss any of them, and all of them be most
+        of what was found.
         """
-        for split, margin in ((_group, WORSE_SHARE), (_list_file_effects, SLIGHT_SHARE)):
-            selection = self._drop_idle(selection, split, margin)
-        return selection
+        selection = self._drop_idle(selection, _group, WORSE_SHARE, np.inf)
+        return self._drop_idle(selection, _list_file_effects, SLIGHT_SHARE, LOST_OF_FILE_SHARE)
 
-    def _drop_idle(self, selection: SearchResult, split: Split, least: float) -> SearchResult:
-        """Remove groups of terms one by one, unless the error is surely larger by that share."""
+    def _drop_idle(
+        self, selection: SearchResult, split: Split, least: float, most: float
+    ) -> SearchResult:
+        """Remove groups of terms one by one, as long as little is lost by that.
+
+        Args:
+            selection: with all groups.
+            split: lists the groups of a hypothesis.
+            least: share by which the error has to be larger than with all groups to be surely so.
+            most: share by which it may be larger, sure or not.
+        """
         best = selection.best
+        with_all = self._errors([best.hypothesis.model])[0] if self.runs else np.empty(0)
         while self.runs and (groups := split(best.hypothesis)):
             reduced, errors = self._do_without(selection, best, groups)
-            idle = [k for k, e in enumerate(errors[1:]) if not surely_costs(e, errors[0], least)]
+            idle = [
+                k
+                for k, e in enumerate(errors[1:])
+                if ratio(e, with_all) < 1.0 + most and not surely_costs(e, with_all, least)
+            ]
             if not idle:
                 break
             idle.sort(key=lambda k: ratio(errors[1 + k], errors[0]))
