@@ -6,6 +6,7 @@ import pytest
 
 from rovsim.diagnosis import answer
 from rovsim.diagnosis.answer import choose_answer, settle_noticed
+from rovsim.diagnosis.selection.search_result import SearchResult
 
 UNLIKELY = SimpleNamespace(score=10.0, complete=False, replayed="unlikely", fit="unlikely")
 LIKELY = SimpleNamespace(score=50.0, complete=False, replayed="likely", fit="likely")
@@ -58,3 +59,27 @@ def test_only_where_the_evidence_ended_a_search_unnoticed_effects_are_sought(mon
     monkeypatch.setattr(answer, "settle", lambda *of: left)
     assert settle_noticed(selection, None, None, 0) is left
     assert sought == ([] if stopped else [selection])
+
+
+@pytest.mark.parametrize(
+    ("trial", "surely_worse", "kept"),
+    [
+        (None, None, "gain"),  # no common gain was fitted
+        ("file", None, "file"),  # where replays cannot tell, the file's gain
+        ("file", False, "file"),
+        ("file", True, "gain"),  # a thruster may be faulty
+    ],
+)
+def test_beside_unknown_physics_the_gain_is_the_files_unless_replays_say_else(
+    monkeypatch, trial, surely_worse, kept
+):
+    def settled(name):
+        fit = SimpleNamespace(is_finite=True)
+        selection = SearchResult(None, name, ())
+        return SimpleNamespace(selection=selection, fit=fit, replayed=name, name=name)
+
+    fit = SimpleNamespace(is_finite=True) if trial else None
+    monkeypatch.setattr(answer, "without_gain", lambda workspace, best: fit)
+    monkeypatch.setattr(answer, "_settle_values", lambda selection, usable: settled("file"))
+    holdout = SimpleNamespace(prefers=lambda one, other: surely_worse)
+    assert answer._keep_file_gain(settled("gain"), None, holdout).name == kept

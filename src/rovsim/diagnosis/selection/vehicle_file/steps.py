@@ -78,9 +78,14 @@ def add_file_effects(workspace: SearchWorkspace, current: Fit) -> Fit:
 
 def fix_gain(workspace: SearchWorkspace, current: Fit) -> Fit:
     """With the file's gain of the thrusters, where other numbers of the file explain as much."""
+    trial = without_gain(workspace, current)
+    return trial if trial and workspace.score(trial) > workspace.score(current) else current
+
+
+def without_gain(workspace: SearchWorkspace, current: Fit) -> Fit | None:
+    """Other numbers of a loose file in the place of a common gain; None where none was fitted."""
     gain = mark_gain(current.hypothesis)
     if not (has_loose_file(current.hypothesis) and gain.any()):
-        return current
-    without_gain = workspace.fit(drop_parameters(current.hypothesis, gain))
-    trial = prune(workspace, add_file_effects(workspace, without_gain))
-    return trial if workspace.score(trial) > workspace.score(current) else current
+        return None
+    fit = workspace.fit(drop_parameters(current.hypothesis, gain))
+    return prune(workspace, add_file_effects(workspace, fit))
