@@ -244,6 +244,14 @@ def test_what_removes_less_than_the_law_beside_it_is_not_sure():
     assert find_small(named, 0.0, removed_by_law=0.09) == {"linear_damping"}
 
 
+def test_effects_that_cancel_one_another_are_judged_by_their_sum():
+    """A tether on the floor: a constant moment and a centre of buoyancy, -0.55 and 0.83."""
+    moment, centre = (Term(one, ()) for one in (ConstantWrench(pitch=-0.4), NetBuoyancy(force=1.0)))
+    named = [OrderedEffect(moment, {}, 1.0, -0.55), OrderedEffect(centre, {}, 1.0, 0.83)]
+    assert find_small(named, 0.0, removed_by_law=0.4) == {"constant_wrench", "net_buoyancy"}
+    assert find_small(named, 0.0, removed_by_law=0.2) == {"constant_wrench"}
+
+
 @pytest.mark.parametrize(("left", "doubted"), [(0.4, True), (0.8, False), (-0.1, True)])
 def test_a_name_that_changes_by_half_beside_a_law_stood_in_for_it(left, doubted):
     """A brush was a coupled damping of 3.6 N m s/m at a probability of one; beside it -0.4."""

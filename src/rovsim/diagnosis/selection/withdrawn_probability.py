@@ -47,7 +47,8 @@ def find_small(
 
     Likelihoods weigh effects rightly only where all else is noise. Beside unknown physics they
     favour the effect that happens to resemble it a little, and a law that was found for it need not
-    be its own.
+    be its own. What one effect raises first, another does not remove: two that cancel one another
+    are judged by their sum.
 
     Args:
         effects: the accepted effects.
@@ -57,4 +58,5 @@ def find_small(
     """
     remaining = max(0.0, 1.0 - removed_by_law - sum(e.error_reduction for e in effects))
     bound = removed_by_law + fraction * remaining  # share of the base's error, at most
-    return {e.term.id for e in effects if e.error_reduction < bound}
+    raised = sum(min(0.0, e.error_reduction) for e in effects)
+    return {e.term.id for e in effects if e.error_reduction + raised < bound}
