@@ -41,5 +41,5 @@ def test_play_is_seen_behind_what_shapes_the_thrust(tmp_path, hidden, masked):
     columns = WhiteColumns(bank, sensitivities, noise)
     workspace = SearchWorkspace.begin(columns, SearchSettings())
     accepted = SearchResult(workspace, workspace.fit(Hypothesis(base, terms)), ())
-    found = find_masked_laws(accepted)
+    found = find_masked_laws(accepted, 0.0)
     assert [one.what for one in found] == ["thrust with a memory"] * masked

@@ -131,9 +131,11 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:
     """Add to what an answer leaves any law that its accepted effects may only stand in for."""
-    if answer.leaves_physics or answer.whole_file_fit is not None:
+    if answer.leaves_physics:
         return answer
-    structures = find_masked_laws(answer.selection)
+    whole = answer.whole_file_fit
+    gain = whole.two_log_likelihood - answer.fit.two_log_likelihood if whole else 0.0
+    structures = find_masked_laws(answer.selection, gain)
     return replace(answer, structures=(*structures, *answer.structures))
 
 

@@ -66,7 +66,7 @@ class LawFits:
         """
         start = form.follow(h)
         fit = self.selection.fit_unless_below(start, current, least + self._extra_penalty(start))
-        return None if fit is None else self._score_law(form, fit)
+        return None if fit is None else self.score_law(form, fit)
 
     def fit_each(
         self, laws: Mapping[Key, tuple[Form, Hypothesis]], current: Fit, score: float = -np.inf
@@ -82,7 +82,8 @@ class LawFits:
             fits |= {key: law} if law else {}
         return dict(sorted(fits.items(), key=lambda x: -x[1].score))
 
-    def _score_law(self, form: Form, fitted: Fit) -> FittedLaw:
+    def score_law(self, form: Form, fitted: Fit) -> FittedLaw:
+        """A fit of a hypothesis with a law, and its score."""
         score = self.workspace.score(fitted) - self._extra_penalty(fitted.hypothesis)
         return FittedLaw(form, fitted, score)
 

@@ -20,8 +20,10 @@ from rovsim.diagnosis.equations.with_thrust import (
     list_thrust_terms,
 )
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.selection.vehicle_file.steps import add_file_effects
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
 from rovsim.estimation.candidates import list_means
+from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.hypothesis import Hypothesis
 
@@ -61,7 +63,20 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     )
     if not finished or finished[0].score <= selection.workspace.score(fit):
         return None
-    return finished[0].beats(finished[1:])
+    return _add_rest_of_file(fits, finished[0].beats(finished[1:]))
+
+
+def _add_rest_of_file(fits: LawFits, law: FittedLaw) -> FittedLaw:
+    """With other numbers of a loose vehicle file, without the terms that stood in for them.
+
+    Beside unknown physics few of these numbers were worth their penalty.
+    """
+    if not has_loose_file(law.fit.hypothesis):
+        return law
+    fit = add_file_effects(fits.workspace, law.fit)
+    if fit is law.fit:
+        return law
+    return _finish(fits, replace(fits.score_law(law.form, fit), rivals=law.rivals))
 
 
 def is_seen(selection: SearchResult) -> bool:

@@ -37,8 +37,13 @@ SHAPES_THRUST = ("thrusters", "commands")  # what an effect requires that shapes
 MIN_IMITATORS = 2  # effects that shape the thrust: one alone does not imitate its play
 
 
-def find_masked_laws(selection: SearchResult) -> list[Structure]:
+def find_masked_laws(selection: SearchResult, least_gain: float) -> list[Structure]:
     """Find structure that stands out only once a law is fitted together with the noise.
+
+    Args:
+        selection: where the search ended.
+        least_gain: in twice the log likelihood, that a law has to exceed: what a fit of the whole
+            vehicle file gains, where the file is loose, for what it leaves looks like a law.
 
     Returns:
         The structure, with its `times_limit` taken from the fitted law, where such a law is worth
@@ -49,11 +54,11 @@ def find_masked_laws(selection: SearchResult) -> list[Structure]:
     if not effects or not is_seen(selection):
         return []
     shaping = sum(effect.requires in SHAPES_THRUST for effect in effects)
-    play = _find_masked_play(selection) if shaping >= MIN_IMITATORS else []
-    return play or _find_masked_products(selection)
+    play = _find_masked_play(selection, least_gain) if shaping >= MIN_IMITATORS else []
+    return play or _find_masked_products(selection, least_gain)
 
 
-def _find_masked_play(selection: SearchResult) -> list[Structure]:
+def _find_masked_play(selection: SearchResult, least_gain: float) -> list[Structure]:
     """The play of the thrusters as a structure, where it is worth its penalty beside the effects.
 
     Its share is that of the disturbance which is not needed beside it.
@@ -61,7 +66,7 @@ def _find_masked_play(selection: SearchResult) -> list[Structure]:
     fit = selection.best
     fits = LawFits(selection, len(list_terms(selection.workspace.bank.runs)))
     law = next(fit_memory_laws(fits, fit.hypothesis, [Play]), None)
-    if law is None:
+    if law is None or law.score - selection.workspace.score(fit) <= least_gain:
         return []
     axis = find_action(law.form, law.fit, fits.runs).axis
     without, beside = (f.noise.disturbance_std[AXES.index(axis)] for f in (fit, law.fit))
@@ -70,7 +75,7 @@ def _find_masked_play(selection: SearchResult) -> list[Structure]:
     return [Structure(axis, "thrust with a memory", share, gain / max(fits.chance, 1.0))]
 
 
-def _find_masked_products(selection: SearchResult) -> list[Structure]:
+def _find_masked_products(selection: SearchResult, least_gain: float) -> list[Structure]:
     """The suspect function as a structure, where a product of states is worth its penalty."""
     suspect = _find_suspect(selection)
     if suspect is None:
@@ -84,7 +89,7 @@ def _find_masked_products(selection: SearchResult) -> list[Structure]:
     kinds = choose_kinds([columns.terms[k] for k in order])[:LAWS_TRIED]
     score = workspace.score(fit)
     for law in fit_products(fits, fit, (), kinds, columns).values():
-        if fits.is_worth(law, fit, score):
+        if law.score - score > least_gain and fits.is_worth(law, fit, score):
             return [replace(suspect, times_limit=(law.score - score) / max(fits.chance, 1.0))]
     return []
 

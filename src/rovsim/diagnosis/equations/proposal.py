@@ -16,6 +16,7 @@ from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.structure.residual_structure import find_structure
+from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
@@ -50,7 +51,7 @@ class ProposedLaw:
 
     Attributes:
         form: what the law is made of.
-        fit: of the law and these effects.
+        fit: of the law and these effects, with intervals that include the rest of the vehicle file.
         error_reduction: share of the base's error in 2 s windows that the law removes in addition.
         sizes: RMS of each of its terms, N or N m.
         axis: on which it stands out most from the disturbance.
@@ -131,13 +132,16 @@ def propose_law(
     fit, bank = polish(law.fit)
     if not fit.is_finite:
         return None
-    action = find_action(law.form, fit, runs)
     without_law = split_law(fit.hypothesis)[0].model
     errors = score_windows([base, without_law, fit.hypothesis.model], runs).normalised
     error_base, error_without, error_with = (or_nan(e) for e in errors)
+    if not error_with < (1.0 - MIN_ERROR_REDUCTION) * error_without:
+        return None  # values fitted to all runs may leave less to the law
+    action = find_action(law.form, fit, runs)
+    left = tuple(find_structure(fit, bank))
+    fit, _ = include_rest(fit, runs)
     beside = (*camera, *(e for e in name_terms(fit, ()) if e.term.effect.listed))
     share = (error_without - error_with) / error_base
-    left = tuple(find_structure(fit, bank))
     return ProposedLaw(law.form, fit, share, action.sizes, action.axis, law.rivals, beside, left)
 
 

@@ -88,8 +88,9 @@ def list_terms(
 def list_body_terms(i: int, moving: Array) -> Iterator[LawTerm]:
     """Yield terms along axis `i` of the body that respect the mirror symmetry of the vehicle.
 
-    Terms that the catalogue has are left out: drags of the axis' own velocity alone, and linear and
-    quadratic couplings to the velocity of another axis.
+    Terms that the catalogue has are left out: drags of the axis' own velocity alone, linear and
+    quadratic couplings to the velocity of another axis, and what is about proportional to the
+    direction of gravity (weight, buoyancy and its centre).
 
     Args:
         i: the axis (0 to 5).
@@ -110,10 +111,10 @@ def _products(axes: Sequence[int]) -> Iterator[tuple[int, ...]]:
     for j, k in combinations(axes, 2):
         yield from ((j, k), (SIZE + j, k), (j, SIZE + k), (SIZE + j, SIZE + k))
         yield from ((j, j, k), (j, k, k))
-    x, y, z = range(DOWN, DOWN + 3)
-    for k in (x, y, z, SIGN_OF_DOWN, SIGN_OF_DOWN + 1):
+    x, y = DOWN, DOWN + 1
+    for k in (SIGN_OF_DOWN, SIGN_OF_DOWN + 1):
         yield (k,)
-    yield from ((x, y), (x, z), (y, z), (x, x), (y, y))
+    yield from ((x, y), (x, x), (y, y))
 
 
 def _along_world() -> Iterator[LawTerm]:
