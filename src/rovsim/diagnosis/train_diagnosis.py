@@ -210,6 +210,8 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         if drift.sure:
             effects.append(name_drift(drift, answer.leaves_physics))
     selected = order_accepted(base, effects, usable.runs)
+    if proposed and sum(s.error_reduction for s in selected) < 0.0:
+        selected = []  # only beside the law are they no worse than the base
     left = proposed.left if proposed else answer.structures
     if proposed or left:
         removed_by_law = proposed.error_reduction if proposed else 0.0
