@@ -113,13 +113,24 @@ def test_recordings_of_others_hide_what_they_show_and_what_they_cannot():
 
 
 def test_laboratories_have_everything_at_once():
-    cases = suite("laboratory", "development")
+    cases = [c for c in suite("laboratory", "development") if not c.outside]
     assert len({c.id for c in cases}) == len(cases) == 12
     assert {len([n for n in c.names if n != "pose_filter"]) for c in cases} == {3, 5}
     for one in cases:
         one.settings()
         assert {e.effect for e in one.hidden} > set(one.forgiven)
         assert ("colour_noise" in one.tank["camera"]) != ("pose_filter" in one.names)
+
+
+def test_physics_of_no_entry_and_every_law_act_beside_a_wrong_file():
+    cases = [c for c in suite("laboratory", "development") if c.outside]
+    assert {one.name for c in cases for one in c.outside} == {*OUTSIDE_EFFECTS, *LAWS}
+    assert len({c.id for c in cases}) == len(cases)
+    for one in cases:
+        one.settings()
+        assert {e.effect for e in one.hidden} == set(one.forgiven)
+        assert not one.names
+        assert one.verdicts == {"unexplained"}
 
 
 def test_strong_cases_hide_what_others_do_in_a_larger_size():

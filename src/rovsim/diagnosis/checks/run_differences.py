@@ -155,19 +155,18 @@ def _list_differing(
     e = bank.whiten(fit.linearised.e, noise)
     accepted = bank.whiten(fit.linearised.J, noise)
     sensitivities = workspace.columns.sensitivities_at(h)
-    columns = sensitivities.bank.whiten(sensitivities.columns, noise)
     rows = [
         (term, accepted[own])
         for term, own in zip(h.terms, h.columns, strict=True)
         if term.effect.differs_between_runs
     ]
-    rows += [
-        (block.candidate.term(block.candidate.sloped), columns[list(block.derivatives)])
-        for block in sensitivities.blocks
-        if block.secant is None
-        and block.candidate.effect.differs_between_runs
-        and block.candidate.effect.id not in {t.id for t in h.terms}
-    ]
+    for block in sensitivities.blocks:
+        effect, own = block.candidate.effect, list(block.derivatives)
+        is_new = effect.id not in {term.id for term in h.terms}
+        if effect.differs_between_runs and block.secant is None and is_new:
+            columns = [of_run[own] for of_run in sensitivities.columns]
+            term = block.candidate.term(block.candidate.sloped)
+            rows.append((term, sensitivities.bank.whiten(columns, noise)))
     for term, derivatives in rows:
         products = _multiply(e, derivatives, bank, runs)
         kept = _eliminate(products, penalty)
