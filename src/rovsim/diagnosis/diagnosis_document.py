@@ -245,9 +245,10 @@ def _format_hint(structures: Sequence[Structure], difference: RunDifference | No
 def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
     """Report how the values are correlated, and which rivals may act instead, by their odds.
 
-    Nothing is known of them where a law does without some of the effects that were fitted.
+    Nothing is known of them where some of the effects that were fitted are not selected.
     """
-    if diagnosis.fit is None or diagnosis.replaced:
+    selected_ids = {s.term.id for s in diagnosis.selected}
+    if diagnosis.fit is None or {t.id for t in diagnosis.fit.hypothesis.terms} - selected_ids:
         return None
     close_rivals = [
         (r, r.fit)

@@ -17,6 +17,7 @@ from numpy import ndarray as Array
 from rovsim.diagnosis.selection.accepted_effects import find_std
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.selection.workspace import HOPELESS_LR
 from rovsim.diagnosis.structure.residual import split_by_run
 from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.estimation.fit import Fit, polish
@@ -89,6 +90,9 @@ class _Differing(NamedTuple):
 def find_run_difference(selection: SearchResult) -> RunDifference | None:
     """Find the effect that runs differ in most; None where that leaves as much structure.
 
+    A common value has to be less likely by a factor of e^50, as clocks and ballast that differ make
+    it: what else may be wrong favours a difference a little.
+
     Args:
         selection: where a search ended.
     """
@@ -97,7 +101,7 @@ def find_run_difference(selection: SearchResult) -> RunDifference | None:
     if len(runs) < 2 or not fit.is_finite:
         return None
     best = max(_list_differing(selection, runs), key=lambda one: one.score, default=None)
-    if best is None:
+    if best is None or best.score < HOPELESS_LR:
         return None
     linearised = _linearise(fit, best.term, bank)
     products = _multiply(
@@ -218,7 +222,7 @@ def _explains(with_steps: Linearised, fit: Fit, bank: FilterBank) -> bool:
         max((s.times_limit for s in find_structure(one, bank)), default=0.0)
         for one in (fit, replace(fit, linearised=with_steps))
     )
-    return bool(left <= MAX_LEFT_SHARE * strongest > 0.0)
+    return bool(left <= MAX_LEFT_SHARE * strongest)
 
 
 def _fit_one(common: Fit, term: Term, step: Array, runs: Sequence[ObservedRun]) -> RunValues:
