@@ -36,6 +36,7 @@ from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.dynamics.effects.pose_filter import PoseFilter
+from rovsim.dynamics.effects.thruster_order import ThrusterOrder
 from rovsim.dynamics.effects.thrusters import ThrusterGain
 from rovsim.dynamics.laws.law import Law
 from rovsim.dynamics.model import nominal
@@ -231,7 +232,8 @@ def test_what_a_proposed_law_does_without_is_not_selected():
 )
 def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
     """Wakes that hit thrusters were gains of 0.98 to 1.03, each at a probability of one."""
-    drag, gain = (Term(one, ()) for one in (LinearDamping(sway=9.0), ThrusterGain(all=0.98)))
+    drag = Term(LinearDamping(sway=9.0), ("sway",))
+    gain = Term(ThrusterGain(all=0.98), ("all",))
     named = [OrderedEffect(drag, {}, 1.0, 0.6), OrderedEffect(gain, {}, 1.0, 0.05)]
     told = withdraw_probability(named, find_small(named, fraction, 0.0), "unexplained")
     assert tuple(one.probability for one in told) == sure
@@ -239,14 +241,22 @@ def test_what_removes_less_than_may_be_left_is_not_sure(fraction, sure):
 
 def test_what_removes_less_than_the_law_beside_it_is_not_sure():
     """Jets that came back from a wall: a law that is not theirs, and a coupling of drag at one."""
-    lag, drag = (Term(one, ()) for one in (ThrusterGain(all=0.8), LinearDamping(sway=9.0)))
-    named = [OrderedEffect(lag, {}, 1.0, 0.5), OrderedEffect(drag, {}, 1.0, 0.02)]
+    gain = Term(ThrusterGain(all=0.8), ("all",))
+    drag = Term(LinearDamping(sway=9.0), ("sway",))
+    named = [OrderedEffect(gain, {}, 1.0, 0.5), OrderedEffect(drag, {}, 1.0, 0.02)]
     assert find_small(named, 0.0, removed_by_law=0.09) == {"linear_damping"}
+
+
+def test_swapped_thrusters_are_not_sure_beside_unknown_physics():
+    """A moment by u w was two swapped thrusters at a probability of one, for 47 % of the error."""
+    swapped = OrderedEffect(Term(ThrusterOrder(first=2.0, second=4.0), ()), {}, 1.0, 0.47)
+    assert find_small([swapped], 0.5, removed_by_law=0.0) == {"thruster_order"}
 
 
 def test_effects_that_cancel_one_another_are_judged_by_their_sum():
     """A tether on the floor: a constant moment and a centre of buoyancy, -0.55 and 0.83."""
-    moment, centre = (Term(one, ()) for one in (ConstantWrench(pitch=-0.4), NetBuoyancy(force=1.0)))
+    moment = Term(ConstantWrench(pitch=-0.4), ("pitch",))
+    centre = Term(NetBuoyancy(force=1.0), ("force",))
     named = [OrderedEffect(moment, {}, 1.0, -0.55), OrderedEffect(centre, {}, 1.0, 0.83)]
     assert find_small(named, 0.0, removed_by_law=0.4) == {"constant_wrench", "net_buoyancy"}
     assert find_small(named, 0.0, removed_by_law=0.2) == {"constant_wrench"}

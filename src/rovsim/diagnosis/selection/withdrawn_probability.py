@@ -43,12 +43,13 @@ def find_leading(effects: Iterable[AcceptedEffect]) -> set[str]:
 def find_small(
     effects: Sequence[OrderedEffect], fraction: float, removed_by_law: float
 ) -> set[str]:
-    """Ids of effects that remove less error than what the catalogue does not name causes.
+    """Ids of effects that may be smaller than what the catalogue does not name.
 
     Likelihoods weigh effects rightly only where all else is noise. Beside unknown physics they
     favour the effect that happens to resemble it a little, and a law that was found for it need not
     be its own. What one effect raises first, another does not remove: two that cancel one another
-    are judged by their sum.
+    are judged by their sum. One that is tried and not fitted, such as two swapped thrusters, has no
+    value that could show how far it is only like that physics: it is listed whatever it removes.
 
     Args:
         effects: the accepted effects.
@@ -59,4 +60,4 @@ def find_small(
     remaining = max(0.0, 1.0 - removed_by_law - sum(e.error_reduction for e in effects))
     bound = removed_by_law + fraction * remaining  # share of the base's error, at most
     raised = sum(min(0.0, e.error_reduction) for e in effects)
-    return {e.term.id for e in effects if e.error_reduction + raised < bound}
+    return {e.term.id for e in effects if e.error_reduction + raised < bound or not e.term.free}
