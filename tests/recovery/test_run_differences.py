@@ -24,11 +24,16 @@ def make(folder: Path, hidden: tuple[EffectEntry, ...] = ()) -> Path:
     return folder
 
 
-def test_a_log_whose_clock_was_set_anew_is_not_one_delay_for_all(tmp_path):
-    raw, late = make(tmp_path / "raw"), 0.1
+def delay_second_run(raw: Path, late: float) -> None:
+    """Set the clock of its log: the vehicle then seems to follow `late` seconds later."""
     content = yaml.safe_load((raw / "campaign.yaml").read_text())
     content["runs"][1]["commands_shift_s"] = -late
     (raw / "campaign.yaml").write_text(yaml.safe_dump(content))
+
+
+def test_a_log_whose_clock_was_set_anew_is_not_one_delay_for_all(tmp_path):
+    raw, late = make(tmp_path / "raw"), 0.1
+    delay_second_run(raw, late)
     found = diagnosis(raw, tmp_path)
     assert found.verdict == "unexplained"
     delays = {run: one.parameters["delay"] for run, one in found.unexplained.between_runs.items()}
@@ -42,6 +47,18 @@ def test_a_log_whose_clock_was_set_anew_is_not_one_delay_for_all(tmp_path):
     # a mean of both delays would be wrong in every test run
     assert all(s.probability is None for s in found.selected if s.effect == "input_delay")
     assert found.error.with_effects <= 1.02 * found.error.nominal
+
+
+@pytest.mark.thorough
+def test_runs_differ_while_a_current_wanders_as_well(tmp_path):
+    """A lag that is kept takes a part of both delays: what they differ by is told."""
+    hidden = EffectEntry(effect="current_drift", parameters={"rate": 0.03})
+    raw, late = make(tmp_path / "raw", (hidden,)), 0.1
+    delay_second_run(raw, late)
+    found = diagnosis(raw, tmp_path)
+    assert found.verdict == "unexplained"
+    first, second = (one.parameters["delay"] for one in found.unexplained.between_runs.values())
+    assert second.value - first.value == pytest.approx(late, abs=0.01)
 
 
 def test_a_delay_that_all_runs_have_is_one(tmp_path):

@@ -116,10 +116,7 @@ def find_run_difference(selection: SearchResult) -> RunDifference | None:
         return None
     starts = zip(runs.items(), steps, strict=True)
     return RunDifference(
-        {
-            run: _fit_one(fit, best.term, step, [bank.runs[k] for k in own])
-            for (run, own), step in starts
-        }
+        {run: _fit_one(fit, best.term, step, bank, own) for (run, own), step in starts}
     )
 
 
@@ -225,18 +222,22 @@ def _explains(with_steps: Linearised, fit: Fit, bank: FilterBank) -> bool:
     return bool(left <= MAX_LEFT_SHARE * strongest)
 
 
-def _fit_one(common: Fit, term: Term, step: Array, runs: Sequence[ObservedRun]) -> RunValues:
+def _fit_one(
+    common: Fit, term: Term, step: Array, bank: FilterBank, own: Sequence[int]
+) -> RunValues:
     """Fit a term to one run, with all other effects at their common values.
 
     Args:
         common: the fit to all runs.
         term: with its parameters that differ free, at their common values.
         step: of these (k,), scaled: where the fit begins.
-        runs: the parts of the run.
+        bank: of all runs.
+        own: places in it of the parts of the run.
     """
     h = common.hypothesis
     others = replace(h, terms=tuple(other for other in h.terms if other.id != term.id)).model
     start = Hypothesis(others, (term.at(term.x + step),))
-    bank = FilterBank.design(runs, start.model, common.noise)
-    own, _ = polish(fit_values(start, bank, common.noise), runs)
-    return RunValues(own.hypothesis.terms[0], find_std(own, 0))
+    runs, noise = [bank.runs[k] for k in own], common.noise.of_runs(own)
+    alone = fit_values(start, FilterBank.design(runs, start.model, noise), noise)
+    fit, _ = polish(alone, runs)
+    return RunValues(fit.hypothesis.terms[0], find_std(fit, 0))

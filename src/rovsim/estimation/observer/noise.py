@@ -97,6 +97,13 @@ class Noise:
             self.bias_correlation_time[i],
         )
 
+    def of_runs(self, places: Sequence[int]) -> "Noise":
+        """The same noise of some of the runs only: a current that wanders has a path in each."""
+        if self.drift is None or not self.drift.paths:
+            return self
+        paths = tuple(self.drift.paths[k] for k in places)
+        return replace(self, drift=self.drift._replace(paths=paths))
+
     def draws(self, run: ObservedRun, random: np.random.Generator) -> NoiseDraws:
         """The same noise as a generator of random errors at the readings of a run."""
         return NoiseDraws(
