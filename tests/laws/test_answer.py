@@ -81,5 +81,5 @@ def test_beside_unknown_physics_the_gain_is_the_files_unless_replays_say_else(
     fit = SimpleNamespace(is_finite=True) if trial else None
     monkeypatch.setattr(answer, "without_gain", lambda workspace, best: fit)
     monkeypatch.setattr(answer, "_settle_values", lambda selection, usable: settled("file"))
-    holdout = SimpleNamespace(prefers=lambda one, other: surely_worse)
+    holdout = SimpleNamespace(runs=["a run"], prefers=lambda one, other: surely_worse)
     assert answer._keep_file_gain(settled("gain"), None, holdout).name == kept

@@ -124,8 +124,9 @@ def _keep_file_gain(
     if fit is None or not fit.is_finite:
         return settled
     other = _settle_values(replace(selection, best=fit), usable)
-    surely_worse = holdout.prefers(settled.replayed, other.replayed)
-    return other if other.fit.is_finite and not surely_worse else settled
+    if not other.fit.is_finite or _replays_better(settled, other, holdout):
+        return settled
+    return other
 
 
 def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer:
@@ -146,6 +147,13 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer
     return SettledAnswer(selection, fit, bank, score, structures, whole_file_fit=whole_file_fit)
 
 
+def _replays_better(
+    one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation
+) -> bool | None:
+    """Whether one answer surely replays the held-out stretches better; None where neither does."""
+    return holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
+
+
 def choose_answer(
     one: SettledAnswer, other: SettledAnswer, holdout: HoldoutValidation
 ) -> SettledAnswer:
@@ -156,7 +164,7 @@ def choose_answer(
     stretches best. If that does not decide, they replay every run, each time at the values that
     replay the other runs best.
     """
-    prefers_one = holdout.prefers(one.replayed, other.replayed) if holdout.runs else None
+    prefers_one = _replays_better(one, other, holdout)
     if prefers_one is None:
         prefers_one = holdout.prefers_between_runs(one.fit, other.fit)
     if prefers_one is not None:

@@ -123,9 +123,9 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
     difference = None if answer.complete else find_run_difference(answer.selection)
-    if difference:
-        answer = _drop_harmful(answer, usable, holdout)
-        difference = find_run_difference(answer.selection) or difference
+    reduced = _drop_harmful(answer, usable, holdout) if difference else answer
+    if reduced is not answer:
+        answer, difference = reduced, find_run_difference(reduced.selection) or difference
     return ValidatedSearch(problem, answer, start, smoothing, holdout, difference)
 
 
@@ -151,8 +151,7 @@ def _drop_harmful(
         return answer
     selection = answer.selection
     effect_id = answer.fit.hypothesis.terms[harmful].id
-    h = selection.best.hypothesis
-    fit = selection.fit(replace(h, terms=tuple(term for term in h.terms if term.id != effect_id)))
+    fit = selection.fit(selection.best.hypothesis.without_effect(effect_id))
     if not fit.is_finite:
         return answer
     return _drop_harmful(settle(replace(selection, best=fit), usable, holdout), usable, holdout)

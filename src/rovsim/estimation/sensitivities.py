@@ -104,10 +104,10 @@ def relinearise_candidates(
     bases: dict[str, tuple[Hypothesis, list[Array]]] = {}
     parts = []
     for candidate in previous.candidates:
-        terms = tuple(term for term in at.terms if term.id != candidate.effect.id)
-        effect_id = candidate.effect.id if len(terms) < len(at.terms) else ""
+        others = at.without_effect(candidate.effect.id)
+        effect_id = candidate.effect.id if len(others.terms) < len(at.terms) else ""
         if effect_id not in bases:
-            model = replace(at, terms=terms).model
+            model = others.model
             bases[effect_id] = Hypothesis(model), bank.innovations(model)
         columns = _columns(bank, bases[effect_id][0], candidate, bases[effect_id][1])
         finite = all(np.isfinite(x).all() for x in columns)

@@ -97,7 +97,7 @@ def find_run_difference(selection: SearchResult) -> RunDifference | None:
         selection: where a search ended.
     """
     fit, bank = selection.best, selection.workspace.bank
-    runs = _group_runs(bank)
+    runs = _group_runs(bank.runs)
     if len(runs) < 2 or not fit.is_finite:
         return None
     best = max(_list_differing(selection, runs), key=lambda one: one.score, default=None)
@@ -127,10 +127,10 @@ def find_harmful(accepted: Hypothesis, validation: HoldoutValidation) -> int | N
         accepted: the accepted effects, at values common to all runs.
         validation: judges replays; it knows the whole runs.
     """
-    by_run: dict[str, list[ObservedRun]] = defaultdict(list)
-    for run in validation.whole_runs:
-        by_run[run.motion.run.id].append(run)
-    judges = [replace(validation, runs=own) for own in by_run.values()]
+    runs = validation.whole_runs
+    judges = [
+        replace(validation, runs=[runs[k] for k in own]) for own in _group_runs(runs).values()
+    ]
     for i in range(len(accepted.terms)):
         without = accepted.without(i).model
         if any(judge.refuses(accepted.model, without) for judge in judges):
@@ -138,10 +138,10 @@ def find_harmful(accepted: Hypothesis, validation: HoldoutValidation) -> int | N
     return None
 
 
-def _group_runs(bank: FilterBank) -> dict[str, list[int]]:
-    """Places in a bank of the parts of each run, by the run's id."""
+def _group_runs(parts: Sequence[ObservedRun]) -> dict[str, list[int]]:
+    """Places of the parts of each run, by the run's id."""
     places = defaultdict(list)
-    for k, run in enumerate(bank.runs):
+    for k, run in enumerate(parts):
         places[run.motion.run.id].append(k)
     return dict(places)
 
@@ -234,8 +234,7 @@ def _fit_one(
         bank: of all runs.
         own: places in it of the parts of the run.
     """
-    h = common.hypothesis
-    others = replace(h, terms=tuple(other for other in h.terms if other.id != term.id)).model
+    others = common.hypothesis.without_effect(term.id).model
     start = Hypothesis(others, (term.at(term.x + step),))
     runs, noise = [bank.runs[k] for k in own], common.noise.of_runs(own)
     alone = fit_values(start, FilterBank.design(runs, start.model, noise), noise)

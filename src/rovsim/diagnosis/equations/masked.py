@@ -66,12 +66,14 @@ def _find_masked_play(selection: SearchResult, least_gain: float) -> list[Struct
     fit = selection.best
     fits = LawFits(selection, len(list_terms(selection.workspace.bank.runs)))
     law = next(fit_memory_laws(fits, fit.hypothesis, [Play]), None)
-    if law is None or law.score - selection.workspace.score(fit) <= least_gain:
+    if law is None:
+        return []
+    gain = law.score - selection.workspace.score(fit)
+    if gain <= least_gain:
         return []
     axis = find_action(law.form, law.fit, fits.runs).axis
     without, beside = (f.noise.disturbance_std[AXES.index(axis)] for f in (fit, law.fit))
     share = max(0.0, 1.0 - float(beside / without) ** 2)
-    gain = law.score - selection.workspace.score(fit)
     return [Structure(axis, "thrust with a memory", share, gain / max(fits.chance, 1.0))]
 
 

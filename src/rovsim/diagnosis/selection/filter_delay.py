@@ -119,7 +119,7 @@ def has_delay(h: Hypothesis) -> bool:
 
 def _with_delay(selection: SearchResult, h: Hypothesis) -> Fit:
     """Fit the hypothesis with an `input_delay` in place of any that it has."""
-    without_delay = replace(h, terms=tuple(term for term in h.terms if term.id != DELAY_ID))
+    without_delay = h.without_effect(DELAY_ID)
     return selection.fit(without_delay.with_term(Term(InputDelay(), ("delay",))))
 
 

@@ -170,9 +170,11 @@ class HoldoutValidation:
             least: share by which the error has to be larger than with all groups to be surely so.
             most: share by which it may be larger, sure or not.
         """
+        if not self.runs:
+            return selection
         best = selection.best
-        with_all = self._errors([best.hypothesis.model])[0] if self.runs else np.empty(0)
-        while self.runs and (groups := split(best.hypothesis)):
+        with_all = self._errors([best.hypothesis.model])[0]
+        while groups := split(best.hypothesis):
             reduced, errors = self._do_without(selection, best, groups)
             idle = [
                 k

@@ -184,6 +184,10 @@ class Hypothesis:
         """The hypothesis without one of its terms."""
         return replace(self, terms=(*self.terms[:index], *self.terms[index + 1 :]))
 
+    def without_effect(self, effect_id: str) -> "Hypothesis":
+        """The hypothesis without the term of an effect; the same if it has none."""
+        return replace(self, terms=tuple(term for term in self.terms if term.id != effect_id))
+
     def replaced(self, index: int, term: Term) -> "Hypothesis":
         """The hypothesis with another term in the place of one of its own."""
         return replace(self, terms=(*self.terms[:index], term, *self.terms[index + 1 :]))

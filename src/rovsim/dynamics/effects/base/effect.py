@@ -55,9 +55,7 @@ class Effect(ABC):
     listed: ClassVar[bool] = True  # False: part of every vehicle, not for the catalogue
     rank: ClassVar[int] = 0  # order among the effects of one kind along the thrust path
     requires: ClassVar[Requirement] = "nothing"  # a run without it cannot show the effect
-    differs_between_runs: ClassVar[bool] = (
-        False  # crews change it: clocks, ballast, batteries, markers
-    )
+    differs_between_runs: ClassVar[bool] = False  # crews change it: clocks, ballast, markers
 
     def __init__(self, **values: float) -> None:
         names = [p.name for p in self.parameters]
