@@ -52,7 +52,7 @@ def test_only_where_the_evidence_ended_a_search_unnoticed_effects_are_sought(mon
         sought.append(found)
         return found
 
-    for name in ("drop_unsure", "drop_idle"):
+    for name in ("drop_unsure", "drop_idle", "drop_unlogged"):
         monkeypatch.setattr(answer, name, lambda selection: selection)
     monkeypatch.setattr(answer, "search_unnoticed", search_unnoticed)
     left = SimpleNamespace(leaves_physics=True)

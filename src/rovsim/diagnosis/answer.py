@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Sequence
 
+from rovsim.diagnosis.checks.unlogged_effects import drop_unlogged
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
 from rovsim.diagnosis.selection.cross_validation import drop_idle
 from rovsim.diagnosis.selection.forward_selection import search_unnoticed
@@ -86,11 +87,11 @@ def settle_noticed(
         holdout: the stretches of them that took no part in the search.
         seed: of the draws that tell what chance explains.
     """
-    noticed = drop_idle(drop_unsure(selection))
+    noticed = drop_unlogged(drop_idle(drop_unsure(selection)))
     answer = settle(noticed, usable, holdout)
     if selection.stopped or not answer.leaves_physics:
         return answer
-    unfiltered = drop_unsure(search_unnoticed(selection, seed))
+    unfiltered = drop_unlogged(drop_unsure(search_unnoticed(selection, seed)))
     if unfiltered.best is noticed.best:
         return answer
     alternative = settle(unfiltered, usable, holdout)

@@ -5,20 +5,14 @@ from typing import Iterator, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
-from scipy.signal import lfilter
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.structure.unknown_thrust import (
-    SPIN_UP_SECONDS,
-    find_jumps,
-    find_lost_commands,
-    mark_undecided,
-    mark_unlogged,
-)
+from rovsim.diagnosis.structure.lost_commands import LostCommands
+from rovsim.diagnosis.structure.response import respond
+from rovsim.diagnosis.structure.unknown_thrust import mark_undecided
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.kalman import AxisFilter
-from rovsim.estimation.observer.least_squares import solve
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 FALSE_ALARM_RATE = 0.002  # of all tests of one kind of structure together
@@ -27,8 +21,6 @@ MIN_SIZE_STDS = 0.25  # of the disturbance's standard deviation: less changes no
 # sums of channels err together: what is left is not quite white. Of development recordings replayed
 # with the true model, three of 36 had a structure at 1.0 to 1.3 times the limit of white noise.
 CHANNELS_LIMIT_FACTOR = 1.5  # times the limit, where channels were measured and not full poses
-# Standard deviations: removing a smaller push would cost more than it does harm.
-MIN_REMOVED_STDS = 1.0
 
 
 @dataclass(frozen=True)
@@ -112,24 +104,6 @@ class AxisResidual:
             yield Structure(self.axis, what, float(share), float(statistic / limit), moment)
 
 
-def respond(disturbance: Array, f: AxisFilter, run: ObservedRun) -> Array:
-    """Filter pushes on one axis as the innovations of a run would show them.
-
-    Args:
-        disturbance: accelerations (..., n) at all readings of the run, m/s2 or rad/s2.
-        f: filter of that axis.
-        run: the run.
-
-    Returns:
-        The response (..., m) in the whitened innovations of the settled readings.
-    """
-    b, a = f.response
-    out = np.empty(disturbance.shape)
-    for begin, end in run.innovation_segments:
-        out[..., begin:end] = lfilter(b, a, disturbance[..., begin:end])
-    return out[..., run.settled]
-
-
 def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     """Split what a fit leaves by axis, and remove what gaps in the command log may have caused.
 
@@ -138,19 +112,16 @@ def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
     J = bank.whiten(fit.linearised.J, fit.noise)
     white = split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
     run_filters = bank.design_filters(fit.noise)
-    model = fit.hypothesis.model
-    lost_commands = [find_lost_commands(run, model.thrust_path) for run in bank.runs]
-    pairs = list(zip(bank.runs, lost_commands, strict=True))
-    jumps = [find_jumps(run, model, gaps) for run, gaps in pairs]
-    unlogged = tuple(mark_unlogged(run, gaps)[run.settled] for run, gaps in pairs)
+    lost_commands = [LostCommands.of(run, fit.hypothesis.model) for run in bank.runs]
+    unlogged = tuple(lost.mark()[lost.run.settled] for lost in lost_commands)
     undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.innovation_mask[:, i].all() for run in bank.runs):
             continue
         filters = tuple(r.filters[i] for r in run_filters)
-        inputs = zip(white, filters, bank.runs, lost_commands, jumps, strict=True)
-        cleared = tuple(_clear(w[i], f, run, gaps, jump[:, i]) for w, f, run, gaps, jump in inputs)
+        inputs = zip(white, filters, lost_commands, strict=True)
+        cleared = tuple(lost.clear(w[i], i, f) for w, f, lost in inputs)
         std = float(fit.noise.disturbance_std[i])
         residuals.append(
             AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
@@ -162,29 +133,3 @@ def split_by_run(white: Array, runs: Sequence[ObservedRun]) -> list[Array]:
     """Split whitened innovations (6, n) of all runs into those (6, n_run) of each run."""
     counts = np.cumsum([int(run.settled.sum()) for run in runs])[:-1]
     return np.split(white, counts, axis=-1)
-
-
-def _clear(w: Array, f: AxisFilter, run: ObservedRun, lost: Array, off: Array) -> Array:
-    """Remove from whitened innovations what the vehicle did while lines of the log were lost.
-
-    Args:
-        w: innovations (n,) of one axis of a run.
-        f: the filter of that axis.
-        run: the run.
-        lost: begin and end (g, 2) of each gap in the log, s since the first step.
-        off: by how much (g,) the acceleration may have been wrong in each, m/s2 or rad/s2. A gap
-            that made too small a difference is left as it is.
-    """
-    columns = []
-    for (begin, end), by in zip(lost, off, strict=True):
-        response = respond(run.overlapping(begin, end).astype(float), f, run)
-        share = min(1.0, (end - begin) / run.period)
-        if by * share * np.sqrt(response @ response) > MIN_REMOVED_STDS:
-            columns += [
-                response,
-                respond(run.overlapping(end, end + SPIN_UP_SECONDS).astype(float), f, run),
-            ]
-    if not columns:
-        return w
-    rows = np.stack(columns)
-    return w - solve(rows @ rows.T, rows @ w) @ rows

@@ -11,7 +11,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.structure.residual import respond
+from rovsim.diagnosis.structure.response import respond
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
