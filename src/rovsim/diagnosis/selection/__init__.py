@@ -5,6 +5,7 @@ first_order            judges additions and removals to first order
 fit_cache              fits under one noise, each made once
 workspace              the runs, the candidates, one noise for all, and what was fitted already
 promising              which candidates are worth a fit
+curvature              proposes effects that to first order do what accepted ones do
 pruning                removes free parameters that are not worth their penalty
 imitation              removes what undetermined values of another effect make unnecessary
 thresholds             finds values of thresholds by trying them, as derivatives do not lead there

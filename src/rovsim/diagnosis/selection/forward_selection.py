@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from rovsim.diagnosis.selection.curvature import list_curved
 from rovsim.diagnosis.selection.imitation import drop_imitations
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
@@ -11,6 +12,7 @@ from rovsim.diagnosis.selection.promising import (
     list_promising,
     measure_explained,
 )
+from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
 from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
@@ -48,8 +50,22 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         current: the fit so far.
         threshold: least gain of the score, see `SearchWorkspace.chance_limit`.
     """
-    proposals, file = list_promising(workspace, current), LooseFile(workspace)
+    for proposals in (list_promising, list_curved):
+        if fit := _add_likeliest(workspace, current, threshold, proposals(workspace, current)):
+            return fit
     loose = has_loose_file(current.hypothesis)
+    with_file = add_file_effects(workspace, current) if loose else current
+    if not _beats_chance(workspace, with_file, current, threshold):
+        return None
+    relevant = workspace.find_relevant(with_file, [current.hypothesis.model])[0]
+    return prune(workspace, with_file) if relevant else None
+
+
+def _add_likeliest(
+    workspace: SearchWorkspace, current: Fit, threshold: float, proposals: list[Proposal]
+) -> Fit | None:
+    """Fit the best proposals, a few at a time, until one is accepted; None where none is."""
+    file, loose = LooseFile(workspace), has_loose_file(current.hypothesis)
     for _ in range(TRIAL_ROUNDS):
         level = sum(
             p.net_decrease > NEARLY_BEST_SHARE * proposals[0].net_decrease for p in proposals
@@ -63,15 +79,11 @@ def add_best(workspace: SearchWorkspace, current: Fit, threshold: float) -> Fit 
         for trial, name in sorted(fits, key=lambda pair: workspace.score(pair[0]), reverse=True):
             if not _beats_chance(workspace, trial, current, threshold):
                 break
-            if loose and file.explains(trial, name):
+            if loose and file.explains_addition(trial, current, name):
                 continue
             if workspace.find_relevant(trial, [current.hypothesis.model])[0]:
                 return prune(workspace, trial)
-    with_file = add_file_effects(workspace, current) if loose else current
-    if not _beats_chance(workspace, with_file, current, threshold):
-        return None
-    relevant = workspace.find_relevant(with_file, [current.hypothesis.model])[0]
-    return prune(workspace, with_file) if relevant else None
+    return None
 
 
 def _beats_chance(workspace: SearchWorkspace, more: Fit, less: Fit, threshold: float) -> bool:

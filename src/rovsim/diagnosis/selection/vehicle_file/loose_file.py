@@ -123,6 +123,14 @@ class LooseFile:
         term = next(t for t in fit.hypothesis.terms if t.id == name)
         return self.measure_loss(fit, term) <= self.find_limit(term)
 
+    def explains_addition(self, added: Fit, current: Fit, name: str) -> bool:
+        """Whether all of the file explains what a special effect adds to the current fit."""
+        if name in FILE_EFFECT_IDS:
+            return False
+        term = next(t for t in added.hypothesis.terms if t.id == name)
+        loss = self.measure_cost(current) - self.measure_cost(added)
+        return loss <= self.find_limit(term)
+
     def weigh(self, own: Contender, other: Contender, deviance_difference: float) -> float:
         """By how much less likely the other fit is, beside a loose file if `own` makes it loose.
 
