@@ -1,4 +1,4 @@
-"""Is an effect needed beside what happened while lines of the command log were lost?
+"""Is an effect needed beside what other commands may have done than were logged?
 
 The model pushes late at each lost line, so it is late on the whole by the share of lost lines times
 their period. A hundredth of lines at 10 Hz is a delay of -1 ms, which precise runs are sure of.
@@ -10,15 +10,15 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.structure.lost_commands import LostCommands
 from rovsim.diagnosis.structure.residual import split_by_run
+from rovsim.diagnosis.structure.uncertain_commands import UncertainCommands
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step, solve
 
 
 def drop_unlogged(selection: SearchResult) -> SearchResult:
-    """Remove effects that are not worth their penalty if any push may have acted at lost lines."""
+    """Remove effects not worth their penalty beside any push where the log is uncertain."""
     workspace, fit = selection.workspace, selection.best
     while (k := _find_unlogged(fit, selection)) is not None:
         fit = workspace.fit(fit.hypothesis.without(k))
@@ -28,13 +28,13 @@ def drop_unlogged(selection: SearchResult) -> SearchResult:
 def _find_unlogged(fit: Fit, selection: SearchResult) -> int | None:
     """Number of the term that is worth the least; None where all are worth their penalty."""
     workspace = selection.workspace
-    rows = _clear_lost(fit, workspace.bank)
+    rows = _clear_uncertain(fit, workspace.bank)
     if rows is None:
         return None
     h, G = fit.hypothesis, gram(as_rows(rows))
-    without_lost = replace(fit.linearised, hypothesis=h.at(h.x + newton_step(G)))
+    cleared = replace(fit.linearised, hypothesis=h.at(h.x + newton_step(G)))
     covariance = solve(G[1:, 1:], np.eye(len(h.x)))
-    as_logged = replace(fit, linearised=without_lost, covariance=covariance)
+    as_logged = replace(fit, linearised=cleared, covariance=covariance)
     worth = {
         i: as_logged.distance(columns) / (workspace.penalty * term.choices)
         for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True))
@@ -44,19 +44,19 @@ def _find_unlogged(fit: Fit, selection: SearchResult) -> int | None:
     return weakest if weakest is not None and worth[weakest] < 1.0 else None
 
 
-def _clear_lost(fit: Fit, bank: FilterBank) -> Array | None:
-    """Whitened errors and derivatives (1 + k, 6, n) without what acted while lines were lost.
+def _clear_uncertain(fit: Fit, bank: FilterBank) -> Array | None:
+    """Whitened errors and derivatives (1 + k, 6, n) without what acted where a log is uncertain.
 
-    None where no line was lost. Axes that were not in every reading stay as they are, as their
-    filters run at another rate.
+    None where it is certain. Axes that were not in every reading stay as they are, as their filters
+    run at another rate.
     """
-    lost = [LostCommands.of(run, fit.hypothesis.model) for run in bank.runs]
-    if not any(len(gaps.times) for gaps in lost):
+    commands = [UncertainCommands.of(run, fit.hypothesis.model) for run in bank.runs]
+    if not any(len(of_run.times) for of_run in commands):
         return None
     rows = bank.whiten(fit.linearised.rows, fit.noise)
-    parts = zip(split_by_run(rows, bank.runs), lost, bank.design_filters(fit.noise), strict=True)
-    for of_run, gaps, designed in parts:
-        for i, f in enumerate(designed.filters):
-            if gaps.run.innovation_mask[:, i].all():
-                of_run[:, i] = gaps.clear(of_run[:, i], i, f)  # a view of `rows`
+    filters = [designed.filters for designed in bank.design_filters(fit.noise)]
+    for part, of_run, f in zip(split_by_run(rows, bank.runs), commands, filters, strict=True):
+        for i in range(len(f)):
+            if of_run.run.innovation_mask[:, i].all():
+                part[:, i] = of_run.clear(part[:, i], i, f[i])  # a view of `rows`
     return rows

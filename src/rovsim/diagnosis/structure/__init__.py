@@ -1,7 +1,7 @@
 """Is what an answer leaves noise, or does it have structure?
 
 response            how pushes show in what a fit leaves
-lost_commands       lines that a command log lost, and what may have acted meanwhile
+uncertain_commands  when a command log does not say which command acted: lost lines, jitter
 unknown_thrust      where the command log does not say whether a thruster turned
 residual            what is left on one axis, and how a push there would show in it
 regressors          does it depend on state, place or time?

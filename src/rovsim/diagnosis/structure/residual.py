@@ -7,8 +7,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.structure.lost_commands import LostCommands
 from rovsim.diagnosis.structure.response import respond
+from rovsim.diagnosis.structure.uncertain_commands import UncertainCommands
 from rovsim.diagnosis.structure.unknown_thrust import mark_undecided
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
@@ -55,7 +55,7 @@ class AxisResidual:
         filters: of each run, that whitened it.
         disturbance_std: m/s2 or rad/s2.
         undecided: mask (n_run,) of each run: where nobody knows whether a thruster turned.
-        unlogged: mask (n_run,) of each run: where thrusters follow a command that was lost.
+        uncertain: mask (n_run,) of each run: where another command may have acted than was logged.
     """
 
     axis: str
@@ -65,7 +65,7 @@ class AxisResidual:
     filters: tuple[AxisFilter, ...]
     disturbance_std: float
     undecided: tuple[Array, ...]
-    unlogged: tuple[Array, ...]
+    uncertain: tuple[Array, ...]
 
     @property
     def of_channels(self) -> bool:
@@ -105,26 +105,26 @@ class AxisResidual:
 
 
 def split_by_axis(fit: Fit, bank: FilterBank) -> list[AxisResidual]:
-    """Split what a fit leaves by axis, and remove what gaps in the command log may have caused.
+    """Split what a fit leaves by axis, and remove what an uncertain command log may have caused.
 
     Axes that were not in every reading are left out, as their filters run at another rate.
     """
     J = bank.whiten(fit.linearised.J, fit.noise)
     white = split_by_run(bank.whiten(fit.linearised.e, fit.noise), bank.runs)
     run_filters = bank.design_filters(fit.noise)
-    lost_commands = [LostCommands.of(run, fit.hypothesis.model) for run in bank.runs]
-    unlogged = tuple(lost.mark()[lost.run.settled] for lost in lost_commands)
+    commands = [UncertainCommands.of(run, fit.hypothesis.model) for run in bank.runs]
+    uncertain = tuple(of_run.mark()[of_run.run.settled] for of_run in commands)
     undecided = tuple(mark_undecided(fit.hypothesis, run)[run.settled] for run in bank.runs)
     residuals = []
     for i, axis in enumerate(AXES):
         if not all(run.innovation_mask[:, i].all() for run in bank.runs):
             continue
         filters = tuple(r.filters[i] for r in run_filters)
-        inputs = zip(white, filters, lost_commands, strict=True)
-        cleared = tuple(lost.clear(w[i], i, f) for w, f, lost in inputs)
+        inputs = zip(white, filters, commands, strict=True)
+        cleared = tuple(of_run.clear(w[i], i, f) for w, f, of_run in inputs)
         std = float(fit.noise.disturbance_std[i])
         residuals.append(
-            AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided, unlogged)
+            AxisResidual(axis, cleared, J[:, i], bank.runs, filters, std, undecided, uncertain)
         )
     return residuals
 

@@ -26,9 +26,9 @@ MIN_KICK_STDS = 4.0  # standard deviations of the disturbance
 def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
     """Test for more large innovations than a Gaussian disturbance has, where commands are known."""
     width = max(1, round(SUDDEN_SECONDS / residual.runs[0].period))
-    inputs = zip(residual.white, residual.unlogged, strict=True)
+    inputs = zip(residual.white, residual.uncertain, strict=True)
     filtered = [
-        _add_neighbours(w, width)[_add_neighbours(unlogged, width) == 0] for w, unlogged in inputs
+        _add_neighbours(w, width)[_add_neighbours(uncertain, width) == 0] for w, uncertain in inputs
     ]
     sums = np.concatenate(filtered)
     if not len(sums):

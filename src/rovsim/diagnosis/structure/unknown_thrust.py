@@ -7,7 +7,7 @@ side: no physics shows there.
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.diagnosis.structure.lost_commands import mark_overlapping
+from rovsim.diagnosis.structure.uncertain_commands import mark_overlapping
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.observed_run import ObservedRun

@@ -7,11 +7,17 @@ import numpy as np
 import pytest
 
 from flown import observed
+from rovsim.core.axes import AXES
 from rovsim.core.run import Commands
 from rovsim.diagnosis.checks.unlogged_effects import drop_unlogged
 from rovsim.diagnosis.selection.search_result import SearchResult
-from rovsim.diagnosis.structure.lost_commands import find_jumps, find_lost_commands
 from rovsim.diagnosis.structure.residual import split_by_axis
+from rovsim.diagnosis.structure.uncertain_commands import (
+    UncertainCommands,
+    find_gaps,
+    find_jittering,
+    find_jumps,
+)
 from rovsim.dynamics.effects.added_mass import AddedMass
 from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.estimation.fit import fit
@@ -33,13 +39,13 @@ def test_lines_that_were_lost_while_commands_changed_are_known_to_be(tmp_path):
     def find(kept, late=0.0):
         commands = Commands(time[kept] + late, value[kept], "thruster")
         motion = replace(run.motion, commands=commands)
-        return find_lost_commands(
-            replace(run, motion=motion, edges=run.edges + late), base.thrust_path
-        )
+        found = UncertainCommands.of(replace(run, motion=motion, edges=run.edges + late), base)
+        assert found.lost.all()
+        return found.times
 
     kept = np.isin(np.arange(400), (100, 300, 390), invert=True)
     found = find(kept)
-    np.testing.assert_allclose(run.edges[0] + found, [[5.98, 6.02], [7.78, 7.82]])
+    np.testing.assert_allclose(run.edges[0] + found, [[6.0, 6.02], [7.8, 7.82]])  # since it was due
     np.testing.assert_allclose(find(kept, 3.0), found)  # of a clock that was not set
     assert not len(find(np.ones(400, bool)))
     uneven = np.random.default_rng(0).uniform(size=400) < 0.5
@@ -56,6 +62,26 @@ def test_what_a_lost_line_may_do_is_the_change_of_thrust_over_the_inertia(tmp_pa
     np.testing.assert_allclose(heavy[:, 2], 0.5 * light[:, 2], rtol=0.02)
 
 
+def make_wrong(base, run, right, wrong):
+    """Innovations (6, n) that a wrong log of a run makes, all of them and once they are cleared."""
+    fine = np.linspace(run.edges[0], run.edges[-1], int(run.substeps.sum()) + 1)
+    runs = [
+        replace(
+            run,
+            motion=replace(run.motion, commands=log),
+            drives=Drives(log, fine, "held", run.substeps),
+        )
+        for log in (right, wrong)
+    ]
+    bank = FilterBank.design(runs[:1], base, FIRST_NOISE)
+    other = replace(bank, runs=(runs[1],))
+    e = [other.innovations(base)[0] - bank.innovations(base)[0]]
+    seen = SimpleNamespace(e=e, J=[np.empty((0, *e[0].shape))])
+    found = SimpleNamespace(linearised=seen, noise=FIRST_NOISE, hypothesis=Hypothesis(base))
+    left = np.stack([one.white[0] for one in split_by_axis(found, other)])
+    return other.whiten(e, FIRST_NOISE), left
+
+
 @pytest.mark.parametrize("at", [6.004, 6.026, 6.043])
 def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_path, at):
     """Wherever between two readings it was lost, and commands were turned round."""
@@ -63,19 +89,40 @@ def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_pa
     log = run.motion.commands
     turned = np.where(log.time[:, None] - run.edges[0] < at, log.value, -log.value)
     kept = np.arange(len(log.time)) != np.argmax(log.time - run.edges[0] >= at)
-    logs = replace(log, value=turned), replace(log, time=log.time[kept], value=turned[kept])
-    fine = np.linspace(run.edges[0], run.edges[-1], int(run.substeps.sum()) + 1)
-    drives = [Drives(one, fine, "held", run.substeps) for one in logs]
-    motions = [replace(run.motion, commands=one) for one in logs]
-    each = zip(motions, drives, strict=True)
-    told, lossy = (replace(run, motion=own, drives=driven) for own, driven in each)
-    bank = FilterBank.design([told], base, FIRST_NOISE)
-    other = replace(bank, runs=(lossy,))
-    e = [other.innovations(base)[0] - bank.innovations(base)[0]]
-    seen = SimpleNamespace(e=e, J=[np.empty((0, *e[0].shape))])
-    found = SimpleNamespace(linearised=seen, noise=FIRST_NOISE, hypothesis=Hypothesis(base))
-    left = np.stack([one.white[0] for one in split_by_axis(found, other)])
-    assert np.linalg.norm(left) < 0.2 * np.linalg.norm(other.whiten(e, FIRST_NOISE))
+    right, lossy = replace(log, value=turned), replace(log, time=log.time[kept], value=turned[kept])
+    wrong, left = make_wrong(base, run, right, lossy)
+    assert np.linalg.norm(left) < 0.2 * np.linalg.norm(wrong)
+
+
+@pytest.mark.parametrize("at", [6.004, 6.026, 6.043])
+def test_when_a_jittering_line_acted_is_not_held_against_a_model(tmp_path, at):
+    base, (run,) = observed(tmp_path, duration=12.0, camera=Camera(**STILL))
+    log = run.motion.commands
+    line = int(np.argmax(log.time - run.edges[0] >= at))
+    push = 0.2 * np.where(log.value[0] < 0.0, -1.0, 1.0)
+    steady = np.where(np.arange(len(log.time))[:, None] < line, push, -push)
+    stamps = log.time + np.random.default_rng(5).uniform(-0.006, 0.006, len(log.time))
+    right, jittering = replace(log, value=steady), replace(log, time=stamps, value=steady)
+    wrong, left = make_wrong(base, run, right, jittering)
+    roll = AXES.index("roll")
+    assert np.linalg.norm(wrong[roll]) > 0.8 * np.linalg.norm(wrong)
+    assert np.linalg.norm(left[roll]) < 0.3 * np.linalg.norm(wrong[roll])
+
+
+def test_only_a_regular_log_can_jitter():
+    rng = np.random.default_rng(6)
+    value = np.where(np.arange(200) < 90, -0.5, 0.5)[:, None]
+
+    def find(time):
+        return find_jittering(Commands(time, value, "thruster"))
+
+    regular = 0.05 * np.arange(200)
+    ((begin, end),) = find(regular + rng.normal(0.0, 0.003, 200))
+    assert begin < regular[90] < end
+    assert end - begin == pytest.approx(4 * 0.003, rel=0.3)
+    assert not len(find(regular))
+    assert not len(find(np.cumsum(rng.exponential(0.05, 200))))
+    assert not len(find_gaps(Commands(regular, value, "thruster")))
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.02])
