@@ -15,6 +15,7 @@ from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import built_in
 from rovsim.measurement.recording import read_run
 from rovsim.measurement.recording.channels import Channel
+from rovsim.measurement.signals.chosen_channels import noise_density
 from rovsim.measurement.signals.on_clock import OnClock, instants_between
 from rovsim.measurement.signals.resample import Linear
 from rovsim.measurement.signals.track import track_channels
@@ -67,6 +68,16 @@ def test_perfect_sensors_tell_the_motion_wherever_they_sit(tmp_path, truth, sens
     assert np.abs(apart[found.usable]).max() < 0.006
     assert np.abs(turned[found.usable]).max() < 0.006
     assert found.measured.axes.all()
+
+
+@pytest.mark.parametrize("steps", [0, 40])
+def test_the_noise_of_a_channel_is_not_that_of_its_motion(steps):
+    """Sticks that are stepped turn a vehicle at once; its gyro is not noisier for that."""
+    rng, time = np.random.default_rng(4), 0.02 * np.arange(3000)
+    value = rng.normal(0.0, 0.003, (3000, 3))
+    for at in rng.integers(0, 3000, steps):
+        value[at:] += rng.normal(0.0, 0.2, 3)
+    assert noise_density(Channel(time, value)) * np.sqrt(50.0) == pytest.approx(0.003, rel=0.08)
 
 
 def test_sums_between_readings_have_white_noise():

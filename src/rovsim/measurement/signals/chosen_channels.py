@@ -1,5 +1,6 @@
 """Choose the channels from which attitude and position are taken, the least noisy first."""
 
+import warnings
 from dataclasses import dataclass
 from typing import Iterator, Mapping
 
@@ -11,6 +12,8 @@ from rovsim.measurement.recording.recording import Recording
 
 # Vehicles move below 2 Hz (filter.py): what comes less often than twice that does not show it all.
 MIN_MOTION_RATE_HZ = 4.0
+QUIET_SHARE = 0.95  # of second differences: sticks are stepped at most every second or so
+STD_OF_QUIET = 0.871  # of white noise without its largest twentieth, over that of all
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +111,7 @@ def noise_density(channel: Channel) -> float:
     """Noise density of a channel: standard deviation of a sample over the square root of the rate.
 
     The noise of a sample is estimated from second differences, whose variance is 6 times that of
-    white noise.
+    white noise. The largest are those of a motion, such as turns after a step of the sticks.
 
     Returns:
         The density in the channel's unit (rad for quaternions) by root hertz; NaN with fewer than
@@ -119,5 +122,8 @@ def noise_density(channel: Channel) -> float:
         return np.nan
     if value.shape[1] == 4:  # small turns are twice the vector part of a quaternion
         value = 2.0 * rotations.continuous(value)
-    noise = np.nanstd(np.diff(value, 2, axis=0)) / np.sqrt(6.0)
+    size = np.abs(np.diff(value, 2, axis=0))
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # not one was measured
+        size[size > np.nanquantile(size, QUIET_SHARE, axis=0)] = np.nan
+        noise = np.sqrt(np.nanmean(size**2) / 6.0) / STD_OF_QUIET
     return float(noise / np.sqrt(channel.rate or 1.0))
