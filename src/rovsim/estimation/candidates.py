@@ -1,7 +1,9 @@
 """What may be missing: every effect of the catalogue, from each of its starting values."""
 
-from dataclasses import dataclass
-from typing import Sequence
+from dataclasses import dataclass, field
+from typing import Mapping, Sequence
+
+import numpy as np
 
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
@@ -18,6 +20,8 @@ from rovsim.dynamics.vehicle import Vehicle
 from rovsim.estimation.observer.hypothesis import Term
 from rovsim.estimation.observer.observed_run import ObservedRun
 
+DIGITS = 6  # of a command: closer ones differ by rounding errors
+
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
@@ -27,11 +31,13 @@ class Candidate:
         effect: its class; at its defaults it changes nothing.
         start: with the values that a fit starts from.
         free: names of the parameters that are fitted.
+        resolutions: of its thresholds, by name, as far as the command logs tell values apart.
     """
 
     effect: type[Effect]
     start: Effect
     free: tuple[str, ...]
+    resolutions: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def absent(self) -> bool:
@@ -50,7 +56,8 @@ class Candidate:
 
     def term(self, free: Sequence[str] | None = None) -> Term:
         """The candidate as a term of a hypothesis, with all or only some parameters free."""
-        return Term(self.start, self.free if free is None else tuple(free))
+        names = self.free if free is None else tuple(free)
+        return Term(self.start, names, resolutions=self.resolutions)
 
 
 def list_candidates(
@@ -58,17 +65,31 @@ def list_candidates(
 ) -> list[Candidate]:
     """All candidates that could act in these runs of a vehicle."""
     site, means = runs[0].motion.site, list_means(runs, vehicle)
+    log_step = find_log_step(runs)
     candidates = []
     for cls in catalogue.on(vehicle).values():
         if issubclass(cls, MeasurementFilter | StochasticCurrent):
             continue  # camera.py and drifting_current.py look for these
         if cls.requires not in means:
             continue
+        # as for pulses in whole microseconds: two steps of a log, between which no command lies
+        resolutions = {p.name: max(p.resolution, 2.0 * log_step) for p in cls.parameters if p.tried}
         for values in _list_starts(cls, site):
             start = cls(**values)
             if _can_act(start, runs):
-                candidates.append(Candidate(cls, start, cls.free_at(values)))
+                candidates.append(Candidate(cls, start, cls.free_at(values), resolutions))
     return candidates
+
+
+def find_log_step(runs: Sequence[ObservedRun]) -> float:
+    """The least difference between two sizes of logged thruster commands; 0 where there is none.
+
+    A log of percents or of pulses in steps of 5 us tells no thresholds apart that lie between them.
+    """
+    logs = [run.motion.commands for run in runs]
+    sizes = [np.abs(log.value).ravel() for log in logs if log.kind == "thruster" and log.value.size]
+    differing = np.diff(np.unique(np.round(np.concatenate(sizes), DIGITS))) if sizes else []
+    return float(np.min(differing, initial=np.inf)) if len(differing) else 0.0
 
 
 def _list_starts(cls: type[Effect], site: Site) -> list[dict[str, float]]:

@@ -25,12 +25,14 @@ class Term:
     """An effect with its values, of which the parameters in `free` may change.
 
     Each within the range that its effect declares, or within `bounds`, by name, where this vehicle
-    allows less.
+    allows less; and as fine as its effect declares, or as `resolutions`, by name, where these runs
+    show less.
     """
 
     effect: Effect
     free: tuple[str, ...]
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
+    resolutions: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
@@ -39,13 +41,14 @@ class Term:
 
     @cached_property
     def parameters(self) -> list[Parameter]:
-        """The free parameters, with the range that the fit keeps to."""
+        """The free parameters, with the range that the fit keeps to, and their resolution."""
         by_name = {p.name: p for p in self.effect.parameters}
-        return [self._bounded(by_name[name]) for name in self.free]
+        return [self._limited(by_name[name]) for name in self.free]
 
-    def _bounded(self, parameter: Parameter) -> Parameter:
+    def _limited(self, parameter: Parameter) -> Parameter:
         low, high = self.bounds.get(parameter.name, (parameter.low, parameter.high))
-        return replace(parameter, low=low, high=high)
+        resolution = self.resolutions.get(parameter.name, parameter.resolution)
+        return replace(parameter, low=low, high=high, resolution=resolution)
 
     @property
     def x(self) -> Array:
