@@ -7,7 +7,7 @@ from flown import observed
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.answer import settle
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
-from rovsim.diagnosis.selection.joint_fit import fit_jointly, prune_together
+from rovsim.diagnosis.selection.joint_fit import add_found, fit_jointly, prune_together
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.settings import SearchSettings
 from rovsim.diagnosis.uncertainty.identifiability import group_joint_parameters
@@ -64,6 +64,21 @@ def test_of_an_open_scale_the_gain_goes_and_what_differs_stays():
     start = Hypothesis(base, terms)
     found = prune_together(OpenScale(), OpenScale().fit(start, np.inf))
     assert [term.id for term in found.hypothesis.terms] == ["quadratic_damping"]
+
+
+@pytest.mark.parametrize(("found", "kept"), [("quadratic_damping", True), ("lift", False)])
+def test_what_a_search_found_competes_beside_all_that_may_be_wrong(found, kept):
+    base = nominal(load_vehicle("bluerov2_heavy"))
+    mass = Term(built_in()["added_mass"](surge=2.0), ("surge",))
+    joint = OpenScale().fit(Hypothesis(base, (mass,)), np.inf)
+    effect = built_in()[found]
+    search = (
+        Term(built_in()["added_mass"](surge=9.0), ("surge",)),
+        Term(effect(), effect.free_at({})),
+    )
+    terms = add_found(OpenScale(), joint, search).hypothesis.terms
+    assert [term.id for term in terms] == ["added_mass", *([found] if kept else [])]
+    assert terms[0] == mass  # of the joint fit
 
 
 def test_loops_and_drag_that_are_all_wrong_come_back_together(tmp_path):

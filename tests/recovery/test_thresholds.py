@@ -35,7 +35,7 @@ def test_a_wide_dead_band(tmp_path, width):
     assert abs(band.term.effect["width"] - width) < 3.0 * band.std["width"]
 
 
-@pytest.mark.parametrize("kind, step", [("thruster", 0.0125), ("demand", 0.0)])
+@pytest.mark.parametrize(("kind", "step"), [("thruster", 0.0125), ("demand", 0.0)])
 def test_a_log_tells_no_thresholds_apart_between_its_steps(kind, step):
     """Pulses in steps of 5 us, of 400 us from rest to full thrust."""
     value = 0.0125 * np.random.default_rng(0).integers(-80, 80, (500, 8))

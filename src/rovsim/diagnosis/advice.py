@@ -126,7 +126,8 @@ def _advise_excitation(diagnosis: TrainDiagnosis) -> list[str]:
     parts = []
     if at_rest := diagnosis.usable.still:
         parts.append(
-            f"Move {', '.join(at_rest)} in a train run: nothing can be said about what acts there."
+            f"Move {', '.join(at_rest)} more in a train run: with hardly any motion, little can be "
+            "said about what acts there."
         )
     if idle := diagnosis.not_commanded:
         parts.append(f"Command {', '.join(idle)} in a train run, alone for some seconds each time.")

@@ -87,9 +87,9 @@ def find_log_step(runs: Sequence[ObservedRun]) -> float:
     A log of percents or of pulses in steps of 5 us tells no thresholds apart that lie between them.
     """
     logs = [run.motion.commands for run in runs]
-    sizes = [np.abs(log.value).ravel() for log in logs if log.kind == "thruster" and log.value.size]
-    differing = np.diff(np.unique(np.round(np.concatenate(sizes), DIGITS))) if sizes else []
-    return float(np.min(differing, initial=np.inf)) if len(differing) else 0.0
+    sizes = [np.empty(0), *(np.abs(c.value).ravel() for c in logs if c.kind == "thruster")]
+    differing = np.diff(np.unique(np.round(np.concatenate(sizes), DIGITS)))
+    return float(np.min(differing)) if len(differing) else 0.0
 
 
 def _list_starts(cls: type[Effect], site: Site) -> list[dict[str, float]]:

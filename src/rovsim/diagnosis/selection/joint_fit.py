@@ -3,9 +3,11 @@
 A search that adds effects one by one judges each addition while all else is still missing. Thrust,
 drag and inertia depend on each other. Where all three are wrong, the likeliest single change may
 lead away from the truth (a vehicle four times as heavy). So all values of the vehicle file are
-freed together, once for each way in which commands may act, and the likeliest fit is pruned.
+freed together, once for each way in which commands may act. The special effects that a search found
+are added to the likeliest fit, so that none is lost without having competed, and it is pruned.
 """
 
+from dataclasses import replace
 from typing import Sequence
 
 import numpy as np
@@ -31,19 +33,22 @@ ACTUATION_IDS = (ThrusterGain.id, OnboardControl.id)
 COMMON_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ConstantWrench, InputDelay)
 
 
-def fit_jointly(workspace: SearchWorkspace, base: Model, moved: Sequence[str]) -> SearchResult:
+def fit_jointly(
+    workspace: SearchWorkspace, base: Model, moved: Sequence[str], found: Sequence[Term] = ()
+) -> SearchResult:
     """Make all joint fits, and prune the likeliest; other ways in which commands act are rivals.
 
     Args:
         workspace: of the search, as it began.
         base: the model that is diagnosed.
         moved: axes that were measured and moved.
+        found: terms that a search accepted.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
     results = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
     results.sort(key=lambda pair: pair[0].score(pair[1]), reverse=True)
     best_workspace, best_fit = results[0]
-    best_fit = prune_together(best_workspace, best_fit)
+    best_fit = prune_together(best_workspace, add_found(best_workspace, best_fit, found))
     names = {term.id for term in best_fit.hypothesis.terms}
     rivals = tuple(
         Rival(
@@ -73,6 +78,16 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
         workspace = workspace.update_after(fit)
         fit = workspace.fit(fit.hypothesis, PRIOR_STD)
     return workspace, fit
+
+
+def add_found(workspace: SearchWorkspace, fit: Fit, found: Sequence[Term]) -> Fit:
+    """The fit with what a search found besides, where that is likelier."""
+    h = fit.hypothesis
+    new = tuple(t for t in found if t.id not in {term.id for term in h.terms})
+    if not new:
+        return fit
+    extended = workspace.fit(replace(h, terms=(*h.terms, *new)), PRIOR_STD)
+    return extended if workspace.score(extended) > workspace.score(fit) else fit
 
 
 def prune_together(workspace: SearchWorkspace, fit: Fit) -> Fit:

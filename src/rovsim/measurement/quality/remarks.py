@@ -35,7 +35,7 @@ def _motion(report: Quality) -> Iterator[str]:
         return
     quiet = [axis for axis, e in report.excitation.items() if not e.excited]
     if quiet:
-        yield f"Hardly any motion in {', '.join(quiet)}: nothing can be said about the model there."
+        yield f"Hardly any motion in {', '.join(quiet)}: little can be said about the model there."
 
 
 def _frames(report: Quality, left_out: int) -> Iterator[str]:
