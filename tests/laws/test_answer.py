@@ -76,10 +76,37 @@ def test_beside_unknown_physics_the_gain_is_the_files_unless_replays_say_else(
     def settled(name):
         fit = SimpleNamespace(is_finite=True)
         selection = SearchResult(None, name, ())
-        return SimpleNamespace(selection=selection, fit=fit, replayed=name, name=name)
+        left = {"structures": ["left"], "score": 0.0}
+        return SimpleNamespace(selection=selection, fit=fit, replayed=name, name=name, **left)
 
     fit = SimpleNamespace(is_finite=True) if trial else None
     monkeypatch.setattr(answer, "without_gain", lambda workspace, best: fit)
     monkeypatch.setattr(answer, "_settle_values", lambda selection, usable: settled("file"))
     holdout = SimpleNamespace(runs=["a run"], prefers=lambda one, other: surely_worse)
     assert answer._keep_file_gain(settled("gain"), None, holdout).name == kept
+
+
+@pytest.mark.parametrize(
+    ("left", "score", "kept"),
+    [
+        ((), -500.0, ("push",)),  # a disturbance of 500 in twice the log likelihood hides it
+        ((), 2.0, ()),
+        (("other",), -500.0, ("other",)),
+    ],
+)
+def test_fewer_and_less_likely_effects_leave_what_more_effects_left(monkeypatch, left, score, kept):
+    def settled(structures, score):
+        fit = SimpleNamespace(is_finite=True)
+        return answer.SettledAnswer(SearchResult(None, score, ()), fit, None, score, structures)
+
+    more, fewer = settled((SimpleNamespace(moment=False),), 0.0), settled(left, score)
+    holdout = SimpleNamespace(
+        validate=lambda selection: (selection, True), keep_earning=lambda selection: fewer.selection
+    )
+    monkeypatch.setattr(
+        answer, "_settle_values", lambda own, usable: more if own is more.selection else fewer
+    )
+    monkeypatch.setattr(answer, "_keep_file_gain", lambda settled, usable, holdout: settled)
+    found = answer.settle(more.selection, None, holdout)
+    assert found.selection is fewer.selection
+    assert found.structures == (more.structures if kept == ("push",) else kept)

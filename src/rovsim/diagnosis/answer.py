@@ -107,9 +107,19 @@ def settle(
     if settled.leaves_physics:
         pruned = holdout.keep_earning(selection)
         if pruned.best is not selection.best:
-            settled = _settle_values(pruned, usable)
+            settled = _keep_structures(_settle_values(pruned, usable), settled)
         settled = _keep_file_gain(settled, usable, holdout)
     return replace(settled, refused=not unchanged and settled.complete)
+
+
+def _keep_structures(fewer: SettledAnswer, more: SettledAnswer) -> SettledAnswer:
+    """An answer with fewer effects, and with what is left beside more of them.
+
+    Where fewer effects are less likely and yet seem to leave nothing, it is in their disturbance.
+    """
+    if fewer.structures or fewer.score >= more.score:
+        return fewer
+    return replace(fewer, structures=more.structures)
 
 
 def _keep_file_gain(
@@ -127,7 +137,7 @@ def _keep_file_gain(
     other = _settle_values(replace(selection, best=fit), usable)
     if not other.fit.is_finite or _replays_better(settled, other, holdout):
         return settled
-    return other
+    return _keep_structures(other, settled)
 
 
 def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer:
