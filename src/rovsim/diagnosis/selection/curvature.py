@@ -41,10 +41,9 @@ def list_curved(workspace: SearchWorkspace, current: Fit) -> list[Proposal]:
             net_decrease = towards**2 / length - workspace.penalty * trial.choices
             proposals.append(Proposal(trial.at(x), net_decrease))
     best: dict[str, Proposal] = {}
-    for p in sorted(proposals, key=lambda p: p.net_decrease):
-        best[p.term.id] = p
-    ranked = sorted(best.values(), key=lambda p: -p.net_decrease)
-    return [p for p in ranked if p.net_decrease > 0.0]
+    for proposal in sorted(proposals, key=lambda p: -p.net_decrease):
+        best.setdefault(proposal.term.id, proposal)
+    return [p for p in best.values() if p.net_decrease > 0.0]
 
 
 def _list_hidden(workspace: SearchWorkspace, current: Fit) -> list[Term]:
