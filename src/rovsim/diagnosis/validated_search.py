@@ -117,9 +117,11 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     begin_stage("checking")
     if answer.leaves_physics:
         filtered = with_camera_filter(base, smoothing)
-        found = answer.fit.hypothesis.terms
-        joint = fit_jointly(start.workspace, filtered, usable.moved, found)
-        answer = choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
+        found = answer.fit.hypothesis
+        joint = fit_jointly(start.workspace, filtered, usable.moved, found.terms)
+        # the same effects again would only be held by the prior of a joint fit as well
+        if joint.best.hypothesis.free_parameters != found.free_parameters:
+            answer = choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))

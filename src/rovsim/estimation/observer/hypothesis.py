@@ -134,6 +134,11 @@ class Hypothesis:
         return [f"{term.id}.{p.name}" for term in self.terms for p in term.parameters]
 
     @property
+    def free_parameters(self) -> frozenset[str]:
+        """Ids of the terms and names of their free parameters, in any order."""
+        return frozenset([*(term.id for term in self.terms), *self.parameter_names])
+
+    @property
     def shapes(self) -> Array:
         """Which of them (k,) are shapes, that say nothing without the others."""
         return np.array([p.shape for term in self.terms for p in term.parameters], bool)
