@@ -20,7 +20,7 @@ from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step,
 def drop_unlogged(selection: SearchResult) -> SearchResult:
     """Remove effects not worth their penalty beside any push where the log is uncertain."""
     workspace, fit = selection.workspace, selection.best
-    while (k := _find_unlogged(fit, selection)) is not None:
+    while fit.hypothesis.terms and (k := _find_unlogged(fit, selection)) is not None:
         fit = workspace.fit(fit.hypothesis.without(k))
     return replace(selection, best=fit)
 

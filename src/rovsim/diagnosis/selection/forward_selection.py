@@ -79,7 +79,7 @@ def _add_likeliest(
         for trial, name in sorted(fits, key=lambda pair: workspace.score(pair[0]), reverse=True):
             if not _beats_chance(workspace, trial, current, threshold):
                 break
-            if loose and file.explains_addition(trial, current, name):
+            if loose and file.explains(trial, name, current):
                 continue
             if workspace.find_relevant(trial, [current.hypothesis.model])[0]:
                 return prune(workspace, trial)

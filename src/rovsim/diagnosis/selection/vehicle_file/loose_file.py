@@ -116,19 +116,19 @@ class LooseFile:
             return 0.0
         return self.workspace.penalty * term.choices + PRIOR_ODDS_LR
 
-    def explains(self, fit: Fit, name: str) -> bool:
-        """Whether all of the file together explains what a special effect of a fit does."""
+    def explains(self, fit: Fit, name: str, without: Fit | None = None) -> bool:
+        """Whether all of the file together explains what a special effect of a fit does.
+
+        `without`: the fit without that effect; if none is given, it is made to first order.
+        """
         if name in FILE_EFFECT_IDS:
             return False
         term = next(t for t in fit.hypothesis.terms if t.id == name)
-        return self.measure_loss(fit, term) <= self.find_limit(term)
-
-    def explains_addition(self, added: Fit, current: Fit, name: str) -> bool:
-        """Whether all of the file explains what a special effect adds to the current fit."""
-        if name in FILE_EFFECT_IDS:
-            return False
-        term = next(t for t in added.hypothesis.terms if t.id == name)
-        loss = self.measure_cost(current) - self.measure_cost(added)
+        loss = (
+            self.measure_loss(fit, term)
+            if without is None
+            else self.measure_cost(without) - self.measure_cost(fit)
+        )
         return loss <= self.find_limit(term)
 
     def weigh(self, own: Contender, other: Contender, deviance_difference: float) -> float:
