@@ -1,7 +1,9 @@
 """Laws of sharing work: every job is done once, whoever shares it and with how many."""
 
 import os
+import time
 from concurrent.futures import ThreadPoolExecutor
+from threading import Event, Lock
 from unittest.mock import patch
 
 import numba
@@ -10,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rovsim.core.threads import map_on_cores, on_cores
+from rovsim.core.threads import Abandoned, map_on_cores, on_cores
 
 
 def on(cores):
@@ -82,3 +84,61 @@ def test_a_call_sees_how_numpy_treats_errors():
 def test_what_goes_wrong_in_a_call_is_told():
     with on(2), pytest.raises(ZeroDivisionError):
         map_on_cores(lambda k: 1 // k, range(3))
+
+
+def test_the_first_call_that_fails_is_told_whichever_fails_first():
+    later = Event()
+
+    def call(k):
+        if k == 0:
+            assert later.wait(10.0)
+        elif k == 3:
+            later.set()
+        raise ValueError(k)
+
+    with on(4), pytest.raises(ValueError, match=r"^0$"):
+        map_on_cores(call, range(4))
+
+
+@given(st.integers(0, 3), st.integers(2, 4))
+def test_shares_within_shares_never_wait_for_each_other(depth, cores):
+    def count(level):
+        return 1 if level == 0 else sum(map_on_cores(count, [level - 1] * 5))
+
+    with on(cores):
+        assert map_on_cores(count, [depth] * 5) == [5**depth] * 5
+
+
+def test_no_more_threads_work_than_there_are_cores():
+    working, most, lock = [], [], Lock()
+
+    def work(k):
+        with lock:
+            working.append(k)
+            most.append(len(working))
+        time.sleep(1e-3)
+        with lock:
+            working.remove(k)
+
+    with on(2):
+        map_on_cores(lambda k: map_on_cores(work, [(k, i) for i in range(5)]), range(5))
+    assert max(most) <= 2
+
+
+def test_what_nobody_waits_for_any_more_ends():
+    begun, ended = Event(), Event()
+
+    def call(k):
+        if k == 0:
+            assert begun.wait(10.0)
+            raise KeyboardInterrupt
+        try:
+            while True:
+                begun.set()
+                times_done([1] * 9)
+        except Abandoned:
+            ended.set()
+
+    with on(2), pytest.raises(KeyboardInterrupt):
+        map_on_cores(call, range(2))
+    assert ended.wait(10.0)

@@ -14,6 +14,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.threads import map_on_cores
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import PRIOR_STD, Fit, fit_noise_only
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
@@ -55,11 +56,12 @@ class Replays:
 
     def evaluate(self, models: Sequence[Model]) -> list[Array]:
         """Scaled errors (m, 6, n) of m models on each run; NaN for models that are impossible."""
-        counts = [len(windows.number) + int(np.sum(_follows(windows))) for windows in self.windows]
-        return [
-            evaluate_possible(models, count, partial(self._compare, windows))
-            for windows, count in zip(self.windows, counts, strict=True)
-        ]
+
+        def of_run(windows: Windows) -> Array:
+            count = len(windows.number) + int(np.sum(_follows(windows)))
+            return evaluate_possible(models, count, partial(self._compare, windows))
+
+        return map_on_cores(of_run, self.windows)
 
     def _compare(self, windows: Windows, models: Sequence[Model]) -> Array:
         velocity, acceleration = self.spread

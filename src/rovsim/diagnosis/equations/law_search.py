@@ -1,11 +1,14 @@
 """Search for the law that explains most of what the accepted effects leave."""
 
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 from typing import Iterator, Sequence
 
 import numpy as np
 
 from rovsim.core.axes import AXES
+from rovsim.core.threads import map_on_cores
 from rovsim.diagnosis.equations.action import find_action, leaves_structure
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits
@@ -50,17 +53,14 @@ def search_laws(selection: SearchResult) -> FittedLaw | None:
     starts = [fit.hypothesis]
     if fit.hypothesis.terms:
         starts.append(replace(fit.hypothesis, terms=()))
-    by_start = [(start, select_terms(fits, start)) for start in starts]
-    laws = [body_law for _, body_law in by_start] + [
-        _fit_thrust_law(fits, *candidate) for candidate in by_start
-    ]
-    laws += [law for start in starts for law in fit_memory_laws(fits, start)]
+    laws = map_on_cores(lambda start: select_terms(fits, start), starts)
+    laws += map_on_cores(partial(_fit_thrust_law, fits), starts, laws)
+    laws += chain(*map_on_cores(lambda start: list(fit_memory_laws(fits, start)), starts))
     grown = [law for law in laws if law is not None]
     if all(_is_surely_half(fits, candidate) for candidate in _keep_close(grown)):
         return None  # so nothing needs to be known of the effects that a law makes unnecessary
-    finished = sorted(
-        (_finish(fits, candidate) for candidate in grown), key=lambda candidate: -candidate.score
-    )
+    finished = map_on_cores(partial(_finish, fits), grown)
+    finished.sort(key=lambda candidate: -candidate.score)
     if not finished or finished[0].score <= selection.workspace.score(fit):
         return None
     return _add_rest_of_file(fits, finished[0].beats(finished[1:]))

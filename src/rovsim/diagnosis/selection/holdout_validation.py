@@ -12,11 +12,13 @@ answers is better (`prefers`), and whether a law holds (`keeps`).
 
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import product
 from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.threads import map_on_cores
 from rovsim.diagnosis.selection.paired_comparison import (
     WORSE_SHARE,
     find_better,
@@ -143,10 +145,13 @@ class HoldoutValidation:
         groups = [self.whole_runs[k::FOLDS] for k in range(min(FOLDS, len(self.whole_runs)))]
         if len(groups) < 2:
             return None
-        errors = []
-        for group in groups:
-            models = [fit_without(fit, self.whole_runs, group) for fit in (one, other)]
-            errors.append(replace(self, runs=group)._errors(models))
+
+        def refit(group: Sequence[ObservedRun], fit: Fit) -> Model:
+            return fit_without(fit, self.whole_runs, group)
+
+        refits = iter(map_on_cores(refit, *zip(*product(groups, (one, other)), strict=True)))
+        pairs = zip(groups, zip(refits, refits, strict=True), strict=True)
+        errors = [replace(self, runs=group)._errors(models) for group, models in pairs]
         return find_less_lost(*np.concatenate(errors, axis=1))
 
     def keep_earning(self, selection: SearchResult) -> SearchResult:
@@ -212,9 +217,10 @@ class HoldoutValidation:
         """
         h, reduced = fit.hypothesis, selection.workspace.first_order.drop(fit, groups)
         errors = self._errors([h.model, *(trial.model for trial in reduced)])
-        for k, trial in enumerate(reduced):
-            if ratio(errors[1 + k], errors[0]) < 1.0 + REFIT_SHARE:
-                reduced[k] = selection.fit(trial).hypothesis
+        close = [k for k, e in enumerate(errors[1:]) if ratio(e, errors[0]) < 1.0 + REFIT_SHARE]
+        refits = map_on_cores(selection.fit, [reduced[k] for k in close])
+        for k, refit in zip(close, refits, strict=True):
+            reduced[k] = refit.hypothesis
         return reduced, self._errors([h.model, *(trial.model for trial in reduced)])
 
     def _errors(self, models: Sequence[Model]) -> Array:

@@ -15,6 +15,7 @@ from scipy.integrate import cumulative_simpson
 
 from rovsim.core.horizons import STANDARD_WINDOW
 from rovsim.core.progress import step
+from rovsim.core.threads import map_on_cores
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.innovations import batch_of, find_fluid_memory
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -42,7 +43,7 @@ def score_windows(models: Sequence[Model], runs: Sequence[ObservedRun]) -> Windo
     """Errors of models in windows of 2 s."""
     step()
     possible = [m for m in models if m.possible]
-    parts = [Windows(run).compare(possible) for run in runs]
+    parts = map_on_cores(lambda run: Windows(run).compare(possible), runs)
     rmse = np.full((len(models), 6), np.nan)
     counts = sum(part.shape[1] * run.axes for part, run in zip(parts, runs, strict=True))
     rmse[[m.possible for m in models]] = [
