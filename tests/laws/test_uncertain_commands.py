@@ -94,6 +94,23 @@ def test_what_thrusters_did_under_a_lost_line_is_not_held_against_a_model(tmp_pa
     assert np.linalg.norm(left) < 0.2 * np.linalg.norm(wrong)
 
 
+def test_a_lost_line_may_have_been_like_any_line_nearby(tmp_path):
+    """Of a controller that chatters, between two lines that are the same."""
+    base, (run,) = observed(tmp_path, duration=12.0, camera=Camera(**STILL))
+    log = run.motion.commands
+    odd = np.arange(len(log.time)) % 2 == 1
+    chatter = 0.3 * np.where(odd[:, None], 1.0, -1.0) * np.sign(log.value[0] + 0.01)
+    lost = int(np.argmax(log.time - run.edges[0] >= 6.0))
+    kept = np.arange(len(log.time)) != lost
+    right, lossy = (
+        replace(log, value=chatter),
+        replace(log, time=log.time[kept], value=chatter[kept]),
+    )
+    wrong, left = make_wrong(base, run, right, lossy)
+    assert np.linalg.norm(wrong) > 3.0
+    assert np.linalg.norm(left) < 0.3 * np.linalg.norm(wrong)
+
+
 @pytest.mark.parametrize("at", [6.004, 6.026, 6.043])
 def test_when_a_jittering_line_acted_is_not_held_against_a_model(tmp_path, at):
     base, (run,) = observed(tmp_path, duration=12.0, camera=Camera(**STILL))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy import ndarray as Array
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from rovsim.core.robust import LONG_STEP, STD_PER_MAD
 from rovsim.core.run import Commands
@@ -18,6 +19,7 @@ from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.least_squares import gram, solve
 from rovsim.estimation.observer.observed_run import ObservedRun
 
+NEARBY = 3  # lines before and after a lost one, which may have been like any of them
 SPIN_UP_SECONDS = 0.3  # s within which propellers and motors follow a command
 # Of all lines: at most so many lost ones count, and so many jittering ones; those with the largest
 # changes.
@@ -94,14 +96,17 @@ class UncertainCommands:
 def find_gaps(commands: Commands) -> Array:
     """Find where lines were lost while commands changed: from when the first was due (g, 2), s.
 
-    Where there are many, those over which commands changed most.
+    A lost line may have been as far from its neighbours as lines nearby are from each other: some
+    controllers chatter. Where there are many, those about which commands changed most.
     """
     time = commands.time
     steps = np.diff(time)
     if not len(steps):
         return np.empty((0, 2))
     usual = float(np.median(steps))
-    chosen = _choose_largest(commands, steps >= LONG_STEP * usual)
+    nearby = [f(commands.value, 2 * NEARBY, axis=0) for f in (maximum_filter1d, minimum_filter1d)]
+    change = (nearby[0] - nearby[1])[1:]
+    chosen = _choose_largest(change, steps >= LONG_STEP * usual)
     return np.column_stack([time[:-1] + usual, time[1:]])[chosen]
 
 
@@ -118,15 +123,20 @@ def find_jittering(commands: Commands) -> Array:
     std = STD_PER_MAD * np.median(np.abs(steps - usual)) / np.sqrt(2.0)
     if not MIN_JITTER_SECONDS < std < MAX_JITTER_SHARE * usual:
         return np.empty((0, 2))
-    at = commands.time[1:][_choose_largest(commands, steps < LONG_STEP * usual)]
+    change = np.abs(np.diff(commands.value, axis=0))
+    at = commands.time[1:][_choose_largest(change, steps < LONG_STEP * usual)]
     return at[:, None] + JITTER_STDS * std * np.array([-1.0, 1.0])
 
 
-def _choose_largest(commands: Commands, possible: Array) -> Array:
-    """Mask (m - 1,) of the possible steps of a log with the largest changes, of all its steps."""
-    change = np.max(np.abs(np.diff(commands.value, axis=0)), axis=1)
-    change[~possible] = 0.0
-    return np.asarray(change > max(0.0, np.quantile(change, 1.0 - MAX_SHARE)))
+def _choose_largest(change: Array, possible: Array) -> Array:
+    """Mask (m - 1,) of the possible steps of a log with the largest changes, of all its steps.
+
+    Args:
+        change: by how much each command (m - 1, c) may have changed.
+        possible: mask (m - 1,) of the steps to choose from.
+    """
+    largest = np.where(possible, np.max(np.abs(change), axis=1), 0.0)
+    return np.asarray(largest > max(0.0, np.quantile(largest, 1.0 - MAX_SHARE, method="higher")))
 
 
 def find_jumps(run: ObservedRun, model: Model, times: Array) -> Array:
