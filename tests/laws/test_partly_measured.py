@@ -4,9 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from numba import njit
+from scipy.spatial.transform import Rotation
 
 from rovsim.core.axes import AXES
 from rovsim.dynamics.effects.damping import QuadraticDamping
+from rovsim.dynamics.engine.observer import along_body
 from rovsim.evaluation.error_metrics import ErrorSums, subtract
 from rovsim.evaluation.growth import GrowthScore
 from rovsim.evaluation.ladder import score_step
@@ -94,3 +99,27 @@ def test_the_growth_of_the_error_is_seen_in_the_longest_windows(runs, horizons):
     assert (
         ScoreCollector.of([motion], {"nominal": {motion.run.id: replayed}}).growth == scored.growth
     )
+
+
+@njit
+def turned_to_body(v, q, measured):
+    """As kernels call it."""
+    return along_body(v, q, measured)
+
+
+angles = st.floats(-np.pi, np.pi)
+
+
+@given(st.lists(st.floats(-3.0, 3.0), min_size=6, max_size=6), st.tuples(angles, angles, angles))
+def test_a_correction_stays_where_it_is_in_the_world_however_far_a_vehicle_tilts(v, euler):
+    """Upside down, a depth that is too small says that the vehicle moves up along its own heave."""
+    assume(abs(np.cos(euler[1])) > 1e-3)  # where it looks straight up it has no heading
+    # a pitch beyond a right angle is another heading
+    yaw = euler[0] + np.pi * (np.cos(euler[1]) < 0.0)
+    R, level = Rotation.from_euler("ZYX", euler), Rotation.from_euler("Z", yaw)
+    q = tuple(R.as_quat(scalar_first=True))
+    partly, whole = np.array([0.0, 0.0, 1.0, 1.0, 1.0]), np.array([1.0, 1.0, 1.0, 1.0, 0.0])
+    turned = turned_to_body(tuple(v), q, partly)
+    np.testing.assert_allclose(R.apply(turned[:3]), level.apply(v[:3]), atol=1e-6)
+    np.testing.assert_array_equal(turned[3:], v[3:])
+    np.testing.assert_array_equal(turned_to_body(tuple(v), q, whole), v)

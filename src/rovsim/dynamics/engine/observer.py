@@ -120,12 +120,21 @@ def velocity_error(mean, y):
 
 
 @inline_internal
+def along_body(v, q, measured):
+    """A vector (6) with its linear part turned from the axes of position errors to body axes."""
+    if measured[4] == 1.0:
+        d = into_body(rotation(q), into_world(rotation(heading(q)), v[:3]))
+        return d[0], d[1], d[2], v[3], v[4], v[5]
+    return v
+
+
+@inline_internal
 def corrected(x, y, e, measured, gain_pose, gain_nu, by_velocity):
     """The state corrected by an innovation e (6), with gains (6) on the pose and on nu.
 
     With `by_velocity`, e corrects nu alone, and the measured pose of y replaces the predicted one.
     """
-    nu = add6(x.nu, 1.0, each6(gain_nu, e))
+    nu = add6(x.nu, 1.0, along_body(each6(gain_nu, e), x.attitude, measured))
     if by_velocity:
         return State((y[0], y[1], y[2]), (y[3], y[4], y[5], y[6]), nu)
     k = each6(gain_pose, e)
@@ -173,7 +182,7 @@ def observe(extra, jobs, world, correction, out):
             y = correction.readings[correction.row[m], k]
             e = velocity_error(mean, y) if by_velocity else pose_error(x, y, measured)
             e = each6(vector6(correction.seen[k]), e)
+            a = add6(a, 1.0, along_body(each6(gain_a, e), x.attitude, measured))
             x = renormalised(corrected(x, y, e, measured, gain_pose, gain_nu, by_velocity))
-            a = add6(a, 1.0, each6(gain_a, e))
             for i in range(6):
                 out[at + k - first - 1, i] = e[i]
