@@ -7,6 +7,7 @@ workspace              the runs, the candidates, one noise for all, and what was
 promising              which candidates are worth a fit
 curvature              proposes effects that to first order do what accepted ones do
 pruning                removes free parameters that are not worth their penalty
+wide_effects           replaces an effect of many parameters by several narrower ones
 imitation              removes what undetermined values of another effect make unnecessary
 thresholds             finds values of thresholds by trying them, as derivatives do not lead there
 search_result          where a search ended: the accepted effects and their rivals

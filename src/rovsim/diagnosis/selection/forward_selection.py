@@ -1,8 +1,11 @@
 """Which effects are missing: add the likeliest, refit all, try swaps, remove what is not needed."""
 
 from dataclasses import replace
+from functools import partial
 
+from rovsim.core.threads import map_on_cores
 from rovsim.diagnosis.selection.curvature import list_curved
+from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.imitation import drop_imitations
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
@@ -25,12 +28,14 @@ from rovsim.diagnosis.selection.vehicle_file.steps import (
     prefer_file,
     suspect_loose_file,
 )
+from rovsim.diagnosis.selection.wide_effects import spread_wide
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.hypothesis import Hypothesis
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 TRIAL_ROUNDS = 3  # of trials, where none of the first additions is accepted
+SWAPS_AT_ONCE = 4  # refitted side by side, on however many cores; few are accepted
 MIN_LR_OF_SWAP = 1.0  # of the deviance: less is not worth another name
 # Of what the last addition explained: while more is sought, less is not worth a swap.
 MIN_SWAP_SHARE = 0.01
@@ -72,10 +77,12 @@ def _add_likeliest(
         )
         batch = keep_close(proposals, max(workspace.settings.trials, level))
         proposals = [p for p in proposals if p not in batch]
-        starts = (
-            place_thresholds(workspace, current.hypothesis.with_term(p.term), p.term) for p in batch
-        )
-        fits = [(workspace.fit(start), p.term.id) for start, p in zip(starts, batch, strict=True)]
+
+        def refit(p: Proposal) -> Fit:
+            start = current.hypothesis.with_term(p.term)
+            return workspace.fit(place_thresholds(workspace, start, p.term))
+
+        fits = zip(map_on_cores(refit, batch), (p.term.id for p in batch), strict=True)
         for trial, name in sorted(fits, key=lambda pair: workspace.score(pair[0]), reverse=True):
             if not _beats_chance(workspace, trial, current, threshold):
                 break
@@ -129,21 +136,17 @@ def _try_swaps(
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
     removals = workspace.first_order.remove_each(current)
-    for term, removed in zip(current.hypothesis.terms, removals, strict=True):
-        for p in find_swaps(workspace, term, removed, trials):
-            trial = None
-            deficit = removed.ss_increase - workspace.penalty * term.choices - p.net_decrease
-            if (
-                deficit < 0.0
-                or measure_explained(workspace, p) > PROMISING_SHARE * removed.ss_increase
-            ):
-                start, deficit = removed.hypothesis.with_term(p.term), HOPELESS_LR
-                start = place_thresholds(workspace, start, p.term)
-                trial = workspace.fit_unless_below(
-                    start, current, workspace.score(current) - tracked_deficit
-                )
+    swaps = [
+        (term, removed, p)
+        for term, removed in zip(current.hypothesis.terms, removals, strict=True)
+        for p in find_swaps(workspace, term, removed, trials)
+    ]
+    least = workspace.score(current) - tracked_deficit
+    refit = partial(_refit_if_promising, workspace, current, least)
+    for some in (swaps[k : k + SWAPS_AT_ONCE] for k in range(0, len(swaps), SWAPS_AT_ONCE)):
+        refits = map_on_cores(refit, *zip(*some, strict=True))
+        for (term, _, p), (trial, deficit) in zip(some, refits, strict=True):
             if trial is not None:
-                deficit = workspace.score(current) - workspace.score(trial)
                 if deficit < -min_gain and not (loose and file.explains(trial, p.term.id)):
                     swapped = prune(workspace, trial)
                     return _try_swaps(workspace, swapped, trials, min_gain, tracked_deficit)
@@ -151,6 +154,25 @@ def _try_swaps(
                 deficit = max(0.0, weight)  # likelier, but not beside a loose file: undecided
             rivals.append(Rival(p.term.id, term.id, deficit, trial))
     return current, rivals
+
+
+def _refit_if_promising(
+    workspace: SearchWorkspace, current: Fit, least: float, term: Term, rest: Removed, p: Proposal
+) -> tuple[Fit | None, float]:
+    """Refit with another effect in the place of a term, where it explains enough to first order.
+
+    Returns:
+        The fit, and by how much its score is smaller than that of `current`. None where it was not
+        made, or given up since its score will surely not reach `least`.
+    """
+    deficit = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
+    explained = measure_explained(workspace, p)
+    if deficit >= 0.0 and explained <= PROMISING_SHARE * rest.ss_increase:
+        return None, deficit
+    start = place_thresholds(workspace, rest.hypothesis.with_term(p.term), p.term)
+    trial = workspace.fit_unless_below(start, current, least)
+    deficit = HOPELESS_LR if trial is None else workspace.score(current) - workspace.score(trial)
+    return trial, deficit
 
 
 def change_mode(workspace: SearchWorkspace, current: Fit) -> Fit:
@@ -220,6 +242,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     stopped = not _may_add(workspace, current)
     workspace = workspace.relinearise_if_changed(current)
     current = swap_terms(workspace, current)
+    current = spread_wide(workspace, current, partial(_add_and_swap, seed=seed), MIN_LR_OF_SWAP)
     current = drop_imitations(workspace, change_mode(workspace, current))
     verdict = judge_beside_file(workspace, prefer_file(workspace, current))
     current = free_shape(workspace, fix_gain(workspace, verdict.fit))
@@ -238,8 +261,7 @@ def _add_and_swap(
         if extended is None:
             break
         gain = workspace.score(extended) - workspace.score(current)
-        workspace = workspace.update_after(extended)
-        workspace, polished = prefer_steady(workspace, workspace.fit(extended.hypothesis))
+        workspace, polished = prefer_steady(*workspace.refit_updated(extended))
         polished = free_shape(workspace, move_thresholds(workspace, polished))
         current = swap_terms(workspace, polished, max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain))
     return workspace, current

@@ -13,6 +13,7 @@ from typing import Sequence
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.threads import map_on_cores
 from rovsim.diagnosis.selection.pruning import drop_parameters
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -45,7 +46,8 @@ def fit_jointly(
         found: terms that a search accepted.
     """
     kind = workspace.bank.runs[0].motion.commands.kind
-    results = [_fit_in_rounds(workspace, start) for start in _list_starts(base, moved, kind)]
+    starts = _list_starts(base, moved, kind)
+    results = map_on_cores(lambda start: _fit_in_rounds(workspace, start), starts)
     results.sort(key=lambda pair: pair[0].score(pair[1]), reverse=True)
     best_workspace, best_fit = results[0]
     best_fit = prune_together(best_workspace, add_found(best_workspace, best_fit, found))
@@ -75,8 +77,7 @@ def _fit_in_rounds(workspace: SearchWorkspace, start: Hypothesis) -> tuple[Searc
     """Fit a hypothesis, and twice again with filters and noise that suit the fit before."""
     fit = workspace.fit(start, PRIOR_STD)
     for _ in range(FIT_ROUNDS):
-        workspace = workspace.update_after(fit)
-        fit = workspace.fit(fit.hypothesis, PRIOR_STD)
+        workspace, fit = workspace.refit_updated(fit, PRIOR_STD)
     return workspace, fit
 
 

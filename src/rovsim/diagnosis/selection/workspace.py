@@ -87,6 +87,15 @@ class SearchWorkspace:
             return self
         return workspace.with_noise(h, fit_remaining_noise(sensitivities, h, self.noise, rounds=1))
 
+    def refit_updated(self, fit: Fit, prior_std: float = np.inf) -> tuple["SearchWorkspace", Fit]:
+        """A fit, refitted with filters, columns and noise that suit it.
+
+        Weaker corrections may let the model diverge; both then stay as they are.
+        """
+        updated = self.update_after(fit)
+        refit = updated.fit(fit.hypothesis, prior_std)
+        return (updated, refit) if refit.is_finite else (self, fit)
+
     def relinearise_if_changed(self, current: Fit) -> "SearchWorkspace":
         """A workspace whose candidates are linearised with the accepted effects in place.
 

@@ -1,0 +1,45 @@
+"""Does an effect with many parameters stand in for several narrower ones?
+
+Accepted first, it may explain what a few numbers of several effects do, none of which could take
+its place by itself. No swap leads there. For example, added masses of all axes and a drag were sure
+in a free decay in which the centre of buoyancy had moved and a drag and a fluid memory were hidden.
+"""
+
+from typing import Callable
+
+from rovsim.diagnosis.selection.promising import PROMISING_SHARE, measure_explained
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
+from rovsim.estimation.file_effects import has_loose_file
+from rovsim.estimation.fit import Fit
+
+MIN_WIDE = 4  # free parameters: several effects of the catalogue have one to three
+SearchOn = Callable[[SearchWorkspace, Fit], tuple[SearchWorkspace, Fit]]
+
+
+def spread_wide(
+    workspace: SearchWorkspace, current: Fit, search_on: SearchOn, min_gain: float
+) -> Fit:
+    """Put a narrower effect in the place of a wide one and search on; keep what is likelier.
+
+    A loose vehicle file stays as it is: all of it was freed together.
+
+    Args:
+        workspace: of the search.
+        current: the fit so far.
+        search_on: adds effects to a fit, and swaps, until none beats chance.
+        min_gain: by how much the score has to be larger in the end.
+    """
+    if has_loose_file(current.hypothesis):
+        return current
+    removals = workspace.first_order.remove_each(current)
+    for term, rest in zip(current.hypothesis.terms, removals, strict=True):
+        if term.choices < MIN_WIDE:
+            continue
+        for p in rest.others:
+            narrower = p.term.id != term.id and p.term.choices < term.choices
+            if narrower and measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
+                start = workspace.fit(rest.hypothesis.with_term(p.term))
+                found = workspace.fit(search_on(workspace, start)[1].hypothesis)
+                if workspace.score(found) > workspace.score(current) + min_gain:
+                    return spread_wide(workspace, found, search_on, min_gain)
+    return current
