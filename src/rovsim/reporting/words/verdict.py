@@ -36,8 +36,8 @@ LOST_SENTENCE = (
     "every reading."
 )
 NO_TEST_RUN = (
-    "No test run could be used, so there is no error to report. "
-    "Write `split: test` for a run in campaign.yaml to hold it out."
+    "No test run could be used, so there is no error to report. Either no run of campaign.yaml has "
+    "`split: test`, or those that have are too short or hardly move; `rovsim compare` says which."
 )
 NO_TRAIN_RUN = "Nothing could be judged: no train run could be used, and only those are looked at."
 RUNS_AWAY = "The model cannot be judged: it runs away from the train runs."
