@@ -5,7 +5,7 @@ import pytest
 
 from flown import observed
 from rovsim.diagnosis import validated_search
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.estimation.observer.divergence import ModelLost, require_finite
@@ -47,7 +47,7 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
 
     monkeypatch.setattr(validated_search, "require_finite", lose_once)
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
-    found = diagnose_train_runs(base, [run], SearchSettings(), catalogue=few)
+    found = diagnose_train_runs(base, [run], DiagnosisSettings(), few)
     assert found.fit is not None
     assert found.usable.lost == {"a": pytest.approx(21.0, abs=0.1)}
     assert found.usable.seconds < 21.0

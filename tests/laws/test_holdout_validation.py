@@ -16,6 +16,9 @@ from rovsim.dynamics.effects.damping import LinearDamping, QuadraticDamping
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.estimation.observer.windows import Windows
+from rovsim.evaluation.error_metrics import subtract
+from rovsim.simulation.replay import replay
+from rovsim.simulation.settings import SimulationSettings
 from worlds import model
 
 
@@ -63,6 +66,16 @@ def test_a_body_that_cannot_exist_replays_nothing(tmp_path):
     passed, whole = holdout.validate(impossible)
     assert passed.best.hypothesis.terms == ()
     assert not whole
+
+
+def test_predictions_pass_the_filter_of_the_measurement_as_in_the_reported_errors(tmp_path):
+    base, runs = observed(tmp_path, duration=60.0)
+    _, (held,) = keep_apart(runs)
+    validation, windows = HoldoutValidation([held], runs), Windows(held)
+    replayed = replay(base, held.motion, SimulationSettings().only(2.0), open_loop=False)
+    e = subtract(held.motion, replayed.horizons["2"]).nu / validation.spread
+    by_window = [np.mean(e[windows.number == k] ** 2) for k in range(len(windows.spans))]
+    np.testing.assert_allclose(validation._errors([base])[0], by_window, rtol=1e-9)
 
 
 def test_where_a_current_wanders_the_windows_of_one_run_are_one_sample(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -72,5 +72,6 @@ def test_a_filter_that_replays_worse_than_nothing_is_refused(tmp_path, monkeypat
     monkeypatch.setattr(
         "rovsim.diagnosis.validated_search.find_smoothing", lambda base, runs: wrong
     )
-    found = diagnose_train_runs(base, runs, SearchSettings(most_effects=1), catalogue=built_in())
+    one_at_most = DiagnosisSettings(search=SearchSettings(most_effects=1))
+    found = diagnose_train_runs(base, runs, one_at_most, built_in())
     assert found.verdict == "adequate"

@@ -11,7 +11,7 @@ from rovsim.benchmarks.blind.laws import carried
 from rovsim.core.odds import lr_statistic_of
 from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings, SearchSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue, built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -41,7 +41,7 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
     rate = 0.004  # (m/s) / s^0.5: as slow as one that can be told from turbulence
     hidden = (hide("current_drift", rate=rate), hide("net_buoyancy", force=4.0))
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
-    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, DiagnosisSettings(), built_in())
     assert found.verdict == "missing_effects"
     named = {one.term.id: one for one in found.selected}
     assert set(named) == {"net_buoyancy", "current_drift"}
@@ -73,7 +73,7 @@ def test_a_diagnosis_names_it_and_finds_its_rate(tmp_path):
 )
 def test_nothing_else_is_taken_for_it(tmp_path, hidden):
     base, runs = observed(tmp_path, duration=60.0, effects=hidden)
-    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, DiagnosisSettings(), built_in())
     assert {one.term.id for one in found.selected} == {one.effect for one in hidden}
     assert found.fit.noise.drift is None
 

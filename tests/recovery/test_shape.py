@@ -3,7 +3,7 @@
 import pytest
 
 from flown import observed
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -18,7 +18,7 @@ def test_how_far_from_the_surface_drag_grows(tmp_path, gain, length):
     values = {"gain": gain, "length_scale": length}
     hidden = EffectEntry(effect="surface_proximity", parameters=values)
     base, runs = observed(tmp_path, duration=60.0, effects=(hidden,))
-    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, DiagnosisSettings(), built_in())
     assert found.verdict == "missing_effects"
     (near,) = found.selected
     assert near.term.id == "surface_proximity"

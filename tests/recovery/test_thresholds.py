@@ -9,7 +9,7 @@ import yaml
 
 from flown import observed
 from rovsim.core.run import Commands
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
@@ -29,7 +29,7 @@ def test_a_wide_dead_band(tmp_path, width):
     path.write_text(yaml.safe_dump(vehicle))
     hidden = EffectEntry(effect="thruster_deadband", parameters={"width": width})
     base, runs = observed(tmp_path, duration=60.0, vehicle=str(path), effects=(hidden,))
-    found = diagnose_train_runs(base, runs, SearchSettings(), catalogue=built_in())
+    found = diagnose_train_runs(base, runs, DiagnosisSettings(), built_in())
     assert [one.term.id for one in found.selected] == ["thruster_deadband"]
     (band,) = found.selected
     assert abs(band.term.effect["width"] - width) < 3.0 * band.std["width"]

@@ -87,9 +87,7 @@ def diagnose_campaign(
     train = prepare_train(
         runs, settings.replay, catalogue, base.body.free, settings.search.most_seconds
     )
-    diagnosis = diagnose_train_runs(
-        base, train.runs, settings.search, catalogue=catalogue, seed=settings.seed
-    )
+    diagnosis = diagnose_train_runs(base, train.runs, settings, catalogue)
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
     ladder, diverged_runs = _build_ladder(diagnosis, runs, settings, catalogue)

@@ -58,7 +58,7 @@ from rovsim.diagnosis.selection.withdrawn_probability import (
     find_small,
     withdraw_probability,
 )
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
 from rovsim.diagnosis.uncertainty.identifiability import find_perhaps_absent
@@ -154,10 +154,8 @@ class TrainDiagnosis:
 def diagnose_train_runs(
     base: Model,
     train: Sequence[ObservedRun],
-    settings: SearchSettings,
-    *,
+    settings: DiagnosisSettings,
     catalogue: Catalogue,
-    seed: int = 0,
 ) -> TrainDiagnosis:
     """Find what a model lacks on the train runs of a campaign.
 
@@ -166,9 +164,8 @@ def diagnose_train_runs(
     Args:
         base: the model that is diagnosed.
         train: the train runs.
-        settings: how the search decides.
+        settings: how the search decides, and how runs are filtered and replayed.
         catalogue: the effects that may be missing.
-        seed: of the draws that tell what chance explains.
     """
     one_thread = threadpool_limits(1, "blas")  # matrices are too small for several to help
     # models may diverge during a search: they are refused for numbers that are not finite
@@ -176,7 +173,7 @@ def diagnose_train_runs(
         usable = select_usable(train)
         while usable.enough:
             try:
-                problem = DiagnosisProblem(base, usable, settings, catalogue, seed)
+                problem = DiagnosisProblem(base, usable, settings, catalogue)
                 return _summarise(search_and_validate(problem))
             except ModelLost as diverged:
                 runs, lost_from = diverged.leave_out(usable.runs)

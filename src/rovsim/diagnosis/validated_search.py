@@ -27,7 +27,7 @@ from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, kee
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
-from rovsim.diagnosis.settings import SearchSettings
+from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.estimation.candidates import list_candidates
@@ -50,17 +50,15 @@ class DiagnosisProblem:
     Attributes:
         base: the model that is diagnosed.
         usable: the train runs; each says whether the current may wander in it.
-        settings: how the search decides.
+        settings: how the search decides, and how runs are filtered and replayed.
         catalogue: the effects that may be missing.
-        seed: of the draws that tell what chance explains.
         cameras_may_smooth: whether a filter of the cameras is looked for.
     """
 
     base: Model
     usable: UsableRuns
-    settings: SearchSettings
+    settings: DiagnosisSettings
     catalogue: Catalogue
-    seed: int
     cameras_may_smooth: bool = True
 
 
@@ -103,15 +101,16 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
         begin_stage("searching")
-        selection = search(start.workspace, start.base_fit, problem.seed)
+        selection = search(start.workspace, start.base_fit, problem.settings.seed)
         return (
             absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
         )
 
     starts = _make_starts(problem, smoothing, training)
     start, selection, smoothing = search_with_consistent_filter(starts, search_from)
-    holdout = HoldoutValidation(reserved, usable.runs, selection.best.noise.drift is not None)
-    answer = _unmask(settle_noticed(selection, usable, holdout, problem.seed))
+    drifts = selection.best.noise.drift is not None
+    holdout = HoldoutValidation(reserved, usable.runs, drifts, problem.settings)
+    answer = _unmask(settle_noticed(selection, usable, holdout, problem.settings.seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
         return search_and_validate(replace(problem, cameras_may_smooth=False))
     begin_stage("checking")
@@ -209,5 +208,7 @@ def _observe(
         if not noise.drift or bank.paths:
             break
         bank = bank.redesign(base, noise)  # forces differ where the water moves
-    workspace = SearchWorkspace.begin(WhiteColumns(bank, sensitivities, noise), problem.settings)
+    workspace = SearchWorkspace.begin(
+        WhiteColumns(bank, sensitivities, noise), problem.settings.search
+    )
     return workspace.with_noise(Hypothesis(base), noise)

@@ -10,7 +10,7 @@ unknown physics is left (`keep_earning`), whether the cameras smooth (`refuses`)
 answers is better (`prefers`), and whether a law holds (`keeps`).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
 from typing import Callable, Sequence
@@ -37,6 +37,8 @@ from rovsim.estimation.observer.residual_source import evaluate_possible
 from rovsim.estimation.observer.windows import Windows
 from rovsim.estimation.replay_fit import MIN_SPREAD, fit_without
 from rovsim.evaluation.error_metrics import measured_spread
+from rovsim.simulation.replay import ReplayCase, predict_all
+from rovsim.simulation.settings import SimulationSettings
 
 Split = Callable[[Hypothesis], list[tuple[Term, ...]]]
 
@@ -75,11 +77,14 @@ class HoldoutValidation:
         whole_runs: the train runs that they belong to; these say how much each axis varies.
         current_drifts: whether the current wanders. What all windows of a run have in common may
             then be chance, so a run counts as one window.
+        simulation: filter of the measurement, and the steps of a replay. Predictions pass the same
+            filter, as in the reported errors: else a lag, which smooths them, replays better.
     """
 
     runs: Sequence[ObservedRun]
     whole_runs: Sequence[ObservedRun]
     current_drifts: bool = False
+    simulation: SimulationSettings = field(default_factory=SimulationSettings)
 
     @cached_property
     def spread(self) -> Array:
@@ -232,7 +237,8 @@ class HoldoutValidation:
         parts: list[Array] = []
         for run in self.runs:
             windows = Windows(run)
-            e = evaluate_possible(models, len(windows.number), partial(_compare_axes, windows))
+            compare = partial(_compare_axes, windows, self.simulation)
+            e = evaluate_possible(models, len(windows.number), compare)
             with np.errstate(over="ignore", invalid="ignore"):  # of a model that diverges
                 squares = np.mean((e / self.spread[:, None]) ** 2, axis=1)
             number = 0 * windows.number if self.current_drifts else windows.number
@@ -240,9 +246,15 @@ class HoldoutValidation:
         return np.stack(parts, axis=1)
 
 
-def _compare_axes(windows: Windows, models: Sequence[Model]) -> Array:
+def _compare_axes(
+    windows: Windows, simulation: SimulationSettings, models: Sequence[Model]
+) -> Array:
     """Velocity errors (m, 6, n) of m models at the n compared samples of a run, m/s and rad/s."""
-    return windows.compare(models).swapaxes(1, 2)
+    run, at = windows.run, windows.compared
+    cases = [ReplayCase(model, run.motion) for model in models]
+    nu = np.stack([p.nu[at] for p in predict_all(cases, windows.spans, simulation)])
+    e = nu - run.motion.nu[at]
+    return np.where(run.axes, e, 0.0).swapaxes(1, 2)
 
 
 def _list_file_effects(h: Hypothesis) -> list[tuple[Term, ...]]:
