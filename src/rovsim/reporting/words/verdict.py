@@ -37,7 +37,8 @@ LOST_SENTENCE = (
 )
 NO_TEST_RUN = (
     "No test run could be used, so there is no error to report. Either no run of campaign.yaml has "
-    "`split: test`, or those that have are too short or hardly move; `rovsim compare` says which."
+    "`split: test`, or those that have are too short or hardly move: see the report of "
+    "`rovsim compare`."
 )
 NO_TRAIN_RUN = "Nothing could be judged: no train run could be used, and only those are looked at."
 RUNS_AWAY = "The model cannot be judged: it runs away from the train runs."
