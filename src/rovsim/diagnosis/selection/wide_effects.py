@@ -7,12 +7,13 @@ in a free decay in which the centre of buoyancy had moved and a drag and a fluid
 
 from typing import Callable
 
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.promising import PROMISING_SHARE, measure_explained
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 
-MIN_WIDE = 4  # free parameters: several effects of the catalogue have one to three
+MIN_WIDE = 4  # axes with a number of their own; other effects have one to three numbers
 SearchOn = Callable[[SearchWorkspace, Fit], tuple[SearchWorkspace, Fit]]
 
 
@@ -33,7 +34,7 @@ def spread_wide(
         return current
     removals = workspace.first_order.remove_each(current)
     for term, rest in zip(current.hypothesis.terms, removals, strict=True):
-        if term.choices < MIN_WIDE:
+        if sum(name in AXES for name in term.free) < MIN_WIDE:
             continue
         for p in rest.others:
             narrower = p.term.id != term.id and p.term.choices < term.choices
