@@ -104,9 +104,9 @@ def find_gaps(commands: Commands) -> Array:
     if not len(steps):
         return np.empty((0, 2))
     usual = float(np.median(steps))
-    nearby = [f(commands.value, 2 * NEARBY, axis=0) for f in (maximum_filter1d, minimum_filter1d)]
-    change = (nearby[0] - nearby[1])[1:]
-    chosen = _choose_largest(change, steps >= LONG_STEP * usual)
+    highest = maximum_filter1d(commands.value, 2 * NEARBY, axis=0)
+    lowest = minimum_filter1d(commands.value, 2 * NEARBY, axis=0)
+    chosen = _choose_largest((highest - lowest)[1:], steps >= LONG_STEP * usual)
     return np.column_stack([time[:-1] + usual, time[1:]])[chosen]
 
 
@@ -132,10 +132,10 @@ def _choose_largest(change: Array, possible: Array) -> Array:
     """Mask (m - 1,) of the possible steps of a log with the largest changes, of all its steps.
 
     Args:
-        change: by how much each command (m - 1, c) may have changed.
+        change: by how much each command (m - 1, c) may have changed, not negative.
         possible: mask (m - 1,) of the steps to choose from.
     """
-    largest = np.where(possible, np.max(np.abs(change), axis=1), 0.0)
+    largest = np.where(possible, np.max(change, axis=1), 0.0)
     return np.asarray(largest > max(0.0, np.quantile(largest, 1.0 - MAX_SHARE, method="higher")))
 
 
