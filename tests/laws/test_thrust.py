@@ -22,6 +22,7 @@ from rovsim.dynamics.effects.thrusters import (
     VoltageSag,
 )
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
+from rovsim.dynamics.laws.thruster_rate import PropellerRate, ThrustRate
 from rovsim.dynamics.model import nominal
 from rovsim.dynamics.vehicle import Vehicle
 from worlds import model, sticks
@@ -129,6 +130,47 @@ def test_play_may_grow_and_be_computed_in_pieces():
         force, state = play.respond(piece, 0.05, state)
         parts.append(force)
     np.testing.assert_array_equal(np.concatenate(parts), whole)
+
+
+def ramped(asked, rate, h, start, parts=1000):
+    """Means over steps, and the last value, of what follows at a limited rate: small steps."""
+    F, means = np.array(start, dtype=float), []
+    for wanted in asked:
+        passed = np.empty((parts, len(F)))
+        for k in range(parts):
+            before = F
+            F = F + np.clip(wanted - F, -rate * h / parts, rate * h / parts)
+            passed[k] = 0.5 * (before + F)
+        means.append(passed.mean(axis=0))
+    return np.array(means), F
+
+
+@pytest.mark.parametrize("law", [ThrustRate(ramp=0.05), PropellerRate(ramp=0.05)])
+@pytest.mark.parametrize("start", [None, (-3.0, 0.0, 4.0)])
+def test_what_changes_at_a_limited_rate_gets_there_as_a_ramp_does(law, start):
+    random, h, rate = np.random.default_rng(4), 0.05, 1.0 / 0.05
+    asked = np.repeat(random.normal(scale=5.0, size=(8, 3)), 6, axis=0)
+    root = isinstance(law, PropellerRate)
+    static = asked * np.abs(asked) if root else asked
+    found, after = law.respond(static, h, None if start is None else np.array(start))
+    mean, last = ramped(asked, rate, h, asked[0] if start is None else start)
+    largest = rate * h / 1000  # what a small step changes
+    np.testing.assert_allclose(after, last, atol=2.0 * largest)
+    np.testing.assert_allclose(found, mean * np.abs(mean) if root else mean, atol=50.0 * largest)
+    assert np.abs(found - static).max() > 1.0
+
+
+@pytest.mark.parametrize("law", [ThrustRate, PropellerRate])
+def test_a_limited_rate_can_be_computed_in_pieces_and_may_be_none(law):
+    asked = np.random.default_rng(1).normal(scale=5.0, size=(60, 8))
+    whole, last = law(ramp=0.1).respond(asked, 0.05, None)
+    state, parts = None, []
+    for piece in np.split(asked, [1, 20, 21]):
+        force, state = law(ramp=0.1).respond(piece, 0.05, state)
+        parts.append(force)
+    np.testing.assert_array_equal(np.concatenate(parts), whole)
+    np.testing.assert_array_equal(state, last)
+    np.testing.assert_array_equal(law().respond(asked, 0.05, None)[0], asked)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 8, 12])

@@ -12,6 +12,7 @@ from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.force_curve import CurveExponent
 from rovsim.dynamics.effects.thrusters import ThrusterLag
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
+from rovsim.dynamics.laws.thruster_rate import ThrustRate
 from rovsim.estimation.candidates import list_candidates
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
@@ -28,10 +29,14 @@ SHAPED = tuple(
 
 @pytest.mark.parametrize(
     ("hidden", "masked"),
-    [({"unlisted": [ThrusterPlay(band=2.2)]}, True), ({"effects": SHAPED}, False)],
+    [
+        ({"unlisted": [ThrusterPlay(band=2.2)]}, True),
+        ({"unlisted": [ThrustRate(ramp=0.07)]}, True),
+        ({"effects": SHAPED}, False),
+    ],
 )
-def test_play_is_seen_behind_what_shapes_the_thrust(tmp_path, hidden, masked):
-    """It was a lag, a curve and six more, five of them at a probability of one."""
+def test_how_thrusters_answer_is_seen_behind_what_shapes_the_thrust(tmp_path, hidden, masked):
+    """Play was a lag, a curve and six more, five of them at a probability of one."""
     base, runs = observed(tmp_path, duration=30.0, **hidden)
     terms = (Term(LAG, ("time_constant",)), Term(CURVE, ("exponent",)))
     bank = FilterBank.design(runs, base, FIRST_NOISE)

@@ -10,6 +10,7 @@ from math import exp, sqrt, tanh
 
 import numpy as np
 from numba import njit
+from numpy import ndarray as Array
 
 from rovsim.benchmarks.blind.outside import (
     OUTSIDE_EFFECTS,
@@ -20,7 +21,13 @@ from rovsim.benchmarks.blind.outside import (
     drawn,
 )
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import Coefficients, Effect, Parameter, Wrench
+from rovsim.dynamics.effects.base import (
+    Coefficients,
+    Effect,
+    Parameter,
+    ThrusterDynamics,
+    Wrench,
+)
 
 # Linear (N s/m) and quadratic (N s2/m2) drag of the default vehicle in surge, sway, heave.
 DRAG_COEFFICIENTS = ((13.7, 141.0), (0.0, 217.0), (33.0, 190.0))
@@ -255,6 +262,28 @@ class SideWake(Coefficients):
             body.remember(memory, self["time_constant"])
 
 
+class Slew(ThrusterDynamics):
+    """Speed controllers that ramp the thrust: it changes at a limited rate."""
+
+    id = "slew"
+    listed = False
+    equation = r"|\dot F| \le r"
+    neglects = "a rate that depends on the thrust"
+    source = "definition"
+    parameters = (Parameter("rate", "N/s", "r", low=0.0, scale=30.0),)
+
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Change step by step, as a reference for the law that a diagnosis proposes."""
+        F = force[0] if state is None else state
+        if not self["rate"]:
+            return force, force[-1]
+        out, most = np.empty_like(force), self["rate"] * h
+        for row, static in zip(out, force, strict=True):
+            begin, F = F, F + np.clip(static - F, -most, most)
+            row[:] = 0.5 * (begin + F)
+        return out, F
+
+
 @dataclass(frozen=True)
 class KnownLaw:
     """A law, and what an equation for it has to be made of.
@@ -292,6 +321,7 @@ LAWS: dict[str, KnownLaw] = {
         _law(Compression, "force", "depth"),
         _law(SideWake, "sway", "v memory"),
         _law(Backlash, "thrusters", "thrust memory"),
+        _law(Slew, "thrusters", "thrust memory"),
     )
 }
 

@@ -1,20 +1,24 @@
-"""On which axis a law acts, how strongly, and whether structure is left there."""
+"""On which axis a law acts, how strongly, and whether it leaves structure there."""
 
-from typing import NamedTuple, Sequence
+from math import sqrt
+from typing import Iterable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.form import Form, get_law, split_law
-from rovsim.diagnosis.structure.residual_structure import find_structure
+from rovsim.diagnosis.structure.residual import Structure
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.innovations import accelerate
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.simulation.measured_states import undo_mocap_view
+
+# Of the law: less is left by a law that is right, but is stated as simply as it is (at which value
+# thrusters begin, how they move within a step). A law that lacks a term leaves a tenth or more.
+MAX_REMAINDER = 0.05
 
 
 class Action(NamedTuple):
@@ -23,10 +27,25 @@ class Action(NamedTuple):
     Attributes:
         sizes: RMS of each of its terms, N or N m.
         axis: on which the whole law stands out most from the disturbance.
+        prominence: RMS of the whole law there, over that of the disturbance.
     """
 
     sizes: tuple[float, ...]
     axis: str
+    prominence: float
+
+    def leaves_structure(self, structures: Iterable[Structure], margin: float = 1.0) -> bool:
+        """Whether a law leaves structure on its axis that is not small beside the law itself.
+
+        Args:
+            structures: what the fit with the law leaves, on all axes.
+            margin: times what chance allows.
+        """
+        return any(
+            s.times_limit > margin and sqrt(s.share) > MAX_REMAINDER * self.prominence
+            for s in structures
+            if s.axis == self.axis
+        )
 
 
 def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
@@ -43,13 +62,9 @@ def find_action(form: Form, fit: Fit, runs: Sequence[ObservedRun]) -> Action:
     )
     rms = np.sqrt(np.mean(accelerations.sum(axis=0) ** 2, axis=0))
     sizes = np.sqrt(np.mean(np.sum((accelerations @ model.M.T) ** 2, axis=2), axis=1))
-    return Action(tuple(sizes.tolist()), AXES[int(np.argmax(rms / fit.noise.disturbance_std))])
-
-
-def leaves_structure(axis: str, fit: Fit, bank: FilterBank, margin: float) -> bool:
-    """Whether a fit leaves structure on an axis: more than `margin` times what chance allows."""
-    structures = find_structure(fit, bank)
-    return any(s.axis == axis and s.times_limit > margin for s in structures)
+    prominence = rms / fit.noise.disturbance_std
+    axis = int(np.argmax(prominence))
+    return Action(tuple(sizes.tolist()), AXES[axis], float(prominence[axis]))
 
 
 def _evaluate_accelerations(model: Model, effects: Sequence[Effect], run: ObservedRun) -> Array:

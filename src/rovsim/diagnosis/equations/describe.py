@@ -110,7 +110,7 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
         for item in law.beside
     ]
     return ProposedEquation(
-        axis=law.axis,
+        axis=law.action.axis,
         equation=law.form.equation,
         file=LAW_FILE,
         effect=PROPOSED,
@@ -122,7 +122,7 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
         error_reduction=rounded(law.error_reduction),
         terms=tuple(
             ProposedTerm(on=part.on, quantities=part.quantities, size=rounded(size))
-            for part, size in zip(law.form.parts, law.sizes, strict=True)
+            for part, size in zip(law.form.parts, law.action.sizes, strict=True)
         ),
         beside=tuple(beside),
         rivals=tuple(RivalLaw(equation=e, deficit=rounded(d)) for e, d in law.rivals),

@@ -9,7 +9,7 @@ import numpy as np
 
 from rovsim.core.axes import AXES
 from rovsim.core.threads import map_on_cores
-from rovsim.diagnosis.equations.action import find_action, leaves_structure
+from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
@@ -25,6 +25,7 @@ from rovsim.diagnosis.equations.with_thrust import (
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.steps import add_file_effects
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
+from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.estimation.candidates import list_means
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
@@ -130,8 +131,10 @@ def _keep_close(grown: Sequence[FittedLaw]) -> list[FittedLaw]:
 
 def _is_surely_half(fits: LawFits, grown: FittedLaw) -> bool:
     """Whether a law leaves so much structure on its own axis that it cannot be complete."""
-    action = find_action(grown.form, grown.fit, fits.runs)
-    return leaves_structure(action.axis, grown.fit, fits.workspace.bank, HALF_LAW_MARGIN)
+    structures = find_structure(grown.fit, fits.workspace.bank)
+    return find_action(grown.form, grown.fit, fits.runs).leaves_structure(
+        structures, HALF_LAW_MARGIN
+    )
 
 
 def _finish(fits: LawFits, grown: FittedLaw) -> FittedLaw:

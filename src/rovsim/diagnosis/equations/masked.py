@@ -6,9 +6,10 @@ mistaken for lift and linear damping: the gain in twice the log likelihood was 2
 fitted beside these effects, and 900 when the noise was fitted again beside the law. So what nearly
 stands out is fitted as a law, together with the noise and the accepted effects.
 
-Play of the thrusters leaves nothing that could stand out: a lag, a curve of the thrust and a delay
-shape the thrust in time as well, and with enough of them the rest passes for noise (eight names,
-five of them at a probability of one). So it is fitted wherever several effects shape the thrust.
+Play of the thrusters, or a limit on how fast they change, leaves nothing that could stand out: a
+lag, a curve of the thrust and a delay shape the thrust in time as well, and with enough of them the
+rest passes for noise (eight names, five of them at a probability of one). So laws of how thrusters
+answer are fitted wherever several effects shape the thrust.
 """
 
 from dataclasses import replace
@@ -22,7 +23,7 @@ from rovsim.diagnosis.equations.law_search import fit_memory_laws, is_seen
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
-from rovsim.diagnosis.equations.with_memory import Play
+from rovsim.diagnosis.equations.with_memory import OF_THRUSTERS
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
 from rovsim.diagnosis.structure.residual import Structure, split_by_axis
@@ -34,7 +35,7 @@ from rovsim.diagnosis.structure.residual import Structure, split_by_axis
 MIN_LR_OF_MASKED, MIN_EXPLAINABLE_SHARE, MIN_LR_OF_SIMILAR = 15.0, 0.5, 8.0
 LAWS_TRIED = 3  # fitted
 SHAPES_THRUST = ("thrusters", "commands")  # what an effect requires that shapes thrust in time
-MIN_IMITATORS = 2  # effects that shape the thrust: one alone does not imitate its play
+MIN_IMITATORS = 2  # effects that shape the thrust: one alone does not imitate such a law
 
 
 def find_masked_laws(selection: SearchResult, least_gain: float) -> list[Structure]:
@@ -54,18 +55,19 @@ def find_masked_laws(selection: SearchResult, least_gain: float) -> list[Structu
     if not effects or not is_seen(selection):
         return []
     shaping = sum(effect.requires in SHAPES_THRUST for effect in effects)
-    play = _find_masked_play(selection, least_gain) if shaping >= MIN_IMITATORS else []
-    return play or _find_masked_products(selection, least_gain)
+    answering = _find_masked_answer(selection, least_gain) if shaping >= MIN_IMITATORS else []
+    return answering or _find_masked_products(selection, least_gain)
 
 
-def _find_masked_play(selection: SearchResult, least_gain: float) -> list[Structure]:
-    """The play of the thrusters as a structure, where it is worth its penalty beside the effects.
+def _find_masked_answer(selection: SearchResult, least_gain: float) -> list[Structure]:
+    """A law of how thrusters answer as a structure, where it is worth its penalty beside effects.
 
     Its share is that of the disturbance which is not needed beside it.
     """
     fit = selection.best
     fits = LawFits(selection, len(list_terms(selection.workspace.bank.runs)))
-    law = next(fit_memory_laws(fits, fit.hypothesis, [Play]), None)
+    laws = filter(None, fit_memory_laws(fits, fit.hypothesis, OF_THRUSTERS))
+    law = max(laws, key=lambda law: law.score, default=None)
     if law is None:
         return []
     gain = law.score - selection.workspace.score(fit)

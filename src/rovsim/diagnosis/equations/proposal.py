@@ -6,7 +6,7 @@ from typing import Callable, NamedTuple, Sequence
 
 from rovsim.core.extras import installed
 from rovsim.core.model_names import PROPOSED
-from rovsim.diagnosis.equations.action import find_action
+from rovsim.diagnosis.equations.action import Action, find_action
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.form import Form, Number, get_law, split_law
 from rovsim.diagnosis.equations.law_search import search_laws
@@ -53,8 +53,7 @@ class ProposedLaw:
         form: what the law is made of.
         fit: of the law and these effects, with intervals that include the rest of the vehicle file.
         error_reduction: share of the base's error in 2 s windows that the law removes in addition.
-        sizes: RMS of each of its terms, N or N m.
-        axis: on which it stands out most from the disturbance.
+        action: on which axis it acts, and how strongly.
         rivals: equations that were tried in its place, and by how much less likely each is.
         beside: the effects that act beside it.
         left: structure that is left beside it, on any axis.
@@ -63,20 +62,19 @@ class ProposedLaw:
     form: Form
     fit: Fit
     error_reduction: float
-    sizes: tuple[float, ...]
-    axis: str
+    action: Action
     rivals: tuple[tuple[str, float], ...]
     beside: tuple[AcceptedEffect, ...]
     left: tuple[Structure, ...] = ()
 
     @property
     def complete(self) -> bool:
-        """Whether nothing but noise is left on its axis.
+        """Whether nothing but noise, or what is small beside it, is left on its axis.
 
         A law that leaves more is not proposed, but it still shows which accepted effects are
         unnecessary.
         """
-        return all(s.axis != self.axis for s in self.left)
+        return not self.action.leaves_structure(self.left)
 
     @property
     def law(self) -> Term:
@@ -142,7 +140,7 @@ def propose_law(
     fit, _ = include_rest(fit, runs)
     beside = (*camera, *(e for e in name_terms(fit, ()) if e.term.effect.listed))
     share = (error_without - error_with) / error_base
-    return ProposedLaw(law.form, fit, share, action.sizes, action.axis, law.rivals, beside, left)
+    return ProposedLaw(law.form, fit, share, action, law.rivals, beside, left)
 
 
 def _is_confirmed(

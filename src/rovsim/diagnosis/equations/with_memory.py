@@ -1,8 +1,8 @@
 """Laws with a memory, which a product of states at one instant cannot express.
 
 Each is an effect that the catalogue does not list, with a few parameters that are fitted together:
-the wake of each axis, and the play of the thrusters. The file that is written for such a law
-contains the effect's own method.
+the wake of each axis, and how thrusters answer: with play, or at a limited rate. The file that is
+written for such a law contains the effect's own method.
 """
 
 import inspect
@@ -17,6 +17,7 @@ from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_l
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
+from rovsim.dynamics.laws.thruster_rate import PropellerRate, ThrustRate
 from rovsim.dynamics.laws.wake_by_axis import WakeByAxis
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
@@ -144,20 +145,14 @@ class Wake(WithMemory):
         return f"c_{VELOCITY[AXES.index(name)]}" if name in AXES else super()._symbol(name)
 
 
-class Play(WithMemory):
-    """Play: the force of a thruster follows only once the demanded force has moved by a band.
-
-    `names` are the parameters of the width of the band.
-    """
-
-    effect = ThrusterPlay
-    imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
+class OfThrusters(WithMemory):
+    """A law of how thrusters answer, the same for all of them."""
 
     @classmethod
     def begin(cls, moving: Sequence[str]) -> list[tuple[WithMemory, Term]]:
-        """Start with a narrow band, a wide band, and a band that grows with the force."""
-        form = cls(tuple(p.name for p in ThrusterPlay.parameters))
-        return [(form, Term(ThrusterPlay(**start), form.names)) for start in ThrusterPlay.starts]
+        """Start where the effect says, with all its parameters."""
+        form = cls(tuple(p.name for p in cls.effect.parameters))
+        return [(form, Term(cls.effect(**start), form.names)) for start in cls.effect.starts]
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -167,18 +162,53 @@ class Play(WithMemory):
     @property
     def equation(self) -> str:
         """The law in LaTeX."""
-        force, width = r"F_\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
-        w = " + ".join(width[name] for name in self.names)
-        return rf"F \leftarrow \min(\max(F,\ {force} - w),\ {force} + w),\quad w = {w}"
+        return self.effect.equation
 
     @property
     def meaning(self) -> str:
         """The law in a sentence."""
-        return ThrusterPlay.__doc__ or ""
+        return self.effect.__doc__ or ""
 
     def divide(self, law: Term) -> list[Effect]:
         """Return the effect itself: the law has a single term."""
         return [law.effect]
+
+
+class Play(OfThrusters):
+    """Play: the force of a thruster follows only once the demanded force has moved by a band.
+
+    `names` are the parameters of the width of the band.
+    """
+
+    effect = ThrusterPlay
+    imports = "import numpy as np\nfrom numpy import ndarray as Array\n\n"
+
+    @property
+    def equation(self) -> str:
+        """The law in LaTeX."""
+        force, width = r"F_\text{static}", {"band": "b", "share": r"s\,|F_\text{static}|"}
+        w = " + ".join(width[name] for name in self.names)
+        return rf"F \leftarrow \min(\max(F,\ {force} - w),\ {force} + w),\quad w = {w}"
+
+
+class LimitedThrustRate(OfThrusters):
+    """The force of a thruster changes at a limited rate."""
+
+    effect = ThrustRate
+    imports = (
+        "from numpy import ndarray as Array\n\n"
+        "from rovsim.dynamics.laws.thruster_rate import limit_rate\n"
+    )
+
+
+class LimitedPropellerRate(OfThrusters):
+    """The speed of a propeller changes at a limited rate."""
+
+    effect = PropellerRate
+    imports = (
+        "import numpy as np\nfrom numpy import ndarray as Array\n\n"
+        "from rovsim.dynamics.laws.thruster_rate import limit_rate\n"
+    )
 
 
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
@@ -193,4 +223,5 @@ def _drop_name(gone: str, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name != gone)
 
 
-FORMS: tuple[type[WithMemory], ...] = (Wake, Play)
+OF_THRUSTERS: tuple[type[WithMemory], ...] = (Play, LimitedThrustRate, LimitedPropellerRate)
+FORMS = (Wake, *OF_THRUSTERS)

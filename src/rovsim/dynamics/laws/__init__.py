@@ -5,4 +5,5 @@ codes          codes of the factors of its terms
 thrust_law     a push that follows the thrust
 wake_by_axis   a fluid memory with a coefficient for each axis
 thruster_play  thrusters that do not answer small changes
+thruster_rate  thrusters whose force, or speed, changes at a limited rate
 """
