@@ -224,4 +224,4 @@ def _drop_name(gone: str, names: Sequence[str]) -> tuple[str, ...]:
 
 
 OF_THRUSTERS: tuple[type[WithMemory], ...] = (Play, LimitedThrustRate, LimitedPropellerRate)
-FORMS = (Wake, *OF_THRUSTERS)
+FORMS: tuple[type[WithMemory], ...] = (Wake, *OF_THRUSTERS)

@@ -19,7 +19,7 @@ from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival, SearchResult, keep_likeliest
 from rovsim.diagnosis.selection.steady_current import challenge_steady, prefer_steady
-from rovsim.diagnosis.selection.thresholds import place_thresholds
+from rovsim.diagnosis.selection.thresholds import add_term, place_thresholds
 from rovsim.diagnosis.selection.vehicle_file.loose_file import Contender, LooseFile
 from rovsim.diagnosis.selection.vehicle_file.special_effects import judge_beside_file
 from rovsim.diagnosis.selection.vehicle_file.steps import (
@@ -79,8 +79,7 @@ def _add_likeliest(
         proposals = [p for p in proposals if p not in batch]
 
         def refit(p: Proposal) -> Fit:
-            start = current.hypothesis.with_term(p.term)
-            return workspace.fit(place_thresholds(workspace, start, p.term))
+            return workspace.fit(add_term(workspace, current.hypothesis, p.term))
 
         fits = zip(map_on_cores(refit, batch), (p.term.id for p in batch), strict=True)
         for trial, name in sorted(fits, key=lambda pair: workspace.score(pair[0]), reverse=True):
@@ -169,7 +168,7 @@ def _refit_if_promising(
     explained = measure_explained(workspace, p)
     if deficit >= 0.0 and explained <= PROMISING_SHARE * rest.ss_increase:
         return None, deficit
-    start = place_thresholds(workspace, rest.hypothesis.with_term(p.term), p.term)
+    start = add_term(workspace, rest.hypothesis, p.term)
     trial = workspace.fit_unless_below(start, current, least)
     deficit = HOPELESS_LR if trial is None else workspace.score(current) - workspace.score(trial)
     return trial, deficit

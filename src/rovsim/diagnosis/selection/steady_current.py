@@ -31,10 +31,8 @@ def prefer_steady(workspace: SearchWorkspace, current: Fit) -> tuple[SearchWorks
     steady_fit = without_drift.fit(h.with_term(Term(Current(), Current.telling)))
     if not without_drift.score(steady_fit) > workspace.score(current):
         return workspace, current
-    updated = without_drift.update_after(steady_fit)
-    if updated.noise.drift:
-        return workspace, current
-    return updated, prune(updated, updated.fit(steady_fit.hypothesis))
+    updated, refit = without_drift.refit_updated(steady_fit)
+    return (workspace, current) if updated.noise.drift else (updated, prune(updated, refit))
 
 
 def challenge_steady(

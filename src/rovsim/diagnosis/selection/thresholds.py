@@ -13,6 +13,11 @@ from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 NEARBY_STEPS = np.arange(-2.0, 2.5, 0.5)  # in resolutions: values about the best of the grid
 
 
+def add_term(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> Hypothesis:
+    """Add a term to a hypothesis, with its thresholds at the values that explain most there."""
+    return place_thresholds(workspace, h.with_term(term), term)
+
+
 def place_thresholds(workspace: SearchWorkspace, h: Hypothesis, term: Term) -> Hypothesis:
     """Set the thresholds of one term of a hypothesis to the values that explain most.
 

@@ -9,6 +9,7 @@ from typing import Callable
 
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.promising import PROMISING_SHARE, measure_explained
+from rovsim.diagnosis.selection.thresholds import add_term
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
@@ -39,7 +40,7 @@ def spread_wide(
         for p in rest.others:
             narrower = p.term.id != term.id and p.term.choices < term.choices
             if narrower and measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
-                start = workspace.fit(rest.hypothesis.with_term(p.term))
+                start = workspace.fit(add_term(workspace, rest.hypothesis, p.term))
                 found = workspace.fit(search_on(workspace, start)[1].hypothesis)
                 if workspace.score(found) > workspace.score(current) + min_gain:
                     return spread_wide(workspace, found, search_on, min_gain)

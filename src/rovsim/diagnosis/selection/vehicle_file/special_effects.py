@@ -14,6 +14,7 @@ from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.promising import find_swaps
 from rovsim.diagnosis.selection.pruning import prune
 from rovsim.diagnosis.selection.search_result import Rival
+from rovsim.diagnosis.selection.thresholds import add_term
 from rovsim.diagnosis.selection.vehicle_file.loose_file import LooseFile
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, measure_misfit
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
@@ -83,7 +84,7 @@ def _list_alternatives(file: LooseFile, term: Term, rest: Removed) -> Iterator[A
     for p in find_swaps(workspace, term, rest, workspace.settings.trials):
         if p.term.id in FILE_EFFECT_IDS or rest.ss_increase - p.net_decrease > largest_loss:
             continue
-        start = rest.hypothesis.with_term(p.term)
+        start = add_term(workspace, rest.hypothesis, p.term)
         yield Alternative(p.term.id, start, file.find_limit(p.term))
 
 
