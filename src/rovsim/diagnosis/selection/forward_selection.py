@@ -5,14 +5,14 @@ from functools import partial
 
 from rovsim.core.threads import map_on_cores
 from rovsim.diagnosis.selection.curvature import list_curved
-from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.imitation import drop_imitations
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
     PROMISING_SHARE,
-    find_swaps,
+    Swap,
     keep_close,
     list_promising,
+    list_swaps,
     measure_explained,
 )
 from rovsim.diagnosis.selection.proposals import Proposal
@@ -32,7 +32,7 @@ from rovsim.diagnosis.selection.wide_effects import spread_wide
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR, SearchWorkspace
 from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.hypothesis import Hypothesis
 
 TRIAL_ROUNDS = 3  # of trials, where none of the first additions is accepted
 SWAPS_AT_ONCE = 4  # refitted side by side, on however many cores; few are accepted
@@ -120,7 +120,7 @@ def swap_and_list_rivals(workspace: SearchWorkspace, current: Fit) -> tuple[Fit,
 def _try_swaps(
     workspace: SearchWorkspace, current: Fit, trials: int, min_gain: float, tracked_deficit: float
 ) -> tuple[Fit, list[Rival]]:
-    """Try other effects in the place of each term, from the beginning after each swap.
+    """Try other effects in the place of each term, the likeliest first, anew after each swap.
 
     An effect that to first order explains less than half of what the term does is not refitted,
     unless its smaller penalty makes up for that.
@@ -134,29 +134,25 @@ def _try_swaps(
             fit that will surely be worse is given up.
     """
     rivals, file, loose = [], LooseFile(workspace), has_loose_file(current.hypothesis)
-    removals = workspace.first_order.remove_each(current)
-    swaps = [
-        (term, removed, p)
-        for term, removed in zip(current.hypothesis.terms, removals, strict=True)
-        for p in find_swaps(workspace, term, removed, trials)
-    ]
+    swaps = list_swaps(workspace, current, trials)
     least = workspace.score(current) - tracked_deficit
     refit = partial(_refit_if_promising, workspace, current, least)
     for some in (swaps[k : k + SWAPS_AT_ONCE] for k in range(0, len(swaps), SWAPS_AT_ONCE)):
-        refits = map_on_cores(refit, *zip(*some, strict=True))
-        for (term, _, p), (trial, deficit) in zip(some, refits, strict=True):
+        refits = map_on_cores(refit, some)
+        for swap, (trial, deficit) in zip(some, refits, strict=True):
+            term, other = swap.term, swap.proposal.term
             if trial is not None:
-                if deficit < -min_gain and not (loose and file.explains(trial, p.term.id)):
+                if deficit < -min_gain and not (loose and file.explains(trial, other.id)):
                     swapped = prune(workspace, trial)
                     return _try_swaps(workspace, swapped, trials, min_gain, tracked_deficit)
-                weight = file.weigh(Contender(current, term), Contender(trial, p.term), deficit)
+                weight = file.weigh(Contender(current, term), Contender(trial, other), deficit)
                 deficit = max(0.0, weight)  # likelier, but not beside a loose file: undecided
-            rivals.append(Rival(p.term.id, term.id, deficit, trial))
+            rivals.append(Rival(other.id, term.id, deficit, trial))
     return current, rivals
 
 
 def _refit_if_promising(
-    workspace: SearchWorkspace, current: Fit, least: float, term: Term, rest: Removed, p: Proposal
+    workspace: SearchWorkspace, current: Fit, least: float, swap: Swap
 ) -> tuple[Fit | None, float]:
     """Refit with another effect in the place of a term, where it explains enough to first order.
 
@@ -164,12 +160,11 @@ def _refit_if_promising(
         The fit, and by how much its score is smaller than that of `current`. None where it was not
         made, or given up since its score will surely not reach `least`.
     """
-    deficit = rest.ss_increase - workspace.penalty * term.choices - p.net_decrease
-    explained = measure_explained(workspace, p)
-    if deficit >= 0.0 and explained <= PROMISING_SHARE * rest.ss_increase:
+    deficit = swap.predict_deficit(workspace)
+    explained = measure_explained(workspace, swap.proposal)
+    if deficit >= 0.0 and explained <= PROMISING_SHARE * swap.rest.ss_increase:
         return None, deficit
-    start = add_term(workspace, rest.hypothesis, p.term)
-    trial = workspace.fit_unless_below(start, current, least)
+    trial = workspace.fit_unless_below(swap.begin(workspace), current, least)
     deficit = HOPELESS_LR if trial is None else workspace.score(current) - workspace.score(trial)
     return trial, deficit
 

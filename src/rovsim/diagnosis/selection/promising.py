@@ -1,12 +1,13 @@
 """Choose the proposals that are worth a fit."""
 
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
 from rovsim.diagnosis.selection.first_order import Removed
 from rovsim.diagnosis.selection.proposals import Proposal
+from rovsim.diagnosis.selection.thresholds import add_term
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.hypothesis import Term
+from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 
 # Of what a term explains: another effect may do better than first order predicts, but not twice.
 PROMISING_SHARE = 0.5
@@ -28,6 +29,40 @@ def keep_close(ranked: Sequence[Proposal], trials: int) -> list[Proposal]:
     return [
         p for p in ranked[:trials] if p.net_decrease > WORTH_TRYING_SHARE * ranked[0].net_decrease
     ]
+
+
+class Swap(NamedTuple):
+    """Another effect in the place of a term."""
+
+    term: Term
+    rest: Removed
+    proposal: Proposal
+
+    def predict_deficit(self, workspace: SearchWorkspace) -> float:
+        """By how much the score is smaller with the other effect, to first order."""
+        lost = self.rest.ss_increase - workspace.penalty * self.term.choices
+        return lost - self.proposal.net_decrease
+
+    def begin(self, workspace: SearchWorkspace) -> Hypothesis:
+        """The hypothesis with the other effect, where a fit of it begins."""
+        return add_term(workspace, self.rest.hypothesis, self.proposal.term)
+
+
+def list_swaps(workspace: SearchWorkspace, current: Fit, trials: int) -> list[Swap]:
+    """List effects that may stand in the place of a term, of all terms, the likeliest first.
+
+    Args:
+        workspace: of the search.
+        current: the fit so far.
+        trials: how many effects are wanted for each term, at least.
+    """
+    removals = workspace.first_order.remove_each(current)
+    swaps = [
+        Swap(term, rest, p)
+        for term, rest in zip(current.hypothesis.terms, removals, strict=True)
+        for p in find_swaps(workspace, term, rest, trials)
+    ]
+    return sorted(swaps, key=lambda swap: swap.predict_deficit(workspace))
 
 
 def find_swaps(
