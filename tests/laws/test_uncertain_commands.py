@@ -1,6 +1,7 @@
 """What a vehicle did while lines of the command log were lost is not held against a model."""
 
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from rovsim.core.axes import AXES
 from rovsim.core.run import Commands
 from rovsim.diagnosis.checks.unlogged_effects import drop_unlogged
 from rovsim.diagnosis.selection.search_result import SearchResult
+from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.diagnosis.structure.residual import split_by_axis
 from rovsim.diagnosis.structure.uncertain_commands import (
     UncertainCommands,
@@ -151,6 +153,7 @@ def test_a_delay_that_only_lost_lines_make_is_not_named(tmp_path, delay):
     bank = FilterBank.design(runs, base, FIRST_NOISE)
     noise, _ = bank.fit_noise(bank.innovations(base), FIRST_NOISE)
     workspace = SimpleNamespace(bank=bank, penalty=12.0, fit=lambda h: fit(h, bank, noise))
+    workspace.weigh_term = partial(SearchWorkspace.weigh_term, workspace)
     found = workspace.fit(Hypothesis(base, (Term(InputDelay(), ("delay",)),)))
     assert found.distance([0]) > workspace.penalty
     kept = drop_unlogged(SearchResult(workspace, found, ())).best.hypothesis.terms

@@ -36,7 +36,7 @@ def _find_unlogged(fit: Fit, selection: SearchResult) -> int | None:
     covariance = solve(G[1:, 1:], np.eye(len(h.x)))
     as_logged = replace(fit, linearised=cleared, covariance=covariance)
     worth = {
-        i: as_logged.distance(columns) / (workspace.penalty * term.choices)
+        i: workspace.weigh_term(as_logged, i)
         for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True))
         if term.vanishes and len(columns)
     }

@@ -13,6 +13,7 @@ answer are fitted wherever several effects shape the thrust.
 """
 
 from dataclasses import replace
+from typing import Sequence
 
 import numpy as np
 
@@ -20,13 +21,15 @@ from rovsim.core.axes import AXES
 from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.law_search import fit_memory_laws, is_seen
-from rovsim.diagnosis.equations.products.library import list_terms, middle_of
+from rovsim.diagnosis.equations.products.library import LawTerm, list_terms, middle_of
 from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
 from rovsim.diagnosis.equations.with_memory import OF_THRUSTERS
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.regressors import list_dependences, tabulate
 from rovsim.diagnosis.structure.residual import Structure, split_by_axis
+from rovsim.estimation.fit import Fit
+from rovsim.estimation.observer.filter_bank import FilterBank
 
 # A function is suspect if its likelihood-ratio statistic exceeds MIN_LR_OF_MASKED, or
 # MIN_LR_OF_SIMILAR if the fitted parameters could have explained more than MIN_EXPLAINABLE_SHARE of
@@ -54,23 +57,24 @@ def find_masked_laws(selection: SearchResult, least_gain: float) -> list[Structu
     effects = [term.effect for term in selection.best.hypothesis.terms if term.effect.listed]
     if not effects or not is_seen(selection):
         return []
+    terms = list_terms(selection.workspace.bank.runs)
+    fits = LawFits(selection, len(terms))
     shaping = sum(effect.requires in SHAPES_THRUST for effect in effects)
-    answering = _find_masked_answer(selection, least_gain) if shaping >= MIN_IMITATORS else []
-    return answering or _find_masked_products(selection, least_gain)
+    answering = _find_masked_answer(fits, least_gain) if shaping >= MIN_IMITATORS else []
+    return answering or _find_masked_products(fits, terms, least_gain)
 
 
-def _find_masked_answer(selection: SearchResult, least_gain: float) -> list[Structure]:
+def _find_masked_answer(fits: LawFits, least_gain: float) -> list[Structure]:
     """A law of how thrusters answer as a structure, where it is worth its penalty beside effects.
 
     Its share is that of the disturbance which is not needed beside it.
     """
-    fit = selection.best
-    fits = LawFits(selection, len(list_terms(selection.workspace.bank.runs)))
+    fit = fits.selection.best
     laws = filter(None, fit_memory_laws(fits, fit.hypothesis, OF_THRUSTERS))
     law = max(laws, key=lambda law: law.score, default=None)
     if law is None:
         return []
-    gain = law.score - selection.workspace.score(fit)
+    gain = law.score - fits.workspace.score(fit)
     if gain <= least_gain:
         return []
     axis = find_action(law.form, law.fit, fits.runs).axis
@@ -79,31 +83,29 @@ def _find_masked_answer(selection: SearchResult, least_gain: float) -> list[Stru
     return [Structure(axis, "thrust with a memory", share, gain / max(fits.chance, 1.0))]
 
 
-def _find_masked_products(selection: SearchResult, least_gain: float) -> list[Structure]:
+def _find_masked_products(
+    fits: LawFits, terms: Sequence[LawTerm], least_gain: float
+) -> list[Structure]:
     """The suspect function as a structure, where a product of states is worth its penalty."""
-    suspect = _find_suspect(selection)
+    fit = fits.selection.best
+    suspect = _find_suspect(fit, fits.workspace.bank)
     if suspect is None:
         return []
-    workspace, fit = selection.workspace, selection.best
-    runs = workspace.bank.runs
-    terms = list_terms(runs)
-    fits = LawFits(selection, len(terms))
-    columns = fits.project(fit, terms, middle_of(runs))
+    columns = fits.project(fit, terms, middle_of(fits.runs))
     order = np.argsort(-find_alone(columns.gram), kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:LAWS_TRIED]
-    score = workspace.score(fit)
+    score = fits.workspace.score(fit)
     for law in fit_products(fits, fit, (), kinds, columns).values():
         if law.score - score > least_gain and fits.is_worth(law, fit, score):
             return [replace(suspect, times_limit=(law.score - score) / max(fits.chance, 1.0))]
     return []
 
 
-def _find_suspect(selection: SearchResult) -> Structure | None:
+def _find_suspect(fit: Fit, bank: FilterBank) -> Structure | None:
     """Find the most suspect function that innovations seem to follow; None where none is suspect.
 
     The `times_limit` of the structure is here the test statistic itself.
     """
-    bank = selection.workspace.bank
     tables = [tabulate(run) for run in bank.runs]
     structures = [
         Structure(
@@ -112,7 +114,7 @@ def _find_suspect(selection: SearchResult) -> Structure | None:
             min(1.0, (dependence.size / residual.disturbance_std) ** 2),
             dependence.statistic,
         )
-        for residual in split_by_axis(selection.best, bank)
+        for residual in split_by_axis(fit, bank)
         for dependence in list_dependences(residual, tables)
         if dependence.statistic
         > (MIN_LR_OF_SIMILAR if dependence.taken > MIN_EXPLAINABLE_SHARE else MIN_LR_OF_MASKED)

@@ -44,6 +44,6 @@ def list_unsure(fit: Fit, workspace: SearchWorkspace) -> list[int]:
         limit = len(np.unique(blocks)) // MIN_BLOCKS_PER_PARAMETER
         for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
             few_enough = term.vanishes and 0 < len(columns) <= limit
-            if few_enough and as_blocks_see.distance(columns) < workspace.penalty * term.choices:
+            if few_enough and workspace.weigh_term(as_blocks_see, i) < 1.0:
                 unsure.add(i)
     return sorted(unsure)

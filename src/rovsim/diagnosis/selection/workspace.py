@@ -161,6 +161,11 @@ class SearchWorkspace:
         """
         return fit.two_log_likelihood - self._penalty_of(fit.hypothesis)
 
+    def weigh_term(self, fit: Fit, i: int) -> float:
+        """How far a term is from its absence (Wald's statistic), in units of its penalty."""
+        h = fit.hypothesis
+        return fit.distance(h.columns[i]) / (self.penalty * h.terms[i].choices)
+
     def _penalty_of(self, at: Hypothesis) -> float:
         """The penalties of a hypothesis."""
         return self.penalty * sum(t.choices for t in at.terms) + penalize_gain(at)
