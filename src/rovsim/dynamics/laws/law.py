@@ -11,6 +11,7 @@ from typing import Sequence
 
 from rovsim.dynamics.compilation.compiled import inlined, internal
 from rovsim.dynamics.effects.base import Parameter, Wrench
+from rovsim.dynamics.effects.dry_friction import SMOOTHING_SPEED
 from rovsim.dynamics.engine.vectors import into_body
 from rovsim.dynamics.laws.codes import (
     DEPTH,
@@ -32,7 +33,7 @@ from rovsim.dynamics.laws.codes import (
 MAX_TERMS, MAX_FACTORS = 3, 3
 TERM_LENGTH = 3 + MAX_FACTORS  # parameters of a term
 COEFFICIENTS = tuple(f"c{k}" for k in range(1, MAX_TERMS + 1))  # parameters fitted, by term
-SIGN_WIDTH = 0.02  # m/s, rad/s: width of the sign of a velocity, within its noise
+SIGN_WIDTH = SMOOTHING_SPEED  # of the sign of a velocity: as in friction of the catalogue
 TILT_SIGN_WIDTH = 0.05  # 3 degrees: width of the sign of the NED z axis in body axes
 MIN_SPEED = 0.02  # m/s: below, a direction of motion fades
 
