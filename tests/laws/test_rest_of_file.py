@@ -12,6 +12,7 @@ from rovsim.diagnosis.selection.vehicle_file.whole_file import (
     free_rest,
     list_spreads,
 )
+from rovsim.diagnosis.uncertainty import file_values
 from rovsim.diagnosis.uncertainty.file_values import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.catalogue import built_in
@@ -29,13 +30,14 @@ WEAK, WEAKER = 0.95, 0.75  # thrusters of this strength
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 
-def fly_off(folder, gain):
-    """The file, runs of a vehicle of which all is off, and by how much."""
+def fly_off(folder, gain, special=None):
+    """The file, runs of a vehicle of which all is off and special effects act, and by how much."""
     base, _ = observed(folder / "right", duration=2.0)
     body = base.body
     stated = dict(zip(COEFFICIENTS, (body.linear, body.quadratic, np.diag(body.M_A)), strict=True))
     off = {n: dict(zip(AXES, OFF * x, strict=True)) for n, x in stated.items()}
     off["thruster_gain"] = {"all": gain}
+    off |= special or {}
     hidden = tuple(EffectEntry(effect=name, parameters=own) for name, own in off.items())
     base, runs = observed(folder / "off", duration=20.0, effects=hidden)
     return base, runs, off
@@ -127,6 +129,21 @@ def test_a_gain_that_is_surely_off_stays_though_no_replay_would_miss_it(tmp_path
     assert np.abs(miss(final, off)).max() < 3.5
     (gain,) = (t.effect["all"] for t in final.hypothesis.terms if t.id == "thruster_gain")
     assert gain == pytest.approx(WEAKER, abs=0.1)
+
+
+def test_a_value_that_another_would_have_to_take_up_is_kept(tmp_path, monkeypatch):
+    """As a payload does of a moved centre of buoyancy, however good replays are without that."""
+    monkeypatch.setattr(file_values, "MAX_ERROR_GROWTH", 10.0)
+    hidden = {
+        "payload": {"mass": 0.45, "x": 0.15, "z": 0.1},
+        "buoyancy_center": {"x": -2e-3, "y": 2e-3},
+    }
+    base, runs, off = fly_off(tmp_path, 1.0, hidden)
+    other = FilterBank.design(runs, base, FIRST_NOISE)
+    found = fitted(other, AXES, (*COEFFICIENTS, "payload"))
+    final, _ = settle_whole_file(fit_whole(found, other), found.hypothesis, other)
+    assert {term.id for term in final.hypothesis.terms} == {*COEFFICIENTS, *hidden}
+    assert np.abs(miss(final, off)).max() < 3.0
 
 
 @pytest.mark.parametrize("axes", [("surge", "sway"), ("surge", "sway", "heave", "yaw"), AXES])

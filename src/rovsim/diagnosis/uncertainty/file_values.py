@@ -9,7 +9,8 @@ at the gain that is kept, and their intervals stay those of the fit of all value
 is kept if it surely differs from the file's, although replays without it are as good: all other
 values would then be wrong by one factor. An accepted file effect that no longer differs surely is
 set back as well, if replays do not become worse: it stood in for values that were not fitted. Where
-all drag and added mass are 5 % off, that is a gain of the thrusters.
+all drag and added mass are 5 % off, that is a gain of the thrusters. And values that surely differ
+are kept where others would have to take their place.
 
 A file may also be wrong in a few values alone. If the runs find all other drag and added mass to be
 what the file says, far closer than such files usually are, the rest of the file is right, and the
@@ -22,7 +23,7 @@ runs, and so are all sets of the same number (Scott & Berger 2010, Ann. Stat. 38
 """
 
 from dataclasses import replace
-from typing import Sequence
+from typing import Collection, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -45,6 +46,10 @@ from rovsim.estimation.observer.windows import score_windows
 MAX_STD_RATIO = 0.7  # of the standard deviation before the runs: if more is left, they told nothing
 # Share of the error in 2 s windows: if it grows by less, a value is not needed.
 MAX_ERROR_GROWTH = 0.01
+# Standard deviations by which other values may move where one is set back that surely is not the
+# file's: else their intervals would not hold. A centre of buoyancy that was off by 0.3 mm moved a
+# payload by six.
+MAX_SHIFT = 1.0
 
 
 def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
@@ -76,7 +81,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
 def settle_whole_file(
     whole: Fit, selected: Hypothesis, bank: FilterBank
 ) -> tuple[Fit, CommonScale | None]:
-    """Keep the accepted effects, and file effects without which replays are worse.
+    """Keep the accepted effects, and file effects without which replays or values are worse.
 
     Args:
         whole: fit of all values of the file.
@@ -94,18 +99,23 @@ def settle_whole_file(
     offset = _measure_offset(whole, keeps_gain=bool(sure_gain))
     significant = {n for n in set(owner) if _is_sure(whole, offset, (owner == n) & ~undetermined)}
     ids = (accepted & significant) | (accepted - FILE_EFFECT_IDS) | sure_gain
-    dropped = undetermined | ~np.isin(owner, list(ids))
+
+    def drop_all_but(kept: Collection[str]) -> Array:
+        return undetermined | ~np.isin(owner, list(kept))
+
     while candidates := sorted((significant | accepted) - ids):
-        trials = [
-            _leave_out(whole, dropped & ((owner != name) | undetermined)) for name in candidates
-        ]
-        error_all, error_reduced, *errors_extended = _measure_errors(
-            [h, _leave_out(whole, dropped), *trials], bank
-        )
+        trials = [_leave_out(whole, drop_all_but({*ids, name})) for name in candidates]
+        reduced = _leave_out(whole, drop_all_but(ids))
+        error_all, error_reduced, *errors_extended = _measure_errors([h, reduced, *trials], bank)
         if error_reduced <= (1.0 + MAX_ERROR_GROWTH) * error_all:
             break
         ids.add(candidates[int(np.argmin(errors_extended))])
-        dropped = undetermined | ~np.isin(owner, list(ids))
+    while candidates := sorted(significant - ids):
+        if _measure_shift(whole, drop_all_but(ids)) <= MAX_SHIFT:
+            break
+        shifts = [_measure_shift(whole, drop_all_but({*ids, name})) for name in candidates]
+        ids.add(candidates[int(np.argmin(shifts))])
+    dropped = drop_all_but(ids)
     final = fit_noise_only(bank.linearise(_leave_out(whole, dropped)), bank, whole.noise)
     final = replace(final, covariance=whole.covariance[np.ix_(~dropped, ~dropped)])
     gain = _share_gains(h)
@@ -139,6 +149,13 @@ def _leave_out(whole: Fit, gone: Array) -> Hypothesis:
     h = whole.hypothesis
     step = _condition_steps(whole, gone | mark_gain(h), np.where(gone, h.absence - h.x, 0.0))
     return drop_parameters(h.at(h.x + step), gone)
+
+
+def _measure_shift(whole: Fit, gone: Array) -> float:
+    """By how many standard deviations the others move at most, where a mask (k,) is set back."""
+    kept = ~gone
+    step = _leave_out(whole, gone).x - whole.hypothesis.x[kept]
+    return float(np.max(np.abs(step) / whole.std[kept], initial=0.0))
 
 
 def _condition_steps(whole: Fit, led: Array, step: Array) -> Array:
