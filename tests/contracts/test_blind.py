@@ -146,7 +146,7 @@ def test_strong_cases_hide_what_others_do_in_a_larger_size():
 
 def test_laws_lie_outside_the_catalogue():
     cases = suite("equations", "development")
-    assert len({c.id for c in cases}) == len(cases) == 55
+    assert len({c.id for c in cases}) == len(cases) == 58
     laws = [c for c in cases if c.kind == "law"]
     assert {c.outside[0].name for c in laws} == set(LAWS)
     assert not set(LAWS) & set(built_in())
@@ -336,6 +336,10 @@ def test_what_the_runs_cannot_show_has_a_column_of_its_own():
     assert not score(both, other).unseen
     silent = diagnosis().model_copy(update={"not_observable": ("quadratic_damping",)})
     assert score(case(DRAG), silent).unseen
+    still = silent.model_copy(update={"verdict": "insufficient_data"})
+    assert score(case(DRAG), still).unseen
+    assert not score(both, still).unseen  # the lag was to be found
+    assert not score(case(DRAG), still.model_copy(update={"not_observable": ()})).unseen
 
 
 def test_what_cannot_be_shown_must_be_said_and_not_named():
