@@ -39,7 +39,7 @@ def limit_rate(wanted: Array, h: float, ramp: float, start: Array) -> tuple[Arra
 
 
 class ThrustRate(ThrusterDynamics):
-    """The force of a thruster changes at a limited rate."""
+    """The force of a thruster changes at a limited rate: a newton takes the time a."""
 
     id = "thrust_rate"
     listed = False
