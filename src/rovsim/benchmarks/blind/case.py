@@ -80,7 +80,8 @@ class Case(Section):
 
     def _verdicts_beside_adequate(self) -> set[str]:
         """Return verdicts that are right besides `adequate` where no effect has to be named."""
-        quiet = {"insufficient_data"} if self.partial else set()
+        all_silent = bool(self.hidden) and all(e.effect in self.silent for e in self.hidden)
+        quiet = {"insufficient_data"} if self.partial or all_silent else set()
         return quiet | ({"missing_effects"} if self.forgiven else set())
 
     @property

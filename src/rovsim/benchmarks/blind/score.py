@@ -98,10 +98,8 @@ def _lacks_only_unseen(case: Case, answer: Answer | Diagnosis, named: set[str]) 
     missing = set(case.names) - named
     if not missing or not missing <= set(answer.not_observable) or named - set(case.names):
         return False
-    named_entries = tuple(entry for entry in case.hidden if entry.effect not in missing)
-    if not named_entries and answer.verdict == "insufficient_data":
-        return True  # no more can be said of recordings that show nothing of what is hidden
-    return answer.verdict in case.model_copy(update={"hidden": named_entries}).verdicts
+    without_missing = case.model_copy(update={"silent": (*case.silent, *missing)})
+    return answer.verdict in without_missing.verdicts
 
 
 def _first_is_hidden(
