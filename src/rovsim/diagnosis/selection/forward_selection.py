@@ -8,12 +8,11 @@ from rovsim.diagnosis.selection.curvature import list_curved
 from rovsim.diagnosis.selection.imitation import drop_imitations
 from rovsim.diagnosis.selection.promising import (
     NEARLY_BEST_SHARE,
-    PROMISING_SHARE,
     Swap,
+    explains_enough,
     keep_close,
     list_promising,
     list_swaps,
-    measure_explained,
 )
 from rovsim.diagnosis.selection.proposals import Proposal
 from rovsim.diagnosis.selection.pruning import prune
@@ -161,8 +160,7 @@ def _refit_if_promising(
         made, or given up since its score will surely not reach `least`.
     """
     deficit = swap.predict_deficit(workspace)
-    explained = measure_explained(workspace, swap.proposal)
-    if deficit >= 0.0 and explained <= PROMISING_SHARE * swap.rest.ss_increase:
+    if deficit >= 0.0 and not explains_enough(workspace, swap.rest, swap.proposal):
         return None, deficit
     trial = workspace.fit_unless_below(swap.begin(workspace), current, least)
     deficit = HOPELESS_LR if trial is None else workspace.score(current) - workspace.score(trial)

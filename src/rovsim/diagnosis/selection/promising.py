@@ -86,12 +86,10 @@ def find_swaps(
         trials, sum(p.net_decrease > NEARLY_BEST_SHARE * rest.ss_increase for p in proposals)
     )
     promising = keep_close([p for p in proposals if p.net_decrease > 0.0], trials)
-    threshold = PROMISING_SHARE * rest.ss_increase
-    return promising or [
-        p for p in proposals[:trials] if measure_explained(workspace, p) > threshold
-    ]
+    return promising or [p for p in proposals[:trials] if explains_enough(workspace, rest, p)]
 
 
-def measure_explained(workspace: SearchWorkspace, proposal: Proposal) -> float:
-    """The predicted decrease of the sum of squares, penalty not subtracted."""
-    return proposal.net_decrease + workspace.penalty * proposal.term.choices
+def explains_enough(workspace: SearchWorkspace, rest: Removed, proposal: Proposal) -> bool:
+    """Whether an effect may explain what a removed term did, however large its penalty is."""
+    explained = proposal.net_decrease + workspace.penalty * proposal.term.choices
+    return explained > PROMISING_SHARE * rest.ss_increase

@@ -8,7 +8,7 @@ in a free decay in which the centre of buoyancy had moved and a drag and a fluid
 from typing import Callable
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.selection.promising import PROMISING_SHARE, measure_explained
+from rovsim.diagnosis.selection.promising import explains_enough
 from rovsim.diagnosis.selection.thresholds import add_term
 from rovsim.diagnosis.selection.workspace import SearchWorkspace
 from rovsim.estimation.file_effects import has_loose_file
@@ -39,7 +39,7 @@ def spread_wide(
             continue
         for p in rest.others:
             narrower = p.term.id != term.id and p.term.choices < term.choices
-            if narrower and measure_explained(workspace, p) > PROMISING_SHARE * rest.ss_increase:
+            if narrower and explains_enough(workspace, rest, p):
                 start = workspace.fit(add_term(workspace, rest.hypothesis, p.term))
                 found = workspace.fit(search_on(workspace, start)[1].hypothesis)
                 if workspace.score(found) > workspace.score(current) + min_gain:
