@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.equations.disturbance import smooth_stretch
 from rovsim.diagnosis.equations.spectrum import SEGMENT_SECONDS, find_spectrum
-from rovsim.estimation.observer.axis_kernels import POSE
+from rovsim.estimation.kernels.axis import POSE
 from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, NOISE, COUNT = 0.05, AxisNoise(0.1, 1.0, 1e-3), 4000

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import solve_discrete_are
 from scipy.signal import lfilter
 
-from rovsim.estimation.observer.axis_kernels import (
+from rovsim.estimation.kernels.axis import (
     MIN_DRIVING_VARIANCE,
     MIN_NOISE_SHARE,
     POSE,

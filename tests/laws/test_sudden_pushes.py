@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 
 from rovsim.diagnosis.structure.residual import AxisResidual
 from rovsim.diagnosis.structure.sudden_pushes import find_kicks, find_sudden
-from rovsim.estimation.observer.axis_kernels import POSE
+from rovsim.estimation.kernels.axis import POSE
 from rovsim.estimation.observer.kalman import AxisErrorDynamics, AxisNoise, design_filter
 
 PERIOD, COUNT, KICK = 0.05, 1200, 600

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import approx_fprime, minimize
 
-from rovsim.estimation.observer.whittle import evaluate, least_misfit, solve, take_step
+from rovsim.estimation.kernels.whittle import evaluate, least_misfit, solve, take_step
 
 FREQUENCY = np.linspace(5.0, 48.0, 60)  # Hz
 WHITE = np.ones_like(FREQUENCY)
@@ -62,7 +62,7 @@ def test_what_is_not_free_stays_and_the_rest_takes_the_whole_step(free, seed):
     random, free = np.random.default_rng(seed), np.array(free)
     root, slope = random.normal(size=(6, 4)), random.normal(size=4)
     curvature = root.T @ root
-    with patch("rovsim.estimation.observer.whittle.solve", solve.py_func):
+    with patch("rovsim.estimation.kernels.whittle.solve", solve.py_func):
         step = take_step.py_func(slope, curvature, 0.0, free)
     assert np.all(step[~free] == 0.0)
     assert np.allclose((curvature @ step)[free], -slope[free])

@@ -2,6 +2,7 @@
 
 settings             how much of the runs takes part
 prior                what is known of parameters before the runs are used
+kernels              compiled: filters of one axis, and Whittle's likelihood
 observer             runs a model along the measurement, corrected by filters: gives innovations
 levenberg_marquardt  damped least squares
 fit                  the likeliest parameters of a hypothesis, their covariance, and the noise

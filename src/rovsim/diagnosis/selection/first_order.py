@@ -60,7 +60,7 @@ class FirstOrder:
     def propose(self, current: Fit) -> list[Proposal]:
         """All candidates as additions to the current fit, judged to first order, the best first.
 
-        None where the current model diverges.
+        Empty where the current model diverges.
         """
         if not current.is_finite:
             return []

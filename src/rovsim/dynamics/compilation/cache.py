@@ -2,9 +2,9 @@
 
 Numba's cache checks the file of a function, but not those of the functions that it calls. So the
 name of our folder is a digest of all sources that can be compiled into it: the engine, the kernels
-of effects, laws and learned residuals, and Numba's version. After any edit the next run uses a new,
-empty folder, so that the cache is never stale. Each process marks its folder as used when it
-starts, and removes folders that no process marked for 30 days.
+of effects, laws, learned residuals and the estimation, and Numba's version. After any edit the next
+run uses a new, empty folder, so that the cache is never stale. Each process marks its folder as
+used when it starts, and removes folders that no process marked for 30 days.
 """
 
 import hashlib
@@ -19,8 +19,8 @@ import numba
 from platformdirs import user_cache_path
 
 DYNAMICS_FOLDER = Path(__file__).parents[1]
-# Packages of `dynamics` whose functions are compiled.
-COMPILED_PACKAGES = ("compilation", "engine", "effects", "laws", "learned")
+# Folders of all compiled functions, relative to that of `dynamics`.
+COMPILED_FOLDERS = ("compilation", "engine", "effects", "laws", "learned", "../estimation/kernels")
 # s, 30 days; our choice. A longer process loses nothing: Numba compiles again what is missing.
 MAX_UNUSED_SECONDS = 30 * 86400.0
 
@@ -48,7 +48,7 @@ def prune(folders: Path) -> None:
 
 def _digest_sources() -> str:
     files = sorted(
-        file for room in COMPILED_PACKAGES for file in DYNAMICS_FOLDER.joinpath(room).rglob("*.py")
+        file for name in COMPILED_FOLDERS for file in DYNAMICS_FOLDER.joinpath(name).rglob("*.py")
     )
     return digest(numba.__version__.encode(), *(file.read_bytes() for file in files))
 

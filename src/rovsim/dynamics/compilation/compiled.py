@@ -19,7 +19,7 @@ INTERNAL: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True
 def keep(**options: Any) -> Callable[[Callable], Any]:
     """Return a decorator that compiles a function with Numba and caches the result on disk.
 
-    The functions that it calls must be in the packages `cache.COMPILED_PACKAGES` or in the module
+    The functions that it calls must be in the folders `cache.COMPILED_FOLDERS` or in the module
     of a wrench effect: the cache notices changes of these files alone.
 
     Args:

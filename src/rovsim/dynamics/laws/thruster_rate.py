@@ -4,13 +4,13 @@ Speed controllers ramp what they are asked for, lest the current trips them.
 """
 
 import numpy as np
-from numba import njit
 from numpy import ndarray as Array
 
+from rovsim.dynamics.compilation.compiled import kept
 from rovsim.dynamics.effects.base import Parameter, ThrusterDynamics
 
 
-@njit(cache=True)
+@kept
 def limit_rate(wanted: Array, h: float, ramp: float, start: Array) -> tuple[Array, Array]:
     """Follow what is wanted at a limited rate.
 

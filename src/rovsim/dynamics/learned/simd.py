@@ -1,7 +1,8 @@
 """Arithmetic on LANES points side by side, with which all exported residuals are computed.
 
-Loops run over slices of constant or plain length, and take PASS features or rows at once. Only then
-does LLVM turn them into vector instructions, which need a third of the time (measured).
+Loops run over slices of constant or plain length, and take four features or rows at once (UNROLL in
+`layout`). Only then does LLVM turn them into vector instructions, which need a third of the time
+(measured).
 """
 
 from math import log
@@ -76,7 +77,7 @@ def scaled(data, at, d, x, z):
 
 @exact
 def add_squares(points, b, j, x, s):
-    """Add squared distances along PASS features, from feature j on, to s (LANES,).
+    """Add squared distances along UNROLL features, from feature j on, to s (LANES,).
 
     Args:
         points: (blocks, d', LANES).
@@ -120,7 +121,7 @@ def exponentials(s):
 
 @reordered
 def products(rows, first, k):
-    """Scalar products of k (n,) with PASS rows of a matrix, from row `first` on.
+    """Scalar products of k (n,) with UNROLL rows of a matrix, from row `first` on.
 
     `rows` is the matrix as a flat array, with rows of length n.
     """

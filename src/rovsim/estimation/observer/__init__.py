@@ -6,7 +6,6 @@ train_runs        prepares runs of a campaign; of long ones, the parts that tell
 usable_runs       the runs with a usable stretch, and whether they are enough
 divergence        runs in which a model diverges although it is corrected
 hypothesis        a base model and further effects, whose parameters may be free
-axis_kernels      filters of one axis and their likelihoods, compiled
 kalman            steady-state Kalman filters of one axis
 autoregression    how past innovations predict later ones, where axes drive each other
 noise             what no model predicts: a disturbance, and noise of the readings
@@ -17,7 +16,6 @@ least_squares     least squares of any columns, from their Gram matrix
 random_walk       forces that are a random walk: how they show, and how likely they are
 drifting_current  does the current wander?
 filter_bank       the filters of all runs: innovations, whitened, and their derivatives
-whittle           the likeliest sizes of the parts of a noise, from periodograms; compiled
 camera_noise      how likely the noise of poses is, for several kinds of camera noise
 camera            does the software of the motion capture smooth the poses?
 sandwich          how sure values are where the errors of a stretch of time are related

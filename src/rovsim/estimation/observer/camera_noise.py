@@ -16,8 +16,8 @@ from rovsim.core.rotations import body_rates
 from rovsim.dynamics.effects.pose_filter import PoseFilter
 from rovsim.dynamics.low_pass import LowPass
 from rovsim.dynamics.model import Model
+from rovsim.estimation.kernels.whittle import least_misfit
 from rovsim.estimation.observer.observed_run import ObservedRun
-from rovsim.estimation.observer.whittle import least_misfit
 
 MIN_FREQUENCY_HZ = 5.0  # Hz; above it the vehicle's inertia leaves nothing to see
 SEGMENT_SECONDS = 2.56  # s of each periodogram

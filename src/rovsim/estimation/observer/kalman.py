@@ -8,7 +8,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.linalg import expm
 
-from rovsim.estimation.observer.axis_kernels import (
+from rovsim.estimation.kernels.axis import (
     BIN_MEAN,
     POSE,
     characteristic,
@@ -33,7 +33,7 @@ class AxisErrorDynamics(NamedTuple):
     def over(self, h: float, kind: int = POSE) -> Array:
         """Transition (3, 3) over h s of the errors of pose and velocity, and of a constant push.
 
-        `kind` is that of the readings (see `axis_kernels`). Where they are mean velocities over
+        `kind` is that of the readings (see `kernels.axis`). Where they are mean velocities over
         bins, poses are taken as measured, so that an error of the pose has no effect.
         """
         return _integrate(h, self.damping, 0.0 if kind == BIN_MEAN else self.stiffness)
@@ -122,5 +122,5 @@ class AxisFilter:
 
 
 def design_filter(kind: int, h: float, dynamics: AxisErrorDynamics, noise: AxisNoise) -> AxisFilter:
-    """Design the filter of one axis for readings of a `kind` (`axis_kernels`) every h s."""
+    """Design the filter of one axis for readings of a `kind` (`kernels.axis`) every h s."""
     return AxisFilter(*solve_steady_state(kind, h, dynamics.over(h, kind), *noise))

@@ -23,8 +23,8 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.threads import on_cores
+from rovsim.estimation.kernels.axis import filter_kept
 from rovsim.estimation.observer.autoregression import Autoregression
-from rovsim.estimation.observer.axis_kernels import filter_kept
 from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,
     AxisErrorDynamics,

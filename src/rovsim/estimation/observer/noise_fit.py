@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from scipy.optimize import minimize
 
 from rovsim.core.threads import map_on_cores
-from rovsim.estimation.observer.axis_kernels import misfit
+from rovsim.estimation.kernels.axis import misfit
 from rovsim.estimation.observer.kalman import (
     TYPICAL_BIAS_TIME,
     AxisErrorDynamics,

@@ -12,7 +12,7 @@ from rovsim.core.rotations import normalized
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
-from rovsim.estimation.observer.axis_kernels import BIN_MEAN, POSE, SUM
+from rovsim.estimation.kernels.axis import BIN_MEAN, POSE, SUM
 from rovsim.estimation.observer.steps import Steps, divide_run
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
@@ -156,7 +156,7 @@ class ObservedRun(Steps):
 
     @cached_property
     def reading_kinds(self) -> Array:
-        """Kind of the readings of each axis (6,): poses, means or sums, see `axis_kernels`."""
+        """Kind of the readings of each axis (6,): poses, means or sums, see `kernels.axis`."""
         if self.motion.binned:
             return np.full(6, BIN_MEAN)
         axes = self.motion.measured

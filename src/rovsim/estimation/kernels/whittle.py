@@ -1,16 +1,13 @@
-"""The likeliest sizes of the parts of a noise, from periodograms; compiled: thousands are asked.
+"""The likeliest sizes of the parts of a noise, from periodograms: thousands are asked.
 
 Whittle's likelihood (Whittle 1953) is greatest there. Fisher's scoring, damped as by Levenberg and
 Marquardt, uses that the expected curvature is known: a quasi-Newton method of a library takes three
 times as long in all and ends a hundred short of the greatest likelihood where parts are alike.
-
-All that is compiled for it is in this file, `solve` too: see `axis_kernels`.
 """
 
 import numpy as np
-from numba import njit
 
-from rovsim.estimation.observer.axis_kernels import FROM_PYTHON, INTERNAL
+from rovsim.estimation.kernels.compiled import from_python, internal
 
 MAX_STEPS = 200  # bounds what does not converge
 COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still gains
@@ -18,7 +15,7 @@ COST_TOLERANCE = 1e-10  # of a likelihood of one frequency, that a step still ga
 INITIAL_DAMPING, DAMPING_DECREASE, DAMPING_INCREASE, MAX_DAMPING = 100.0, 0.2, 5.0, 1e12
 
 
-@njit(**INTERNAL)
+@internal
 def solve(A, b):
     """x (k,) with A (k, k) x = b; A is positive definite, so no pivot is sought."""
     n = len(b)
@@ -35,7 +32,7 @@ def solve(A, b):
     return x
 
 
-@njit(**INTERNAL)
+@internal
 def take_step(slope, curvature, damping, free):
     """The damped step (k,) of those sizes that are free (k,); the others stay."""
     A = curvature.copy()
@@ -46,7 +43,7 @@ def take_step(slope, curvature, damping, free):
     return solve(A, np.where(free, -slope, 0.0))
 
 
-@njit(**INTERNAL)
+@internal
 def evaluate(x, power, white, others):
     """Cost of log sizes x (k,), its slope (k,) and expected curvature (k, k).
 
@@ -78,7 +75,7 @@ def evaluate(x, power, white, others):
     return logs + frequencies * np.log(scale), slope, curvature
 
 
-@njit(**INTERNAL)
+@internal
 def least_cost(power, white, others, low, high):
     """The least cost over log sizes between low and high (k,), of one periodogram (f,)."""
     x, damping = 0.5 * (low + high), INITIAL_DAMPING
@@ -101,7 +98,7 @@ def least_cost(power, white, others, low, high):
     return cost
 
 
-@njit(**FROM_PYTHON)
+@from_python
 def least_misfit(power, white, others, low, high):
     """Whittle's cost, up to a constant, least over sizes, summed over periodograms (c, f).
 

@@ -1,16 +1,12 @@
-"""Filters of one axis and their likelihoods, compiled: a fit of the noise makes thousands of them.
-
-All that is compiled for them is in this file, by whose age Numba knows whether what it keeps is
-still true: it does not ask what files a function calls into.
+"""Filters of one axis and their likelihoods: a fit of the noise makes thousands of them.
 
 Matrices of two to four rows are written out: to call BLAS and LAPACK takes longer than the work
 itself, and they, like whole-array expressions, take some 10 s more to compile than these loops.
 """
 
-from typing import Any
-
 import numpy as np
-from numba import njit
+
+from rovsim.estimation.kernels.compiled import from_python, inlined, internal, unlocked
 
 POSE, BIN_MEAN, SUM = 0, 1, 2  # what is read of an axis
 MAX_DOUBLINGS = 60  # of the time that is over: far more than any filter takes to settle
@@ -18,13 +14,9 @@ DOUBLING_TOLERANCE = 1e-13  # of what there is, that a doubling still adds
 # A little noise everywhere keeps the Riccati equation solvable; it is far below the readings'.
 MIN_NOISE_SHARE, MIN_DRIVING_VARIANCE = 1e-6, 1e-12
 READING_NOISE_SHARE = 1e-4  # of the noise that adds up
-# A division by zero gives what is not finite: it ends no search among noises that cannot be.
-FROM_PYTHON: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
-# Called by compiled functions alone; what makes one callable from outside takes as long to compile.
-INTERNAL: dict[str, Any] = {**FROM_PYTHON, "no_cpython_wrapper": True}
 
 
-@njit(**INTERNAL)
+@internal
 def multiply(A, B):
     """A (n, k) times B (k, m)."""
     out = np.zeros((A.shape[0], B.shape[1]))
@@ -35,7 +27,7 @@ def multiply(A, B):
     return out
 
 
-@njit(**INTERNAL)
+@internal
 def transpose(A):
     """The transpose of A (n, n), as a copy."""
     out = np.zeros(A.shape)
@@ -45,7 +37,7 @@ def transpose(A):
     return out
 
 
-@njit(**INTERNAL)
+@internal
 def increase(A, B):
     """Add B to A (n, m) in place; the largest size of what was added, and of what is there now."""
     increment, size = 0.0, 0.0
@@ -56,14 +48,14 @@ def increase(A, B):
     return increment, size
 
 
-@njit(**INTERNAL)
+@internal
 def add_to_diagonal(A, value):
     """Add a number to the diagonal of A (n, n) in place."""
     for i in range(len(A)):
         A[i, i] += value
 
 
-@njit(**INTERNAL)
+@internal
 def put_rows(A, B, count):
     """The first rows of B (n, k) into those of A: of a slice Numba compiles its error, for 2 s."""
     for i in range(count):
@@ -71,7 +63,7 @@ def put_rows(A, B, count):
             A[i, j] = B[i, j]
 
 
-@njit(**INTERNAL)
+@internal
 def invert(A):
     """Inverse of A (n, n), which is lost, by Gauss-Jordan elimination with partial pivoting."""
     n = len(A)
@@ -97,7 +89,7 @@ def invert(A):
     return out
 
 
-@njit(**FROM_PYTHON)
+@from_python
 def solve_steady_state(
     kind,
     h,
@@ -148,7 +140,7 @@ def solve_steady_state(
     return F, C, gain, variance, characteristic(multiply(F, correction)), noise_denominator
 
 
-@njit(**INTERNAL)
+@internal
 def solve_riccati(F, C, Q, r):
     """Steady covariance (n, n) of x' = F x + w, y = C x + v, predicted; w has Q, v has variance r.
 
@@ -174,7 +166,7 @@ def solve_riccati(F, C, Q, r):
     return H
 
 
-@njit(**FROM_PYTHON)
+@from_python
 def characteristic(A):
     """Coefficients of det(z I - A), highest power first (Faddeev-LeVerrier)."""
     n = len(A)
@@ -189,7 +181,7 @@ def characteristic(A):
     return coefficients
 
 
-@njit(inline="always", **INTERNAL)
+@inlined
 def _filtered(b, a, value, state):
     """Next output of a filter, a[0] = 1; `state` changes (direct form II, transposed)."""
     order = len(state)
@@ -200,7 +192,7 @@ def _filtered(b, a, value, state):
     return out
 
 
-@njit(nogil=True, **FROM_PYTHON)
+@unlocked
 def filter_kept(b, a, e, spans, kept, shown, scale, out):
     """Filter each span of e (k, 6, n) by itself, axis by axis; the kept ones (k, 6, m) into out.
 
@@ -230,7 +222,7 @@ def filter_kept(b, a, e, spans, kept, shown, scale, out):
                     m += 1
 
 
-@njit(**FROM_PYTHON)
+@from_python
 def sum_of_squares(b, a, e, spans, kept, shown):
     """Sum of squares of the kept filtered values of e (n,), of those shown, and their count."""
     total, count = 0.0, 0
@@ -246,7 +238,7 @@ def sum_of_squares(b, a, e, spans, kept, shown):
     return total, count
 
 
-@njit(**INTERNAL)
+@internal
 def convolve(a, b):
     """Product of two polynomials; `numpy.convolve` takes longer to call than to work."""
     out = np.zeros(len(a) + len(b) - 1)
@@ -256,7 +248,7 @@ def convolve(a, b):
     return out
 
 
-@njit(nogil=True, **FROM_PYTHON)
+@unlocked
 def misfit(noise, kind, h, moved, denominator, noise_denominator, e, spans, kept, shown):
     """Sum of squares over their variance, its logarithm, and the number of those that count.
 
