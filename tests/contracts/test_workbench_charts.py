@@ -5,7 +5,7 @@ from io import StringIO
 
 import numpy as np
 
-from rovsim.apps.workbench import charts, ladder, path, runaway
+from rovsim.apps.workbench import charts, divergence, ladder, path
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.draft import Draft
 from rovsim.apps.workbench.traces import beside, panels
@@ -21,18 +21,18 @@ def test_a_replay_that_diverges_is_told_and_cut_beside_the_measurement(bench):
     draft.move("quadratic_damping", "surge", -230.0)
     motion = bench.data.motions["3dof-1"]
     wild = bench.replays.prediction(draft.model(), "3dof-1", 2.0)
-    at = runaway.find_divergence(motion.time, wild)
+    at = divergence.find_divergence(motion.time, wild)
     assert 0.0 < at < motion.time[-1] - motion.time[0]
-    said = runaway.tell_divergence(motion.time, {"new": wild})
+    said = divergence.tell_divergence(motion.time, {"new": wild})
     assert said.startswith(f"The replay of new diverges after {at:.1f} s;")
     for quantity in ("nu", "nu_dot", "eta"):
         shown = panels(motion, {"new": wild}, ["surge", "yaw"], quantity)
         size = np.nanmax(np.abs(shown[0].curves["measured"]))
         assert np.nanmax(np.abs(shown[0].curves["new"])) < 5.0 * size
     lost = bench.replays.prediction(draft.model(), "3dof-1", None)
-    assert "nothing of it can be shown" in runaway.tell_divergence(motion.time, {"new": lost})
+    assert "nothing of it can be shown" in divergence.tell_divergence(motion.time, {"new": lost})
     calm = bench.replays.prediction(bench.base, "3dof-1", 2.0)
-    assert runaway.tell_divergence(motion.time, {"nominal": calm}) == ""
+    assert divergence.tell_divergence(motion.time, {"nominal": calm}) == ""
 
 
 def test_a_pose_is_shown_in_the_tank_and_turns_the_short_way(bench):

@@ -8,7 +8,7 @@ from rovsim.diagnosis import validated_search
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue, built_in
-from rovsim.estimation.observer.divergence import ModelLost, require_finite
+from rovsim.estimation.observer.divergence import ModelDiverged, require_finite
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def test_what_is_finite_is_held(flight):
 
 def test_readings_are_left_out_from_before_the_model_is_lost_until_it_is_back(flight):
     _, (run,) = flight
-    with pytest.raises(ModelLost) as caught:
+    with pytest.raises(ModelDiverged) as caught:
         require_finite([lost_between(run, 12.0, 15.0)])
     (kept,), lost = caught.value.leave_out([run])
     gone = run.motion.time[run.motion.usable & ~kept.motion.usable]
@@ -49,5 +49,5 @@ def test_a_diagnosis_goes_on_without_what_was_lost(flight, monkeypatch):
     few = Catalogue({"net_buoyancy": built_in()["net_buoyancy"]})
     found = diagnose_train_runs(base, [run], DiagnosisSettings(), few)
     assert found.fit is not None
-    assert found.usable.lost == {"a": pytest.approx(21.0, abs=0.1)}
+    assert found.usable.diverged_from == {"a": pytest.approx(21.0, abs=0.1)}
     assert found.usable.seconds < 21.0

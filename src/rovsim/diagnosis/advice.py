@@ -105,7 +105,7 @@ def advise(
 
 def _advise_new_data(diagnosis: TrainDiagnosis) -> str:
     """Say what is needed where there was too little to judge anything."""
-    if diagnosis.usable.lost:
+    if diagnosis.usable.diverged_from:
         return CORRECT_DIVERGING_MODEL
     if not diagnosis.usable.runs:
         return ADD_TRAIN_RUN

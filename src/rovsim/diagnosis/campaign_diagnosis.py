@@ -90,10 +90,8 @@ def diagnose_campaign(
     diagnosis = diagnose_train_runs(base, train.runs, settings, catalogue)
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
-    ladder, diverged_runs = _build_ladder(diagnosis, runs, settings, catalogue)
-    context = CampaignContext(
-        recordings, shares, ladder, train.looked_at, standstills, diverged_runs
-    )
+    ladder, diverges_in = _build_ladder(diagnosis, runs, settings, catalogue)
+    context = CampaignContext(recordings, shares, ladder, train.looked_at, standstills, diverges_in)
     document = assemble_diagnosis(diagnosis, context, catalogue)
     return CampaignDiagnosis(
         document, conditions, diagnosis.proposed.source if diagnosis.proposed else None
@@ -141,7 +139,9 @@ def _build_ladder(
             score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
     steps = [score.step for score in scores]
     floor = _estimate_noise_floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
-    return Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor))), scores[0].away
+    return Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor))), scores[
+        0
+    ].diverges_in
 
 
 def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:

@@ -65,7 +65,7 @@ class CampaignContext:
         looked_at: how much of the train runs was used.
         standstills: stretches of train runs in which the vehicle stands still although the base
             would move.
-        away: ids of the test runs in which the base diverges.
+        diverges_in: ids of the test runs in which the base diverges.
     """
 
     recordings: Mapping[str, str]
@@ -73,7 +73,7 @@ class CampaignContext:
     ladder: Ladder
     looked_at: LookedAt | None = None
     standstills: Sequence[Standstill] = ()
-    away: Sequence[str] = ()
+    diverges_in: Sequence[str] = ()
 
 
 def assemble_diagnosis(
@@ -115,8 +115,10 @@ def assemble_diagnosis(
         noise=_describe_noise(diagnosis),
         posterior=_describe_posterior(diagnosis),
         looked_at=context.looked_at,
-        not_followed_from_s={run: round(at, 1) for run, at in diagnosis.usable.lost.items()},
-        runs_away_in=tuple(context.away),
+        not_followed_from_s={
+            run: round(at, 1) for run, at in diagnosis.usable.diverged_from.items()
+        },
+        runs_away_in=tuple(context.diverges_in),
         standstills=tuple(context.standstills),
         thrusters=diagnosis.base.vehicle.thruster_names,
         recordings=dict(context.recordings),

@@ -71,7 +71,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.model import Model
 from rovsim.dynamics.uncertainty import correlate
 from rovsim.estimation.fit import Fit
-from rovsim.estimation.observer.divergence import ModelLost
+from rovsim.estimation.observer.divergence import ModelDiverged
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.usable_runs import UsableRuns, select_usable
@@ -135,7 +135,7 @@ class TrainDiagnosis:
             return "unexplained"
         if self.selected:
             return "missing_effects"
-        unseen = self.usable.still or self.usable.lost
+        unseen = self.usable.still or self.usable.diverged_from
         return "insufficient_data" if unseen else "adequate"
 
     @property
@@ -175,9 +175,9 @@ def diagnose_train_runs(
             try:
                 problem = DiagnosisProblem(base, usable, settings, catalogue)
                 return _summarise(search_and_validate(problem))
-            except ModelLost as diverged:
-                runs, lost_from = diverged.leave_out(usable.runs)
-                usable = select_usable(runs, {**usable.lost, **lost_from})
+            except ModelDiverged as diverged:
+                runs, diverged_from = diverged.leave_out(usable.runs)
+                usable = select_usable(runs, {**usable.diverged_from, **diverged_from})
         return TrainDiagnosis(base, usable)
 
 

@@ -92,7 +92,7 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
         problem: what is to be explained.
 
     Raises:
-        ModelLost: in some run the model diverges, whatever the filter's corrections.
+        ModelDiverged: in some run the model diverges, whatever the filter's corrections.
     """
     base, usable = problem.base, problem.usable
     begin_stage("observing")

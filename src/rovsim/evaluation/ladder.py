@@ -19,12 +19,12 @@ class StepScore:
     Attributes:
         model: its name.
         split: runs of other splits are ignored.
-        away: ids of runs in which the model diverges. The pooled error is then None.
+        diverges_in: ids of runs in which the model diverges. The pooled error is then None.
     """
 
     model: str
     split: str = "test"
-    away: list[str] = field(default_factory=list)
+    diverges_in: list[str] = field(default_factory=list)
     _errors: ErrorSums = field(default_factory=ErrorSums.nothing)
     _measured: VelocityMoments = field(default_factory=VelocityMoments.nothing)
 
@@ -34,7 +34,7 @@ class StepScore:
             return
         sums = ErrorSums.of(errors)
         if not np.isfinite(sums.nu_squared).all():
-            self.away.append(motion.run.id)
+            self.diverges_in.append(motion.run.id)
         self._errors += sums
         self._measured += VelocityMoments.of(motion)
 

@@ -11,7 +11,7 @@ place          keeps what a screen shows in its address
 choices        what was chosen on a screen, and the controls that change it
 workbench      the open campaign and its models; knows nothing of a browser
 kept_replays   replays and errors of models, each computed once
-runaway        replays that run away
+divergence     replays that diverge
 draft          a model being put together from effects
 work           long work in a process of its own
 jobs           begins long work on the open campaign

@@ -7,9 +7,9 @@ from nicegui import ui
 
 from rovsim.apps.workbench.add_effects import Effects
 from rovsim.apps.workbench.choices import Choices
+from rovsim.apps.workbench.divergence import tell_divergence
 from rovsim.apps.workbench.parts import about_axes, computed, heading, text, tile, tile_html
 from rovsim.apps.workbench.place import Place
-from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.saving import Saving
 from rovsim.apps.workbench.traces import (
     HORIZONS,

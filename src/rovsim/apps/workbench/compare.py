@@ -6,6 +6,7 @@ from nicegui import ui
 
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.choices import Choices
+from rovsim.apps.workbench.divergence import tell_divergence
 from rovsim.apps.workbench.parts import (
     about_axes,
     cell,
@@ -18,7 +19,6 @@ from rovsim.apps.workbench.parts import (
 )
 from rovsim.apps.workbench.path import Path
 from rovsim.apps.workbench.place import Place
-from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.traces import (
     BAND_FIELDS,
     HORIZONS,

@@ -7,6 +7,7 @@ from nicegui import ui
 
 from rovsim.apps.workbench.charts import Panel
 from rovsim.apps.workbench.choices import Choices
+from rovsim.apps.workbench.divergence import tell_divergence
 from rovsim.apps.workbench.parts import (
     Failure,
     about_axes,
@@ -22,7 +23,6 @@ from rovsim.apps.workbench.parts import (
     words,
 )
 from rovsim.apps.workbench.place import Place
-from rovsim.apps.workbench.runaway import tell_divergence
 from rovsim.apps.workbench.traces import (
     HORIZONS,
     Traces,

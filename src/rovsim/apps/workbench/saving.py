@@ -5,6 +5,7 @@ from pathlib import Path
 
 from nicegui import ui
 
+from rovsim.apps.workbench.divergence import find_divergence
 from rovsim.apps.workbench.parts import (
     Failure,
     computed,
@@ -14,7 +15,6 @@ from rovsim.apps.workbench.parts import (
     text,
     tile,
 )
-from rovsim.apps.workbench.runaway import find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.errors import RovsimError
 from rovsim.core.horizons import STANDARD_WINDOW

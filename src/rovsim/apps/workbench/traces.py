@@ -17,8 +17,8 @@ from rovsim.apps.workbench.charts import (
     styles,
     time_series,
 )
+from rovsim.apps.workbench.divergence import cut, find_divergence
 from rovsim.apps.workbench.parts import Slider, chart
-from rovsim.apps.workbench.runaway import cut, find_divergence
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.axes import ACCELERATION_UNITS, AXES, FORCE_UNITS, VELOCITY_UNITS
 from rovsim.core.rotations import short_way, to_euler

@@ -1,4 +1,4 @@
-"""Where the observer loses a model, however it is corrected: nothing can be learned there.
+"""Where a model diverges, however the observer corrects it: nothing can be learned there.
 
 A filter corrects what is measured. A vehicle that tumbles while nobody measures how fast it moves
 ahead and sideways may carry a model there to infinity.
@@ -13,11 +13,11 @@ from rovsim.estimation.observer.noise_fit import MAX_CORRELATION_TIME
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 
-class ModelLost(Exception):
+class ModelDiverged(Exception):
     """Innovations e (6, n) of each run are not finite everywhere."""
 
     def __init__(self, e: Sequence[Array]) -> None:
-        super().__init__("the model runs away from the recordings")
+        super().__init__("the model diverges from the recordings")
         self.finite = [np.isfinite(e_run).all(axis=0) for e_run in e]
 
     def leave_out(self, runs: Sequence[ObservedRun]) -> tuple[list[ObservedRun], dict[str, float]]:
@@ -40,7 +40,7 @@ def require_finite(e: Sequence[Array]) -> None:
     """Refuse to go on where innovations e (6, n) of some run are not finite.
 
     Raises:
-        ModelLost: they are not.
+        ModelDiverged: they are not.
     """
     if not all(np.isfinite(e_run).all() for e_run in e):
-        raise ModelLost(e)
+        raise ModelDiverged(e)

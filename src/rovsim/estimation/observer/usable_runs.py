@@ -24,7 +24,7 @@ class UsableRuns:
         unmeasured: axes that nobody measured.
         locked_axes: axes in which the vehicle cannot move.
         seconds: of settled readings in all runs.
-        lost: by run id, the time in s from which on a run is left out, as the model diverges.
+        diverged_from: by run id, time in s from which on a run is left out: the model diverges.
     """
 
     runs: tuple[ObservedRun, ...]
@@ -32,7 +32,7 @@ class UsableRuns:
     unmeasured: tuple[str, ...]
     locked_axes: tuple[str, ...]
     seconds: float
-    lost: Mapping[str, float] = field(default_factory=dict)
+    diverged_from: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def enough(self) -> bool:
@@ -51,14 +51,16 @@ class UsableRuns:
 
 
 def select_usable(
-    train: Sequence[ObservedRun], lost: Mapping[str, float] | None = None
+    train: Sequence[ObservedRun], diverged_from: Mapping[str, float] | None = None
 ) -> UsableRuns:
-    """Select the train runs that have a usable stretch; for `lost` see `UsableRuns`."""
+    """Select the train runs that have a usable stretch; for `diverged_from` see `UsableRuns`."""
     runs = tuple(run for run in train if len(run.segments))
     seconds = float(sum(run.settled.sum() * run.period for run in runs))
     free, measured, excited = _find_axes(runs)
     at_rest, unmeasured, locked = measured & free & ~excited, free & ~measured, ~free
-    return UsableRuns(runs, _name(at_rest), _name(unmeasured), _name(locked), seconds, lost or {})
+    return UsableRuns(
+        runs, _name(at_rest), _name(unmeasured), _name(locked), seconds, diverged_from or {}
+    )
 
 
 def _name(axes: Array) -> tuple[str, ...]:

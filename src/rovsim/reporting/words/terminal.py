@@ -39,7 +39,7 @@ def tell_comparison(
     where: ErrorConditions,
     tested: bool,
     coverage: Bands | None = None,
-    away: Sequence[str] = (),
+    diverging: Sequence[str] = (),
 ) -> str:
     """Return a table of 2 s errors, what bands contain, and where the last model fails.
 
@@ -48,11 +48,11 @@ def tell_comparison(
         where: the errors over conditions.
         tested: whether there is a test run; if not, a sentence takes the place of the table.
         coverage: how much of the test runs lies inside the bands; None if unknown.
-        away: models that diverge on the test runs.
+        diverging: models that diverge on the test runs.
     """
     table = _tell_errors(errors) if tested else ["", *fold(NO_TEST_RUN)]
-    if tested and away:
-        table += ["", *fold(NO_ERROR_SENTENCE.format(listed([title(name) for name in away])))]
+    if tested and diverging:
+        table += ["", *fold(NO_ERROR_SENTENCE.format(listed([title(name) for name in diverging])))]
     sentences = band_sentences(coverage) if coverage else []
     bands = [line for sentence in sentences for line in ("", *fold(sentence))]
     return "\n".join([*table, *bands, *_tell_findings(where)])

@@ -193,7 +193,7 @@ def error_sentence(diagnosis: Diagnosis) -> str:
     error = diagnosis.error
     before, after, floor = map(or_nan, (error.nominal, error.with_effects, error.noise_floor))
     if diagnosis.runs_away_in:
-        return _away_sentence(diagnosis.runs_away_in, after)
+        return _divergence_sentence(diagnosis.runs_away_in, after)
     if not math.isfinite(before):
         return NO_TEST_RUN
     now = _change(before, after) if diagnosis.selected else f"is {significant(before)}"
@@ -218,7 +218,7 @@ def _change(before: float, after: float) -> str:
     return f"{'rises' if after > before else 'falls'} from {then} to {now}"
 
 
-def _away_sentence(runs: Sequence[str], after: float) -> str:
+def _divergence_sentence(runs: Sequence[str], after: float) -> str:
     """Say that the model has no error, as it diverges in these test runs.
 
     `after` is the error of the model with effects, which may have one; NaN if not.
