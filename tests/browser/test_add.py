@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rovsim.reporting.wording import rounded
+from rovsim.core.rounding import rounded
 from screens import CHANGED, READY, have_diagnosed
 
 pytestmark = pytest.mark.browser
@@ -52,7 +52,7 @@ def test_what_was_added_is_typed_undone_and_put_back(tab, workbench):
     number.press("Enter")
     tab.page.wait_for_function(CHANGED, arg=["run/now", first])
     put_back(tab)
-    begun = rounded(fitted["parameters"]["time_constant"]["value"])
+    begun = rounded(fitted["parameters"]["time_constant"]["value"], 3)
     tab.page.wait_for_function(f"Number({NUMBER}.value) == {begun}")
 
 

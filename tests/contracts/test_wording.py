@@ -9,6 +9,7 @@ import pytest
 from pandas import DataFrame
 
 from rovsim.apps import workbench
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.figures import find_figure
@@ -21,7 +22,6 @@ from rovsim.reporting.wording import (
     ERROR_NAME,
     LADDER_NOTE,
     listed,
-    rounded,
     significant,
     tell_probability,
 )
@@ -119,7 +119,7 @@ def test_numbers_below_zero_have_a_minus_sign():
     assert interval(FittedValue(value=-0.03, std=3.0, unit="m")) == "0.0 ± 5.9 m"
     assert interval(FittedValue(value=-3.944, std=0.1, unit="N")) == "−3.94 ± 0.20 N"
     assert interval(FittedValue(value=-3.944, unit="N")) == "−3.944 N"
-    assert rounded(-3.9444) == -3.94
+    assert rounded(-3.9444, 3) == -3.94
     assert (
         "{\\num{-2.00e-07}}"
         in Table(

@@ -9,6 +9,7 @@ mappings        nested mappings by dotted names
 names           checks names that people give
 model_names     names of the built-in models
 signs           minus signs of numbers in text
+rounding        numbers rounded to significant digits
 columns         text that fits a terminal
 progress        how far long work is, and the time left
 axes            the six axes, their letters and units

@@ -7,6 +7,7 @@ from numpy import ndarray as Array
 
 from rovsim.core.odds import odds_of
 from rovsim.core.rotations import short_way
+from rovsim.core.rounding import rounded
 from rovsim.core.run import Site
 from rovsim.design.adequacy import warn_of_wider
 from rovsim.design.envelope import find_extremes
@@ -82,10 +83,10 @@ def _list_std(rival: FittedHypothesis, then: Array, std_ratio: Array) -> dict[st
     parameters = [p for term in rival.hypothesis.terms for p in term.parameters]
     return {
         rival.names[k]: Surer(
-            now=or_none(_round(parameters[k].std_of(s * ratio))),
-            then=or_none(_round(parameters[k].std_of(s))),
+            now=or_none(rounded(parameters[k].std_of(s * ratio))),
+            then=or_none(rounded(parameters[k].std_of(s))),
             unit=parameters[k].unit,
-            gained=or_none(_round(ratio**2 - 1.0)),
+            gained=or_none(rounded(ratio**2 - 1.0)),
         )
         for k, s, ratio in zip(rival.of_interest, then, std_ratio, strict=True)
     }
@@ -99,16 +100,12 @@ def _list_odds(prior: PriorInformation, expected: ExpectedInformation) -> dict[s
     for name, before, gain in zip(names, log_odds, expected.log_odds_gain, strict=True):
         after = before + gain
         odds[name] = RivalOdds(
-            now=_round(odds_of(2.0 * before)),
-            then=_round(odds_of(2.0 * after)),
-            log_odds_now=_round(before),
-            log_odds_then=_round(after),
+            now=rounded(odds_of(2.0 * before)),
+            then=rounded(odds_of(2.0 * after)),
+            log_odds_now=rounded(before),
+            log_odds_then=rounded(after),
         )
     return odds
-
-
-def _round(value: float) -> float:
-    return float(f"{value:.6g}")
 
 
 def _compare(
@@ -124,7 +121,7 @@ def _compare(
         std=expectation.std,
         amplitude=usual.flight.amplitude,
         designed_is_better=or_none(
-            _round(designed.utility / max(usual.expected.utility, MIN_INFORMATION_GAIN))
+            rounded(designed.utility / max(usual.expected.utility, MIN_INFORMATION_GAIN))
         ),
     )
 
@@ -135,8 +132,8 @@ def _keep(paths: Array, site: Site) -> Keeps:
     margin = np.minimum(position - tank[:, 0], tank[:, 1] - position)
     walled = np.isfinite(margin).any() and not np.isnan(margin).all()
     return Keeps(
-        nearest_wall_m=_round(float(np.nanmin(margin))) if walled else None,
-        speed_m_s=_round(speed),
-        turn_rate_rad_s=_round(rate),
-        tilt_rad=_round(tilt),
+        nearest_wall_m=rounded(float(np.nanmin(margin))) if walled else None,
+        speed_m_s=rounded(speed),
+        turn_rate_rad_s=rounded(rate),
+        tilt_rad=rounded(tilt),
     )

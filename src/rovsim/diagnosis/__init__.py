@@ -6,6 +6,7 @@ settings            how a diagnosis decides
 selection           which effects of the catalogue are accepted, and their rivals
 structure           tests whether what is left is noise
 uncertainty         widens intervals by what else may be wrong, as the rest of the vehicle file may
+fitted_values       fitted values of an effect, as the document lists them
 checks              what the runs could not show, and values that make no sense
 equations           a law for what is left, where one holds; else the force in time
 answer              the accepted effects, validated, at their final values, and what they leave

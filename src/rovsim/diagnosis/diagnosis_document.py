@@ -6,14 +6,14 @@ from typing import Mapping, Sequence
 import numpy as np
 
 from rovsim.core.odds import share_odds
+from rovsim.core.rounding import rounded, rounded_or_none
 from rovsim.diagnosis.advice import advise
 from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.describe import (
     describe_force,
     describe_law,
-    describe_values,
-    rounded,
 )
+from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.diagnosis.selection.accepted_effects import find_std
 from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect
 from rovsim.diagnosis.selection.search_result import MIN_LR_APART, Rival
@@ -107,7 +107,9 @@ def assemble_diagnosis(
         not_observable=tuple(diagnosis.not_observable),
         rivals=tuple(
             RivalEffect(
-                effect=r.effect, instead_of=r.instead_of, deficit=rounded(r.deviance_difference)
+                effect=r.effect,
+                instead_of=r.instead_of,
+                deficit=rounded_or_none(r.deviance_difference),
             )
             for r in diagnosis.rivals
             if np.isfinite(r.deviance_difference)
@@ -140,7 +142,7 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     """Report the common scale of all forces, where it is unknown."""
     if scale is None:
         return None
-    return ScaleOfForces(std=rounded(scale.std), parameters=scale.parameters)
+    return ScaleOfForces(std=rounded_or_none(scale.std), parameters=scale.parameters)
 
 
 def _summarise_errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
@@ -150,9 +152,11 @@ def _summarise_errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
         ladder: of the test runs.
         selected: number of selected effects.
     """
-    errors = [rounded(step.windows_2s) for step in ladder.models]
+    errors = [rounded_or_none(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
-        nominal=errors[0], with_effects=errors[selected], noise_floor=rounded(ladder.noise_floor)
+        nominal=errors[0],
+        with_effects=errors[selected],
+        noise_floor=rounded_or_none(ladder.noise_floor),
     )
 
 
@@ -161,8 +165,8 @@ def _describe_selected(one: OrderedEffect) -> SelectedEffect:
     return SelectedEffect(
         effect=one.term.id,
         parameters=describe_values(one.term, one.std),
-        error_reduction=rounded(one.error_reduction),
-        probability=rounded(one.probability),
+        error_reduction=rounded_or_none(one.error_reduction),
+        probability=rounded_or_none(one.probability),
         doubt=one.doubt,
     )
 
@@ -172,8 +176,8 @@ def _describe_ranked(one: RankedEffect) -> FittedEffect:
     return FittedEffect(
         effect=one.term.id,
         parameters=describe_values(one.term, {}),
-        error_reduction=rounded(one.error_reduction),
-        probability=rounded(one.probability),
+        error_reduction=rounded_or_none(one.error_reduction),
+        probability=rounded_or_none(one.probability),
     )
 
 
@@ -209,7 +213,7 @@ def describe_structures(diagnosis: TrainDiagnosis) -> Unexplained:
     share = diagnosis.structures[0].share if diagnosis.structures else None
     doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")
     return Unexplained(
-        fraction=rounded(share),
+        fraction=rounded_or_none(share),
         significant=True,
         hint=_format_hint(diagnosis.structures, diagnosis.difference)
         if diagnosis.structures
@@ -262,7 +266,7 @@ def _describe_posterior(diagnosis: TrainDiagnosis) -> Posterior | None:
         correlation=diagnosis.correlation or Correlation(),
         instead=tuple(
             Possibility(
-                probability=float(f"{probability:.6g}"),
+                probability=rounded(probability),
                 effects=_list_effects(fit),
                 correlation=correlate(fit.covariance, fit.hypothesis.parameter_names),
             )
@@ -288,10 +292,10 @@ def _describe_noise(diagnosis: TrainDiagnosis) -> FittedNoise:
     noise = diagnosis.fit.noise
     slow = noise.bias_std.any()
     return FittedNoise(
-        disturbance=tuple(map(rounded, noise.disturbance_std)),
-        memory_s=tuple(map(rounded, noise.correlation_time)),
-        reading=tuple(map(rounded, noise.measurement_std)),
-        period_s=rounded(diagnosis.usable.runs[0].period),
-        colour=tuple(map(rounded, noise.bias_std)) if slow else (),
-        colour_memory_s=tuple(map(rounded, noise.bias_correlation_time)) if slow else (),
+        disturbance=tuple(map(rounded_or_none, noise.disturbance_std)),
+        memory_s=tuple(map(rounded_or_none, noise.correlation_time)),
+        reading=tuple(map(rounded_or_none, noise.measurement_std)),
+        period_s=rounded_or_none(diagnosis.usable.runs[0].period),
+        colour=tuple(map(rounded_or_none, noise.bias_std)) if slow else (),
+        colour_memory_s=tuple(map(rounded_or_none, noise.bias_correlation_time)) if slow else (),
     )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput, nearest
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effects.base import Effect
 from rovsim.results.fitted import Correlation, FittedNoise
 
@@ -94,5 +95,5 @@ def correlate(covariance: Array, names: Sequence[str]) -> Correlation:
     rows = np.clip(covariance / np.outer(std, std), -1.0, 1.0)
     return Correlation(
         between=tuple(names),
-        rows=tuple(tuple(float(f"{r:.9g}") for r in row[: i + 1]) for i, row in enumerate(rows)),
+        rows=tuple(tuple(rounded(r, 9) for r in row[: i + 1]) for i, row in enumerate(rows)),
     )

@@ -12,6 +12,7 @@ from rovsim.core.model_names import (
     REFITTED,
     ZERO_ACCELERATION,
 )
+from rovsim.core.rounding import rounded
 from rovsim.core.signs import minus
 
 if TYPE_CHECKING:
@@ -146,8 +147,3 @@ def significant(value: float, digits: int = 3) -> str:
         return minus(f"{value:.{digits - 1}e}")
     places = digits - 1 - math.floor(math.log10(abs(rounded(value, digits))))
     return minus(f"{round(value, places):.{max(places, 0)}f}")
-
-
-def rounded(value: float, digits: int = 3) -> float:
-    """Return `value` to so many significant figures, as a number."""
-    return float(f"{value:.{digits - 1}e}")

@@ -8,9 +8,10 @@ from nicegui import ui
 from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.parts import Failure, Slider, alarm, text
 from rovsim.apps.workbench.workbench import Workbench
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.reporting.units import unit
-from rovsim.reporting.wording import rounded, tell_probability
+from rovsim.reporting.wording import tell_probability
 from rovsim.reporting.words.totals import tell_total
 
 SLIDER_STEPS = 400
@@ -143,7 +144,7 @@ class ParameterRow:
         step = 1.0 if self.parameter.discrete else (high - low) / SLIDER_STEPS
         self.slider = Slider(min=low, max=high, step=step, value=value)
         self.slider.props(f'aria-label="{label}"')
-        self.number = ui.number(value=rounded(value), suffix=self.unit).classes("value")
+        self.number = ui.number(value=rounded(value, 3), suffix=self.unit).classes("value")
         self.number.props(f'dense borderless aria-label="{label}, number"')
         back = ui.button(icon="settings_backup_restore").classes("reset")
         about = f"{label}: back to where it began"
@@ -159,7 +160,7 @@ class ParameterRow:
         return f"{escape(total.text)} {alarm(total.wrong)}".strip()
 
     async def _moved(self, event: Any) -> None:
-        self.number.set_value(rounded(event.args))
+        self.number.set_value(rounded(event.args, 3))
         await self._change(float(event.args))
 
     async def _typed(self) -> None:

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from rovsim.benchmarks.blind.laws import find_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
+from rovsim.core.rounding import rounded
 from rovsim.core.schema import Section
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
@@ -125,7 +126,7 @@ def _shrunk_outside(one: Unlisted) -> Unlisted:
 
 
 def _weaken_value(value: float, parameter: Parameter) -> float:
-    return float(f"{parameter.combine(parameter.neutral_value, value, WEAKENING_FACTOR):.4g}")
+    return rounded(parameter.combine(parameter.neutral_value, value, WEAKENING_FACTOR), 4)
 
 
 def seed_of(case_id: str, seeds: Range) -> int:

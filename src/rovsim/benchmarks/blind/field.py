@@ -16,6 +16,7 @@ import numpy as np
 from rovsim.benchmarks.blind.case import Case, Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.core.axes import AXES
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 
@@ -115,7 +116,7 @@ def _camera(
 ) -> tuple[dict[str, Any], tuple[EffectEntry, ...]]:
     """Draw settings of the tank for imperfect cameras, and the effect of their software, if any."""
     settings: dict[str, Any] = {name: random.uniform(*size) for name, size in CAMERAS[how].items()}
-    cutoff = float(f"{random.uniform(*CUTOFF_RANGE_HZ):.3g}")
+    cutoff = rounded(random.uniform(*CUTOFF_RANGE_HZ), 3)
     smoothing = EffectEntry(effect="pose_filter", parameters={"cutoff": Value(value=cutoff)})
     return {"camera": settings}, (smoothing,) if how == "smoothed" else ()
 
@@ -143,5 +144,5 @@ def wrong_file(random: np.random.Generator) -> Iterator[EffectEntry]:
 
 
 def _entry(name: str, values: Mapping[str, float]) -> EffectEntry:
-    parameters = {k: Value(value=float(f"{v:.4g}")) for k, v in values.items() if v}
+    parameters = {k: Value(value=rounded(v, 4)) for k, v in values.items() if v}
     return EffectEntry(effect=name, parameters=parameters)

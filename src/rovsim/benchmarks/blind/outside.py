@@ -9,6 +9,7 @@ from math import cos, exp, floor, pi, sin, tanh
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effects.base import Effect, Parameter, ThrusterDynamics, Wrench
 
 
@@ -248,4 +249,4 @@ def drawn(cls: type[Effect], strength: float, random: np.random.Generator) -> Ef
     first, *others = cls.parameters
     values = {first.name: float(random.uniform(*SIZE_RANGE)) * strength * first.scale}
     values |= {p.name: p.default + float(random.uniform(-1, 1)) * p.scale for p in others}
-    return cls(**{k: float(f"{v:.4g}") for k, v in values.items()})
+    return cls(**{k: rounded(v, 4) for k, v in values.items()})

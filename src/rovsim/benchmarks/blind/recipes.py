@@ -11,6 +11,7 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.effects.base import Effect, Parameter
@@ -179,7 +180,7 @@ def _moved(p: Parameter, scales: float, strength: float) -> float:
 
 
 def _rounded(value: float) -> float:
-    return float(f"{value:.4g}")
+    return rounded(value, 4)
 
 
 def _used(name: str, parameter: str, chosen: tuple[str, ...]) -> bool:

@@ -16,6 +16,7 @@ from typing import Any, Iterator, Mapping
 import numpy as np
 
 from rovsim.benchmarks.blind.case import Case, Range, random_of, seed_of
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 
 Sizes = Mapping[str, tuple[float, float]]  # of parameters, least and most
@@ -185,7 +186,5 @@ def recording(kind: str, k: int, seeds: Range) -> Case:
 
 def _draw(hidden: Hidden, random: np.random.Generator) -> EffectEntry:
     name, sizes = hidden
-    values = {
-        key: Value(value=float(f"{random.uniform(*size):.3g}")) for key, size in sizes.items()
-    }
+    values = {key: Value(value=rounded(random.uniform(*size), 3)) for key, size in sizes.items()}
     return EffectEntry(effect=name, parameters=values)

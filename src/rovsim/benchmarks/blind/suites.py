@@ -24,6 +24,7 @@ import numpy as np
 from rovsim.benchmarks.blind.case import Case, Range, Unlisted, merged, random_of, seed_of
 from rovsim.benchmarks.blind.field import (
     CAMERAS,
+    COEFFICIENTS,
     NOMINAL_EFFECTS,
     camera,
     laboratory,
@@ -35,6 +36,7 @@ from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings
 from rovsim.core.axes import AXES
+from rovsim.core.rounding import rounded
 from rovsim.dynamics.effect_entry import EffectEntry, Value
 from rovsim.dynamics.vehicle import default_vehicle, load_vehicle
 from rovsim.simulation.synthetic_tank.settings import Camera
@@ -51,7 +53,6 @@ STRONG_STRENGTHS = (2.0, 4.0)
 SHORT_FLIGHTS_S = (30.0, 20.0)
 COMBINATION_SIZES = (4, 5, 6, 7, 8)  # effects hidden at once
 DEVIATION_SHARES = (0.02, 0.05)  # of each coefficient
-DEVIATING_EFFECTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 # Effects of one family push much alike, so that two of them together have no single right answer.
 # An effect that is not listed here is a family by itself, if it needs no other tank.
@@ -205,13 +206,13 @@ def deviation(k: int, seeds: Range) -> Case:
     random = random_of(case_id, seeds)
     share = DEVIATION_SHARES[k % len(DEVIATION_SHARES)]
     water = load_vehicle(default_vehicle()).hydrodynamics
-    hidden = [_deviate(name, getattr(water, name), share, random) for name in DEVIATING_EFFECTS]
+    hidden = [_deviate(name, getattr(water, name), share, random) for name in COEFFICIENTS]
     return Case(
         id=case_id,
         kind="deviation",
         seed=seed_of(case_id, seeds),
         hidden=tuple(hidden),
-        forgiven=DEVIATING_EFFECTS,
+        forgiven=COEFFICIENTS,
         strength=share,
     )
 
@@ -220,7 +221,7 @@ def _deviate(
     name: str, nominal: Sequence[float], share: float, random: np.random.Generator
 ) -> EffectEntry:
     changes = share * np.array(nominal) * random.choice([-1.0, 1.0], size=len(AXES))
-    values = {a: Value(value=float(f"{c:.4g}")) for a, c in zip(AXES, changes, strict=True) if c}
+    values = {a: Value(value=rounded(c, 4)) for a, c in zip(AXES, changes, strict=True) if c}
     return EffectEntry(effect=name, parameters=values)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from rovsim.application.settings import Settings
 from rovsim.benchmarks.blind.case import Range, merged, random_of, seed_of
 from rovsim.benchmarks.blind.recipes import RECIPES, drawn
+from rovsim.core.rounding import rounded
 from rovsim.design.settings import Question
 from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry, Value
@@ -69,7 +70,7 @@ def _sized(name: str, parameter: str, random: np.random.Generator) -> EffectEntr
     recipe = RECIPES[name]
     change = (recipe.sign or 1) * HIDDEN_STRENGTH * random.uniform(*recipe.sizes) * declared.scale
     neutral = declared.neutral_value
-    value = Value(value=float(f"{declared.combine(neutral, neutral + change):.4g}"))
+    value = Value(value=rounded(declared.combine(neutral, neutral + change), 4))
     return EffectEntry(effect=name, parameters={parameter: value})
 
 

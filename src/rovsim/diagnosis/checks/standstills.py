@@ -12,6 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
+from rovsim.core.rounding import rounded
 from rovsim.measurement.quality.excitation import MIN_SPREAD
 from rovsim.measurement.signals.clock import find_stretches
 from rovsim.measurement.signals.measured import find_measured
@@ -172,7 +173,7 @@ def _judge(run: str, rests: Sequence[_Rest], spans: Spans, moving: _Moving) -> S
         from_s=round(rest.begin, 2),
         to_s=round(rest.end, 2),
         axis=AXES[axis],
-        gained=float(f"{gain:.3g}"),
+        gained=rounded(gain, 3),
         use=tuple(_remove_span(spans, rest.begin, rest.end)),
     )
 

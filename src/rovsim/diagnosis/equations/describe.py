@@ -1,15 +1,14 @@
 """Convert a proposed law, or a force in time, into the sections of `diagnosis.json`."""
 
-from typing import Mapping
-
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.model_names import PROPOSED
+from rovsim.core.rounding import rounded, rounded_or_none
 from rovsim.diagnosis.equations.disturbance import ForceInTime
 from rovsim.diagnosis.equations.proposal import ProposedLaw
 from rovsim.diagnosis.equations.spectrum import Spectrum
-from rovsim.estimation.observer.hypothesis import Term
+from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.results.base import ByAxis
 from rovsim.results.diagnosis import (
     LAW_FILE,
@@ -27,34 +26,6 @@ from rovsim.results.fitted import FittedEffect, FittedValue
 ROW_SECONDS = 0.2
 
 
-def rounded(value: float | None) -> float | None:
-    """Round a number to six significant digits; None where it is None or not finite."""
-    return None if value is None or not np.isfinite(value) else float(f"{value:.6g}")
-
-
-def describe_values(term: Term, std: Mapping[str, float]) -> dict[str, FittedValue]:
-    """List the fitted parameters of an effect, and any others that differ from their defaults.
-
-    Args:
-        term: the effect at its fitted values.
-        std: standard deviations of the fitted parameters, by name, in their units.
-
-    Returns:
-        Values by the names of the parameters.
-    """
-    values = term.effect.given()
-    units = {p.name: p.unit for p in term.effect.parameters}
-    names = [p.name for p in term.effect.parameters if p.name in values or p.name in std]
-    return {
-        name: FittedValue(
-            value=rounded(term.effect[name]),
-            unit=units[name],
-            **({"std": rounded(std[name])} if name in std else {}),
-        )
-        for name in names
-    }
-
-
 def describe_force(force: ForceInTime) -> Disturbance:
     """Describe a force in time, with a row about every `ROW_SECONDS` for each run."""
     rows = zip(force.runs, force.time, force.place, force.force, strict=True)
@@ -68,7 +39,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
                 run=p.run,
                 time_s=round(p.time, 2),
                 axis=p.axis,
-                force=float(f"{p.force:.4g}"),
+                force=rounded(p.force, 4),
                 place_m=_round_place(p.place),
             )
             for p in force.pushes
@@ -79,7 +50,7 @@ def describe_force(force: ForceInTime) -> Disturbance:
 
 def _describe_spectrum(spectrum: Spectrum) -> ForceSpectrum:
     """Describe a spectrum, its densities to four significant digits."""
-    density = np.vectorize(lambda d: float(f"{d:.4g}"))(spectrum.density)
+    density = np.vectorize(lambda d: rounded(d, 4))(spectrum.density)
     return ForceSpectrum(
         frequency_hz=tuple(np.round(spectrum.frequency, 4).tolist()),
         density=tuple(map(tuple, density.tolist())),
@@ -116,16 +87,18 @@ def describe_law(law: ProposedLaw) -> ProposedEquation:
         effect=PROPOSED,
         meaning=law.form.meaning,
         parameters={
-            n.name: FittedValue(value=rounded(n.value), std=rounded(n.std), unit=n.unit)
+            n.name: FittedValue(
+                value=rounded_or_none(n.value), std=rounded_or_none(n.std), unit=n.unit
+            )
             for n in law.numbers
         },
-        error_reduction=rounded(law.error_reduction),
+        error_reduction=rounded_or_none(law.error_reduction),
         terms=tuple(
-            ProposedTerm(on=part.on, quantities=part.quantities, size=rounded(size))
+            ProposedTerm(on=part.on, quantities=part.quantities, size=rounded_or_none(size))
             for part, size in zip(law.form.parts, law.action.sizes, strict=True)
         ),
         beside=tuple(beside),
-        rivals=tuple(RivalLaw(equation=e, deficit=rounded(d)) for e, d in law.rivals),
+        rivals=tuple(RivalLaw(equation=e, deficit=rounded_or_none(d)) for e, d in law.rivals),
     )
 
 

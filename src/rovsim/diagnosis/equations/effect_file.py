@@ -3,6 +3,7 @@
 from textwrap import indent
 from typing import Mapping, Sequence
 
+from rovsim.core.rounding import rounded
 from rovsim.diagnosis.equations.form import Form, Number
 
 
@@ -46,7 +47,7 @@ def write_effect(
 
 def round_start(numbers: Sequence[Number]) -> dict[str, float]:
     """Round the fitted values to six digits, as the start of a fit of the written effect."""
-    return {n.name: float(f"{n.value:.6g}") for n in numbers}
+    return {n.name: rounded(n.value) for n in numbers}
 
 
 def _parameter(n: Number) -> str:

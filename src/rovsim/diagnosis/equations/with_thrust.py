@@ -13,6 +13,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES, FORCE, VELOCITY
+from rovsim.core.rounding import rounded
 from rovsim.diagnosis.equations.effect_file import write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part
 from rovsim.diagnosis.equations.products.columns import Columns
@@ -248,7 +249,7 @@ class WithThrust(Form):
         """List the only parameter, the coefficient, in the unit of the equation."""
         size = law.effect["size"]
         value = law.effect["c"] * size
-        scale = float(f"{max(abs(value), 1e-6):.1g}")
+        scale = rounded(max(abs(value), 1e-6), 1)
         return [Number(AXES[self.term.on], self.unit, "c", value, std["c"] * size, scale)]
 
     def divide(self, law: Term) -> list[Effect]:
@@ -291,5 +292,5 @@ def _sum(law: Term, row: str) -> str:
         law: whose parameters hold rows of the allocation matrix.
         row: letter of the row: `b` for the first thrust, `d` for a second one.
     """
-    shares = [(i, float(f"{law.effect[f'{row}{i}']:.6g}")) for i in range(MAX_THRUSTERS)]
+    shares = [(i, rounded(law.effect[f"{row}{i}"])) for i in range(MAX_THRUSTERS)]
     return " + ".join(f"{b:g} * F[{i}]" for i, b in shares if b)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.axes import AXES
+from rovsim.core.rounding import rounded
 from rovsim.evaluation.error_conditions.bins import BinnedErrors
 from rovsim.evaluation.error_conditions.findings import ErrorExplanation, Finding
 from rovsim.evaluation.error_conditions.search import SearchedModel
@@ -83,4 +84,4 @@ def tabulate(one: BinnedErrors) -> ConditionTable:
 
 def _rounded(values: Array, digits: int = 5) -> tuple[float, ...]:
     """Round values (n,) to significant digits."""
-    return tuple(float(f"{v:.{digits}g}") for v in values)
+    return tuple(rounded(v, digits) for v in values)

@@ -13,6 +13,7 @@ from numpy import ndarray as Array
 from threadpoolctl import threadpool_limits
 
 from rovsim.core.axes import AXES
+from rovsim.core.rounding import rounded_or_none
 from rovsim.evaluation.error_conditions.bins import (
     BinnedErrors,
     Binning,
@@ -68,7 +69,7 @@ class Finding:
             axis=self.axis,
             condition=self.condition,
             share_of_error=round(self.share_of_error, 3),
-            push=float(f"{self.push:.4g}") if constant else None,
+            push=rounded_or_none(self.push, 4) if constant else None,
         )
 
 

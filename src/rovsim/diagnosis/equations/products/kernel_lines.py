@@ -3,6 +3,7 @@
 from typing import Iterator, Sequence
 
 from rovsim.core.axes import FORCE
+from rovsim.core.rounding import rounded
 from rovsim.diagnosis.equations.products.library import LawTerm
 from rovsim.diagnosis.equations.products.targets import FLOWS, TARGETS, WORLD_FORCES
 from rovsim.diagnosis.equations.products.variables import VARIABLES, VELOCITIES_IN_CODE
@@ -99,6 +100,6 @@ def _write_drag_change(flow: Sequence[str], law: Term) -> Iterator[str]:
     yield "# drag in water that moves, less that in still water, with the model's coefficients"
     for j, (f, v) in enumerate(zip("xyz", VELOCITIES_IN_CODE[:3], strict=True)):
         parts = [f"at.R[{i}][{j}] * {w}" for i, w in enumerate(flow) if w != "0.0"]
-        a, b = (float(f"{law.effect[f'{kind}{j}']:.6g}") for kind in ("linear", "quadratic"))
+        a, b = (rounded(law.effect[f"{kind}{j}"]) for kind in ("linear", "quadratic"))
         yield f"a = {v} - ({' + '.join(parts)})"
         yield f"drag_{f} = ({a:g} + {b:g} * abs({v})) * {v} - ({a:g} + {b:g} * abs(a)) * a"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from textwrap import indent
 from typing import Mapping, Sequence
 
+from rovsim.core.rounding import rounded
 from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, stated
 from rovsim.diagnosis.equations.products.as_effect import (
@@ -70,7 +71,7 @@ class Products(Form):
         for k, (name, term, fitted) in enumerate(terms):
             value = fitted.coefficient * fitted.size
             value_std = std[COEFFICIENTS[k]] * fitted.size
-            scale = float(f"{max(abs(value), 1e-6):.1g}")
+            scale = rounded(max(abs(value), 1e-6), 1)
             unit = TARGETS[term.on].unit_of(term.factors)
             symbol = f"c_{k + 1}" if len(self.terms) > 1 else "c"
             numbers.append(Number(name, unit, symbol, value, value_std, scale))
