@@ -11,6 +11,7 @@ checks              what the runs could not show, and values that make no sense
 equations           a law for what is left, where one holds; else the force in time
 answer              the accepted effects, validated, at their final values, and what they leave
 validated_search    observes, searches and validates, again where an assumption was wrong
+selected_effects    which accepted effects are selected, and which in doubt
 train_diagnosis     diagnoses the train runs: all that was found on them
 advice              what to record next
 diagnosis_document  the same as `diagnosis.json`

@@ -23,7 +23,7 @@ test runs      diagnosis/campaign_diagnosis            opened once, for the erro
 """
 
 from dataclasses import dataclass, replace
-from typing import Collection, Sequence
+from typing import Sequence
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -34,34 +34,12 @@ from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
 from rovsim.diagnosis.equations.proposal import Catalogued, ProposedLaw, propose_law
-from rovsim.diagnosis.selection.accepted_effects import (
-    AcceptedEffect,
-    name_drift,
-    name_smoothing,
-    name_terms,
-)
-from rovsim.diagnosis.selection.beside_law import (
-    doubt_beside_law,
-    keep_beside_law,
-    list_rivals_beside,
-)
-from rovsim.diagnosis.selection.ranking import (
-    OrderedEffect,
-    RankedEffect,
-    order_accepted,
-    rank_alone,
-)
+from rovsim.diagnosis.selected_effects import list_camera_effects, select_effects
+from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect, rank_alone
 from rovsim.diagnosis.selection.search_result import Rival
-from rovsim.diagnosis.selection.withdrawn_probability import (
-    find_constant_heave,
-    find_leading,
-    find_small,
-    withdraw_probability,
-)
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
-from rovsim.diagnosis.uncertainty.identifiability import find_perhaps_absent
 from rovsim.diagnosis.validated_search import (
     DiagnosisProblem,
     ValidatedSearch,
@@ -187,82 +165,31 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     These are the accepted effects with how sure they are, and a law or a force in time for what
     no effect describes.
     """
-    problem, smoothing = validated.problem, validated.smoothing
-    base, usable = problem.base, problem.usable
+    base, usable = validated.problem.base, validated.problem.usable
     answer, wide_fit, scale = finalise_answer(validated.answer, usable.runs)
-    camera = [name_smoothing(smoothing)] if smoothing else []
-    difference = validated.difference
-    seeks_law = answer.leaves_physics and difference is None  # what differs follows no law
-    law = _propose(answer, validated, camera) if seeks_law else None
-    rivals = answer.selection.named_rivals
-    accepted = [*camera, *name_terms(wide_fit, rivals)]
-    proposed = law if law and law.complete else None
-    perhaps_absent = find_perhaps_absent(wide_fit)
-    effects = _doubt(accepted, law, base, perhaps_absent, difference, smooths=bool(camera))
-    replaced = frozenset(e.term.id for e in accepted) - {e.term.id for e in effects}
-    if proposed:
-        rivals = list_rivals_beside(rivals, effects)
-    if answer.fit.noise.drift:
-        drift = answer.bank.measure_drift(answer.fit.linearised.e, answer.fit.noise)
-        if drift.sure:
-            effects.append(name_drift(drift, answer.leaves_physics))
-    selected = order_accepted(base, effects, usable.runs)
-    if proposed and sum(s.error_reduction for s in selected) < 0.0:
-        selected = []  # only beside the law are they no worse than the base
-    left = proposed.left if proposed else answer.structures
-    if proposed or left:
-        removed_by_law = proposed.error_reduction if proposed else 0.0
-        small = find_small(selected, left[0].share if left else 0.0, removed_by_law)
-        selected = withdraw_probability(selected, small, "unexplained")
-    start = validated.start
+    seeks_law = answer.leaves_physics and validated.difference is None  # that follows no law
+    law = _propose(answer, validated) if seeks_law else None
+    effects = select_effects(validated, answer, wide_fit, law)
+    start, proposed = validated.start, law if law and law.complete else None
     return TrainDiagnosis(
         base,
         usable,
         answer.fit,
         _correlate(wide_fit),
-        selected,
+        effects.selected,
         ranking=rank_alone(start.workspace, start.base_fit, answer.fit),
-        rivals=rivals,
+        rivals=effects.rivals,
         structures=answer.structures,
         refused=answer.refused or not answer.fit.is_finite,
         scale=scale,
-        not_observable=list_not_observable(answer.selection, problem.catalogue, base.vehicle),
+        not_observable=list_not_observable(
+            answer.selection, validated.problem.catalogue, base.vehicle
+        ),
         proposed=proposed,
-        replaced=replaced,
+        replaced=effects.replaced,
         disturbance=None if proposed else _trace(answer),
-        difference=difference,
+        difference=validated.difference,
     )
-
-
-def _doubt(
-    accepted: Sequence[AcceptedEffect],
-    law: ProposedLaw | None,
-    base: Model,
-    perhaps_absent: Collection[str],
-    difference: RunDifference | None,
-    smooths: bool,
-) -> list[AcceptedEffect]:
-    """What of the accepted effects is selected, without a probability where there is a doubt.
-
-    Args:
-        accepted: the effects.
-        law: for what they leave; None where there is none.
-        base: the model that is diagnosed.
-        perhaps_absent: ids of those whose values may as well be those of their absence.
-        difference: an effect that has another value in each run.
-        smooths: whether software smooths what the cameras report.
-    """
-    effects = withdraw_probability(accepted, perhaps_absent, "perhaps_absent")
-    if law:
-        beside_law = keep_beside_law if law.complete else doubt_beside_law
-        effects = beside_law(effects, law.beside)
-    if smooths:
-        effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
-    if difference:
-        effects = withdraw_probability(effects, {difference.effect_id}, "differs")
-    if base.vehicle.floats:
-        effects = withdraw_probability(effects, find_constant_heave(effects), "depth_at_rest")
-    return effects
 
 
 def _correlate(fit: Fit) -> Correlation:
@@ -272,9 +199,7 @@ def _correlate(fit: Fit) -> Correlation:
     return correlate(fit.covariance, fit.hypothesis.parameter_names)
 
 
-def _propose(
-    answer: SettledAnswer, validated: ValidatedSearch, camera: Sequence[AcceptedEffect]
-) -> ProposedLaw | None:
+def _propose(answer: SettledAnswer, validated: ValidatedSearch) -> ProposedLaw | None:
     """A law for what the accepted effects leave; None where none holds."""
     base, runs, holdout = validated.problem.base, validated.problem.usable.runs, validated.holdout
 
@@ -283,6 +208,7 @@ def _propose(
 
     model = answer.fit.hypothesis.model
     catalogued = Catalogued(model, answer.replayed if holdout.runs else model)
+    camera = list_camera_effects(validated)
     return propose_law(answer.selection, catalogued, base, holdout, runs, polish, camera)
 
 
