@@ -14,6 +14,7 @@ validated_search    observes, searches and validates, again where an assumption 
 selected_effects    which accepted effects are selected, and which in doubt
 train_diagnosis     diagnoses the train runs: all that was found on them
 advice              what to record next
+unexplained         what no effect explains, as the document has it
 diagnosis_document  the same as `diagnosis.json`
 campaign_diagnosis  diagnoses a campaign; opens the test runs, once, for the reported errors
 apply               makes a model file with the effects that a diagnosis found

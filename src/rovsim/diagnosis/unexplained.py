@@ -1,0 +1,61 @@
+"""What no effect of the catalogue explains, as `diagnosis.json` has it."""
+
+from typing import Sequence
+
+from rovsim.core.rounding import rounded_or_none
+from rovsim.diagnosis.checks.run_differences import RunDifference
+from rovsim.diagnosis.equations.describe import describe_force, describe_law
+from rovsim.diagnosis.fitted_values import describe_values
+from rovsim.diagnosis.structure.residual import Structure
+from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
+from rovsim.results.diagnosis import Unexplained
+from rovsim.results.fitted import FittedEffect
+
+REFUSED_EFFECTS_HINT = (
+    "What is left could only be explained by effects that make replays of held-out stretches worse."
+)
+TOO_LITTLE_DATA_HINT = "There is too little data to say what is left."
+
+
+def describe_unexplained(diagnosis: TrainDiagnosis) -> Unexplained:
+    """Report what no effect of the catalogue explains, and a law for it, where one was found."""
+    if not diagnosis.enough:
+        return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
+    if diagnosis.verdict != "unexplained":
+        return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
+    share = diagnosis.structures[0].share if diagnosis.structures else None
+    doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")
+    return Unexplained(
+        fraction=rounded_or_none(share),
+        significant=True,
+        hint=_format_hint(diagnosis.structures, diagnosis.difference)
+        if diagnosis.structures
+        else REFUSED_EFFECTS_HINT,
+        between_runs=_describe_difference(diagnosis.difference),
+        proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
+        stand_ins=tuple(sorted({*diagnosis.replaced, *doubted})),
+        disturbance=describe_force(diagnosis.disturbance) if diagnosis.disturbance else None,
+    )
+
+
+def _describe_difference(difference: RunDifference | None) -> dict[str, FittedEffect] | None:
+    """Report an effect that has another value in each run, by the run's id."""
+    if difference is None:
+        return None
+    return {
+        run: FittedEffect(effect=one.term.id, parameters=describe_values(one.term, one.std))
+        for run, one in difference.by_run.items()
+    }
+
+
+def _format_hint(structures: Sequence[Structure], difference: RunDifference | None) -> str:
+    """Say on which axes something is left, and what it depends on; the most surprising first."""
+    strongest = structures[0]
+    # the first of each other axis
+    by_axis = {s.axis: s.what for s in reversed(structures) if s.axis != strongest.axis}
+    hint = f"{strongest.axis.capitalize()}: the remainder shows {strongest.what}."
+    if by_axis:
+        hint += f" Also {'; '.join(f'{axis}: {by_axis[axis]}' for axis in reversed(by_axis))}."
+    if difference:
+        hint += f" Runs differ in {difference.effect_id}, which explains most of it."
+    return hint
