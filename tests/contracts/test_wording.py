@@ -11,7 +11,7 @@ from pandas import DataFrame
 from rovsim.apps import workbench
 from rovsim.core.rounding import rounded
 from rovsim.dynamics.catalogue import built_in
-from rovsim.dynamics.effects.thrusters import name_parameter
+from rovsim.dynamics.parameter_labels import label_parameter
 from rovsim.reporting.figures import find_figure
 from rovsim.reporting.figures.pooled import pool
 from rovsim.reporting.html import report
@@ -83,7 +83,7 @@ def test_thrusters_are_called_as_in_the_vehicle_file(content):
     assert "bow (t3) 0.500 ± 0.020 all 0.9" in told
     assert "first 1 (port) second 3 (bow)" in told
     assert "thruster_gain.port (t1), added_mass.surge" in told
-    assert name_parameter("thruster_gain", "t2", ("t1", "t2")) == "t2"
+    assert label_parameter("thruster_gain", "t2", ("t1", "t2")) == "t2"
 
 
 @pytest.mark.parametrize("effect", built_in().values(), ids=list(built_in()))

@@ -6,7 +6,7 @@ from rovsim.diagnosis.checks.wrong_units import list_absurd
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.results.fitted import Doubt
 
 FIX_SCALE = (
@@ -151,7 +151,7 @@ def _advise_separation(
     owners = [name.split(".")[0] for group in joint for name in group]
     commonest = max(dict.fromkeys(owners), key=owners.count)
     group = next(g for g in joint if any(name.startswith(f"{commonest}.") for name in g))
-    names = ", ".join(with_thruster_names(group, thrusters))
+    names = ", ".join(label_parameters(group, thrusters))
     return f"To know {names} one by one: {_advise_on(catalogue[commonest], group)}"
 
 

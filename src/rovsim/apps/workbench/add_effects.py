@@ -9,7 +9,7 @@ from rovsim.apps.workbench.draft import Draft, reach
 from rovsim.apps.workbench.parts import Failure, Slider, alarm, text
 from rovsim.apps.workbench.workbench import Workbench
 from rovsim.core.rounding import rounded
-from rovsim.dynamics.effects.thrusters import name_parameter
+from rovsim.dynamics.parameter_labels import label_parameter
 from rovsim.reporting.units import unit
 from rovsim.reporting.wording import tell_probability
 from rovsim.reporting.words.totals import tell_total
@@ -134,7 +134,7 @@ class ParameterRow:
         self.effects, self.effect, self.parameter = effects, effect, parameter
         self.unit = unit(parameter.unit)
         names = effects.bench.base.vehicle.thruster_names
-        label = name_parameter(effect, parameter.name, names).replace('"', "'")
+        label = label_parameter(effect, parameter.name, names).replace('"', "'")
         with ui.row().classes("slider"):
             ui.label(label).classes("name")
             self._draw(f"{effect}, {label}", value)

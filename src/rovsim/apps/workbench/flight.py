@@ -28,7 +28,7 @@ from rovsim.core.errors import RovsimError
 from rovsim.design.settings import MAX_FLIGHT_SECONDS, MIN_FLIGHT_SECONDS, Question
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.dynamics.effect_entry import describe_effect
-from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.reporting.units import unit
 from rovsim.reporting.words.experiment import list_steps, size_of_odds, tell_limits, tell_share
 from rovsim.results.experiment import Experiment
@@ -226,7 +226,7 @@ def _show_expected(experiment: Experiment, thrusters: Sequence[str]) -> None:
             rows,
         )
     if experiment.expects.std:
-        labels = with_thruster_names(experiment.expects.std, thrusters)
+        labels = label_parameters(experiment.expects.std, thrusters)
         rows = [
             (
                 f"{label} ({unit(estimate.unit)})" if estimate.unit not in (None, "1") else label,

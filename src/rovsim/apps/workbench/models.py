@@ -37,8 +37,8 @@ from rovsim.core.errors import RovsimError
 from rovsim.core.horizons import OPEN_LOOP, STANDARD_WINDOW, name_horizon
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effect_entry import describe_effect
-from rovsim.dynamics.effects.thrusters import name_parameter
 from rovsim.dynamics.model import Model, nominal
+from rovsim.dynamics.parameter_labels import label_parameter
 from rovsim.learning.learner import learners
 from rovsim.reporting.figures.palette import FAMILIES
 from rovsim.reporting.units import unit
@@ -251,7 +251,7 @@ def _values(model: Model) -> dict[tuple[str, str], str]:
         units = {p.name: p.unit for p in effect.parameters}
         for name, parameter in describe_effect(effect).parameters.items():
             value = FittedValue(value=parameter.value, std=parameter.std, unit=units[name])
-            label = name_parameter(effect.id, name, model.vehicle.thruster_names)
+            label = label_parameter(effect.id, name, model.vehicle.thruster_names)
             texts[effect.id, label] = interval(value)
     if (learned := model.residual) is not None:
         learner = learners().get(learned.kind)

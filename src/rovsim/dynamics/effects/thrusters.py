@@ -1,7 +1,7 @@
 """What happens between a command that has arrived and a thruster's force."""
 
 from functools import cache
-from typing import ClassVar, Iterable, Sequence
+from typing import ClassVar
 
 import numpy as np
 import scipy
@@ -284,26 +284,3 @@ class PropellerTorque(Coefficients):
     def enter(self, body: Body) -> None:
         """Add each propeller's moment to its column of the allocation."""
         body.B[3:] += self["ratio"] * (body.spin[:, None] * body.directions).T
-
-
-def name_parameter(effect: str, parameter: str, thrusters: Sequence[str]) -> str:
-    """Name of a parameter for readers: `bow (t3)` for the gain t3 if the third thruster is `bow`.
-
-    In model files and results the gains are t1 to tn, in the order of the vehicle file.
-
-    Args:
-        effect: id of the effect.
-        parameter: name of its parameter.
-        thrusters: names of the thrusters in the vehicle file.
-    """
-    gains = name_gains(len(thrusters))
-    if effect != ThrusterGain.id or parameter not in gains:
-        return parameter
-    name = thrusters[gains.index(parameter)]
-    return parameter if name == parameter else f"{name} ({parameter})"
-
-
-def with_thruster_names(parameters: Iterable[str], thrusters: Sequence[str]) -> list[str]:
-    """Apply `name_parameter` to parameters with names of the form `effect.parameter`."""
-    parts = (parameter.partition(".") for parameter in parameters)
-    return [f"{effect}.{name_parameter(effect, name, thrusters)}" for effect, _, name in parts]

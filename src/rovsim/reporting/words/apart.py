@@ -3,7 +3,7 @@
 from typing import Sequence
 
 from rovsim.core.odds import odds_of
-from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.reporting.wording import listed, percent, significant
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis, RivalEffect, ScaleOfForces
@@ -24,7 +24,7 @@ def apart_sentences(diagnosis: Diagnosis) -> list[str]:
 
 
 def _named(group: Sequence[str], diagnosis: Diagnosis) -> list[str]:
-    return with_thruster_names(group, diagnosis.thrusters)
+    return label_parameters(group, diagnosis.thrusters)
 
 
 def _list_runners_up(diagnosis: Diagnosis) -> list[RivalEffect]:

@@ -3,7 +3,7 @@
 from typing import Sequence
 
 from rovsim.core.normal import Z_95
-from rovsim.dynamics.effects.thrusters import with_thruster_names
+from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.reporting.units import unit
 from rovsim.reporting.wording import significant
 from rovsim.results.base import or_nan
@@ -25,7 +25,7 @@ def tell_experiment(experiment: Experiment, thrusters: Sequence[str] = ()) -> st
         "",
     ]
     lines += [_tell_odds(name, item) for name, item in experiment.expects.odds.items()]
-    names = with_thruster_names(list(experiment.expects.std), thrusters)
+    names = label_parameters(list(experiment.expects.std), thrusters)
     lines += map(_tell_std, names, experiment.expects.std.values())
     if experiment.expects.std:
         lines += ["", "± is the 95 % interval."]

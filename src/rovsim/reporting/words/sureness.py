@@ -4,7 +4,7 @@ from typing import Mapping
 
 from rovsim.core.normal import Z_95
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.thrusters import name_parameter
+from rovsim.dynamics.parameter_labels import label_parameter
 from rovsim.reporting.wording import MIN_TOLD_PROBABILITY, listed, tell_probability
 from rovsim.results.base import or_nan
 from rovsim.results.diagnosis import Diagnosis
@@ -38,7 +38,7 @@ def unsure_sentences(diagnosis: Diagnosis, catalogue: Mapping[str, type[Effect]]
         absence = {p.name: p.neutral_value for p in cls.parameters} if cls else {}
         unsure = [name for name, v in fit.parameters.items() if _holds(v, absence.get(name, 0.0))]
         if unsure and (fit.probability or 0.0) > 1.0 - MIN_TOLD_PROBABILITY:
-            names = [name_parameter(fit.effect, name, diagnosis.thrusters) for name in unsure]
+            names = [label_parameter(fit.effect, name, diagnosis.thrusters) for name in unsure]
             values = dict.fromkeys(f"{absence.get(name, 0.0):g}" for name in unsure)
             hold = "intervals of {} hold" if len(names) > 1 else "interval of {} holds"
             sentences.append(

@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 
 from rovsim.dynamics.effects.base import Effect, StochasticCurrent
 from rovsim.dynamics.effects.thruster_order import ThrusterOrder
-from rovsim.dynamics.effects.thrusters import name_parameter
+from rovsim.dynamics.parameter_labels import label_parameter
 from rovsim.reporting.wording import (
     ERROR_MEANING,
     ERROR_NAME,
@@ -163,7 +163,7 @@ def _missing(
     equation, cause = (cls.equation, cls.cause) if cls else ("", "")
     symbols = explain_symbols(cls, one.parameters) if cls else []
     values = tuple(
-        f"{name_parameter(one.effect, name, thrusters)} {_value(one.effect, v, thrusters)}"
+        f"{label_parameter(one.effect, name, thrusters)} {_value(one.effect, v, thrusters)}"
         for name, v in one.parameters.items()
     )
     removed = _removed(one.error_reduction, above)
