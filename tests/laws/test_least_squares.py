@@ -7,6 +7,7 @@ from rovsim.estimation.observer.least_squares import (
     eliminate_columns,
     gram,
     project_out,
+    regress_forward,
     select_columns,
     solve,
     solve_bounded,
@@ -67,3 +68,35 @@ def test_projected_columns_are_gone(columns):
 def test_parallel_columns_share():
     H = np.array([[1.0, 1.0], [1.0, 1.0]])
     np.testing.assert_allclose(solve(H, np.array([2.0, 2.0])), [1.0, 1.0], atol=1e-6)
+
+
+def test_forward_regression_adds_what_lowers_the_residual_most(columns):
+    mixed = np.random.default_rng(7).normal(size=(8, 8)) @ columns  # correlated
+    target = np.random.default_rng(8).normal(size=8) @ mixed + columns[0]
+
+    def left(chosen):
+        X = mixed[chosen].T
+        residual = target - X @ np.linalg.lstsq(X, target, rcond=None)[0]
+        return residual @ residual
+
+    expected: list[int] = []
+    for _ in range(4):
+        others = [k for k in range(8) if k not in expected]
+        expected.append(min(others, key=lambda k: left([*expected, k])))
+    assert regress_forward(gram(mixed), mixed @ target, 4) == expected
+
+
+def test_forward_regression_is_that_of_a_library(columns):
+    FROLS = pytest.importorskip("pysindy").FROLS
+    mixed = np.random.default_rng(9).normal(size=(8, 8)) @ columns
+    target = np.random.default_rng(10).normal(size=8) @ mixed
+    path = FROLS(max_iter=3, alpha=1e-9, unbias=False).fit(mixed.T, target[:, None]).history_
+    theirs = [set(np.flatnonzero(row[0])) for row in path[1:4]]
+    ours = regress_forward(gram(mixed), mixed @ target, 3)
+    assert [set(ours[: k + 1]) for k in range(3)] == theirs
+
+
+def test_forward_regression_ends_where_nothing_is_left(columns):
+    alike = np.vstack([columns[:2], columns[0] + columns[1], np.zeros(500)])
+    assert len(regress_forward(gram(alike), alike @ (columns[0] - columns[1]), 4)) == 2
+    assert regress_forward(np.empty((0, 0)), np.empty(0), 4) == []

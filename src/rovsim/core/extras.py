@@ -13,8 +13,7 @@ EXTRA_PACKAGES = {
     "workflow": ("snakemake", "submitit"),
     "gym": ("gymnasium",),
     "fmi": ("pythonfmu",),
-    "equations": ("pysindy",),
-    "benchmark": ("pykdtree", "pysindy", "threadpoolctl"),
+    "benchmark": ("pykdtree", "pysindy"),
 }
 
 

@@ -13,7 +13,6 @@ from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.products.library import list_terms, middle_of
-from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import select_terms
 from rovsim.diagnosis.equations.with_memory import FORMS, WithMemory
 from rovsim.diagnosis.equations.with_thrust import (
@@ -110,7 +109,7 @@ def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -
     if not terms or not fit.is_finite:
         return None
     columns = fits.project(fit, terms, middle_of(fits.runs), evaluate_thrust)
-    explained = find_alone(columns.gram) - fits.penalty
+    explained = columns.decreases - fits.penalty
     threshold = max(
         fits.chance, 0.0 if grown is None else MIN_SHARE_OF_PRODUCTS * (grown.score - score)
     )

@@ -22,7 +22,6 @@ from rovsim.diagnosis.equations.action import find_action
 from rovsim.diagnosis.equations.law_fits import LawFits
 from rovsim.diagnosis.equations.law_search import fit_memory_laws, is_seen
 from rovsim.diagnosis.equations.products.library import LawTerm, list_terms, middle_of
-from rovsim.diagnosis.equations.products.search import find_alone
 from rovsim.diagnosis.equations.products.selection import choose_kinds, fit_products
 from rovsim.diagnosis.equations.with_memory import OF_THRUSTERS
 from rovsim.diagnosis.selection.search_result import SearchResult
@@ -92,7 +91,7 @@ def _find_masked_products(
     if suspect is None:
         return []
     columns = fits.project(fit, terms, middle_of(fits.runs))
-    order = np.argsort(-find_alone(columns.gram), kind="stable")
+    order = np.argsort(-columns.decreases, kind="stable")
     kinds = choose_kinds([columns.terms[k] for k in order])[:LAWS_TRIED]
     score = fits.workspace.score(fit)
     for law in fit_products(fits, fit, (), kinds, columns).values():

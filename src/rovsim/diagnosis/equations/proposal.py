@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Callable, NamedTuple, Sequence
 
-from rovsim.core.extras import installed
 from rovsim.core.model_names import PROPOSED
 from rovsim.diagnosis.equations.action import Action, find_action
 from rovsim.diagnosis.equations.fitted_law import FittedLaw
@@ -122,8 +121,6 @@ def propose_law(
         polish: fits a hypothesis once more to all of them.
         camera: the filter of the cameras as an effect; empty where they do not smooth.
     """
-    if not installed("equations"):
-        return None
     law = search_laws(selection)
     if law is None or not _is_confirmed(law, selection, best, holdout):
         return None

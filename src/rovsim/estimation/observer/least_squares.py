@@ -8,6 +8,8 @@ from numpy import ndarray as Array
 from scipy.optimize import lsq_linear
 
 MAX_COLUMNS = 12  # columns of one effect: more is not an effect but a fit of everything
+# Of its own square: a column that keeps less beside the others tells nothing that they do not.
+MIN_INDEPENDENT_SHARE = 1e-6
 RIDGE = 1e-9  # of each column's own square: parallel columns share instead of exploding
 
 
@@ -67,12 +69,56 @@ def solve_bounded(H: Array, b: Array, offset: float, low: Array, high: Array) ->
     return Reduction(float(-2.0 * b @ x - x @ H @ x) - offset, tuple(range(len(b))), x)
 
 
+def find_decreases(H: Array, b: Array, chosen: Sequence[int] = ()) -> Array:
+    """Decrease (k,) of the sum of squares by each column beside the chosen ones.
+
+    Zero for columns without effect, and for those that the chosen ones hold already.
+
+    Args:
+        H: Gram matrix (k, k) of the columns.
+        b: their products (k,) with the target.
+        chosen: columns that are there already.
+    """
+    power, remaining, product = np.diag(H), np.diag(H), b
+    if len(chosen):
+        columns = list(chosen)
+        solution = solve(H[np.ix_(columns, columns)], np.column_stack([H[columns], b[columns]]))
+        remaining = power - np.einsum("ij,ij->j", H[columns], solution[:, :-1])
+        product = b - H[columns].T @ solution[:, -1]
+    independent = remaining > MIN_INDEPENDENT_SHARE * power
+    return np.where(independent, product**2 / np.where(independent, remaining, 1.0), 0.0)
+
+
+def regress_forward(H: Array, b: Array, steps: int) -> list[int]:
+    """Forward regression by orthogonal least squares (Chen, Billings & Luo 1989).
+
+    Each step adds the column that lowers the sum of squares most beside those before.
+
+    Args:
+        H: Gram matrix (k, k) of the columns.
+        b: their products (k,) with the target.
+        steps: how many columns are selected, at most.
+
+    Returns:
+        The columns, in the order of their selection.
+    """
+    chosen: list[int] = []
+    for _ in range(steps):
+        decreases = find_decreases(H, b, chosen)
+        decreases[chosen] = 0.0
+        best = int(np.argmax(decreases)) if len(b) else -1
+        if best < 0 or decreases[best] <= 0.0:
+            break
+        chosen.append(best)
+    return chosen
+
+
 def select_columns(H: Array, b: Array, penalty: float) -> Reduction:
     """The columns that are worth their penalty each, added one by one, then pruned."""
     chosen: list[int] = []
     while len(chosen) < min(len(b), MAX_COLUMNS):
         remaining = [j for j in range(len(b)) if j not in chosen]
-        reductions = _worth(H, b, chosen)
+        reductions = find_decreases(H, b, chosen)
         j_best = max(remaining, key=lambda j: reductions[j])
         if reductions[j_best] < penalty and chosen:
             break
@@ -106,14 +152,3 @@ def _fit_columns(H: Array, b: Array, chosen: list[int]) -> tuple[Array, Array]:
     block = H[np.ix_(chosen, chosen)]
     x = solve(block, b[chosen])
     return x, x**2 / np.diag(solve(block, np.eye(len(chosen))))
-
-
-def _worth(H: Array, b: Array, chosen: list[int]) -> Array:
-    """Decrease (k,) of the sum of squares by each further column."""
-    if not chosen:
-        return b**2 / np.maximum(np.diag(H), 1e-300)
-    solution = solve(H[np.ix_(chosen, chosen)], np.column_stack([H[chosen], b[chosen]]))
-    remaining = np.diag(H) - np.einsum("ij,ij->j", H[chosen], solution[:, :-1])
-    product = b - H[chosen].T @ solution[:, -1]
-    independent = remaining > 1e-6 * np.diag(H)
-    return np.where(independent, product**2 / np.where(independent, remaining, 1.0), 0.0)

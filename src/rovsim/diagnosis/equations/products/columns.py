@@ -15,6 +15,7 @@ from rovsim.diagnosis.structure.response import respond
 from rovsim.dynamics.model import Model
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
+from rovsim.estimation.observer.least_squares import find_decreases
 from rovsim.estimation.observer.noise import RunFilters
 from rovsim.estimation.observer.observed_run import ObservedRun, number_blocks
 
@@ -48,6 +49,12 @@ class Columns:
     def gram(self) -> Array:
         """Gram matrix (1 + c, 1 + c) of all readings."""
         return np.asarray(sum(self.parts))
+
+    @property
+    def decreases(self) -> Array:
+        """Decrease (c,) of the sum of squared innovations by each term as the only addition."""
+        G = self.gram
+        return find_decreases(G[1:, 1:], G[1:, 0])
 
 
 def project(
