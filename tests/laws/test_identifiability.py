@@ -172,7 +172,7 @@ def advised(*usable):
 def test_a_model_that_runs_away_is_not_adequate():
     usable, found = UsableRuns((), (), (), (), 60.0), fit(alike())
     assert TrainDiagnosis(found.hypothesis.base, usable, found).verdict == "adequate"
-    lost = replace(usable, lost={"a": 15.9})
+    lost = replace(usable, diverged_from={"a": 15.9})
     assert TrainDiagnosis(found.hypothesis.base, lost, found).verdict == "insufficient_data"
 
 

@@ -155,6 +155,6 @@ def test_a_delay_that_only_lost_lines_make_is_not_named(tmp_path, delay):
     workspace = SimpleNamespace(bank=bank, penalty=12.0, fit=lambda h: fit(h, bank, noise))
     workspace.weigh_term = partial(SearchWorkspace.weigh_term, workspace)
     found = workspace.fit(Hypothesis(base, (Term(InputDelay(), ("delay",)),)))
-    assert found.distance([0]) > workspace.penalty
+    assert found.wald_statistic([0]) > workspace.penalty
     kept = drop_unlogged(SearchResult(workspace, found, ())).best.hypothesis.terms
     assert bool(kept) == bool(delay)

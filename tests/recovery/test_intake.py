@@ -314,7 +314,7 @@ def test_axes_that_nobody_measured_raise_no_alarm(flown, tmp_path, dropped):
     (tmp_path / "poses.csv").unlink()
     logs(flown, tmp_path)
     _, text = init(tmp_path)
-    assert "likeness nan" not in text
+    assert "correlation nan" not in text
     assert "hardly follows" not in text
     assert "CHECK" not in text
 

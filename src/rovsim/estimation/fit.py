@@ -72,7 +72,7 @@ class Fit:
         std = np.maximum(self.std, MIN_STD)
         return np.asarray(self.covariance / np.outer(std, std))
 
-    def distance(self, own: Sequence[int] | Array) -> float:
+    def wald_statistic(self, own: Sequence[int] | Array) -> float:
         """Wald statistic of some parameters against changing nothing (Wald 1943).
 
         Their squared distance from their absence, in standard deviations; `own` are their numbers.

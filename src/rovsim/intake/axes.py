@@ -112,26 +112,29 @@ def _body(turned: Sequence[tuple[float, Array]], bodies: Sequence[str]) -> tuple
         The name of the axes, empty where the commands do not tell, and a sentence on why.
     """
     if not turned or turned[0][0] < MIN_CORRELATION:
-        best = f" (likeness {turned[0][0]:.2f})" if turned else ""
+        best = f" (correlation {turned[0][0]:.2f})" if turned else ""
         return "", f"no motion that its commands explain{best}" if turned else ""
     score, axes = turned[0]
     rival = turned[1][0] if len(turned) > 1 else 0.0
     name = next((n for n in bodies if np.array_equal(axes, BODY_ROTATIONS[n])), "")
     if score < MIN_LEAD_RATIO * rival:
-        return "", f"the commands do not tell: likeness {score:.2f} and {rival:.2f} along two axes"
+        return (
+            "",
+            f"the commands do not tell: correlation {score:.2f} and {rival:.2f} along two axes",
+        )
     if name:
         return (
             name,
-            f"the commanded motion shows along them (likeness {score:.2f}, next {rival:.2f})",
+            f"the commanded motion shows along them (correlation {score:.2f}, next {rival:.2f})",
         )
     directions = [
         f"{word} shows along {_named(axes[:, k])}"
         for k, word in enumerate(("surge", "sway", "heave"))
     ]
     return "", (
-        f"commanded {', '.join(directions)} of the file's body (likeness {score:.2f}): the rigid "
-        "body is turned: make it anew along the vehicle's axes, or write the columns of a csv "
-        "along them"
+        f"commanded {', '.join(directions)} of the file's body (correlation {score:.2f}): the "
+        "rigid body is turned: make it anew along the vehicle's axes, or write the columns of a "
+        "csv along them"
     )
 
 

@@ -135,8 +135,9 @@ def check_order(
     if scores[label] < max(score_unchanged + MIN_GAIN, MIN_CORRELATION):
         return ""
     return (
-        f"with {label} the motion would follow the commands better (likeness {scores[label]:.2f} "
-        f"against {score_unchanged:.2f}). Check the order and the signs of 'commands.columns'"
+        f"with {label} the motion would follow the commands better (correlation "
+        f"{scores[label]:.2f} against {score_unchanged:.2f}). Check the order and the signs of "
+        "'commands.columns'"
     )
 
 

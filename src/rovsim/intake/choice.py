@@ -110,4 +110,4 @@ def _explain_fits(fits: Sequence[VehicleMatch], scores: dict[str, float]) -> str
     if not scores:
         return f"the columns fit {', '.join(fit.name for fit in fits)}"
     vehicles = [f"{fit.name} ({scores.get(fit.name, 0.0):.2f})" for fit in fits]
-    return f"the columns fit, and the motion is like that of (likeness) {', '.join(vehicles)}"
+    return f"the columns fit, and the motion is like that of (correlation) {', '.join(vehicles)}"

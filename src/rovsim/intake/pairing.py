@@ -197,19 +197,20 @@ def _decided(
         clock: position of the log that the clocks speak for, if any.
     """
     if content is not None and name in (None, content):
-        reason = f"its commands cause this motion (likeness {scores[content]:.2f})"
+        reason = f"its commands cause this motion (correlation {scores[content]:.2f})"
         return Pair(
             motion, logs[content], reason + (", and the names agree" if name is not None else "")
         )
     if content is not None and name is not None:
         explanation = (
             f"by its name {logs[name].path.name}, but the motion is that of "
-            f"{logs[content].path.name} (likeness {scores[content]:.2f} against {scores[name]:.2f})"
+            f"{logs[content].path.name} (correlation {scores[content]:.2f} against "
+            f"{scores[name]:.2f})"
         )
         return Pair(motion, None, explanation, (logs[content], logs[name]), logs[content])
     for candidate, explanation in ((name, "by its name"), (clock, "the only log at that time")):
         if candidate is not None:
-            caveat = f"; the motion does not show it (likeness {scores[candidate]:.2f})"
+            caveat = f"; the motion does not show it (correlation {scores[candidate]:.2f})"
             return Pair(
                 motion,
                 logs[candidate],

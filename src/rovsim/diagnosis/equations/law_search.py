@@ -156,7 +156,7 @@ def _list_idle(fits: LawFits, fit: Fit) -> list[int]:
     h, idle = fit.hypothesis, []
     for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True)):
         threshold = HOPELESS_LR + 2.0 * fits.workspace.penalty * len(columns)
-        significant = columns and term.vanishes and fit.distance(columns) > threshold
+        significant = columns and term.vanishes and fit.wald_statistic(columns) > threshold
         if term.effect.listed and not significant:
             idle.append(i)
     return idle

@@ -164,7 +164,7 @@ class SearchWorkspace:
     def weigh_term(self, fit: Fit, i: int) -> float:
         """How far a term is from its absence (Wald's statistic), in units of its penalty."""
         h = fit.hypothesis
-        return fit.distance(h.columns[i]) / (self.penalty * h.terms[i].choices)
+        return fit.wald_statistic(h.columns[i]) / (self.penalty * h.terms[i].choices)
 
     def _penalty_of(self, at: Hypothesis) -> float:
         """The penalties of a hypothesis."""

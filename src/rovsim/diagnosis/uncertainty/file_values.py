@@ -63,7 +63,7 @@ def is_right_elsewhere(whole: Fit, selected: Hypothesis) -> bool:
     pairs = [(type(t.effect), p) for t in h.terms for p in t.parameters]
     share = np.array([share_of_file(h.base, *one) for one in pairs])
     tested, count = new & (share > 0.0), int(np.sum(share > 0.0))
-    if not tested.any() or whole.distance(tested) > chi2.isf(FALSE_ALARM_RATE, tested.sum()):
+    if not tested.any() or whole.wald_statistic(tested) > chi2.isf(FALSE_ALARM_RATE, tested.sum()):
         return False
     prior_std, spread, one = (
         make_file_prior(selected, h).std[tested],
@@ -129,7 +129,7 @@ def _name_gain(whole: Fit) -> set[str]:
     Replays cannot decide this: all other values, wrong by its inverse, would compensate.
     """
     gain = mark_gain(whole.hypothesis)
-    significant = gain.any() and whole.distance(gain) > chi2.isf(FALSE_ALARM_RATE, 1)
+    significant = gain.any() and whole.wald_statistic(gain) > chi2.isf(FALSE_ALARM_RATE, 1)
     return {ThrusterGain.id} if significant else set()
 
 

@@ -53,4 +53,6 @@ def find_perhaps_absent(fit: Fit) -> set[str]:
 def _chances_of_absence(fit: Fit) -> Array:
     """Chance (t,) that absence gives values as far from it, for each term; 0 where none is free."""
     h = fit.hypothesis
-    return np.array([chi2.sf(fit.distance(own), len(own)) if own else 0.0 for own in h.columns])
+    return np.array(
+        [chi2.sf(fit.wald_statistic(own), len(own)) if own else 0.0 for own in h.columns]
+    )

@@ -44,8 +44,8 @@ def tell_following(correlation: CrossCorrelation, axes: Array, start: float | No
         return ""
     if score < MIN_CORRELATION:
         return (
-            f"the motion hardly follows its commands (likeness {score:.2f}): another log, another "
-            "vehicle, a tether that pulls?"
+            f"the motion hardly follows its commands (correlation {score:.2f}): another log, "
+            "another vehicle, a tether that pulls?"
         )
     if not is_off(correlation, axes):
         return ""
@@ -137,6 +137,6 @@ def _explain_offset(score: float, lag: float, start: float | None) -> str:
         if abs(lag) < MAX_FITTED_DELAY_S:
             advice = f"let `input_delay` find it, or {advice}"
     return (
-        f"the motion comes {abs(lag):.2f} s {side} its commands (likeness {score:.2f}): the clocks "
-        f"differ; {advice}."
+        f"the motion comes {abs(lag):.2f} s {side} its commands (correlation {score:.2f}): the "
+        f"clocks differ; {advice}."
     )

@@ -56,7 +56,7 @@ class OtherReading:
     def __str__(self) -> str:
         return (
             "positions and attitudes do not go together: the motion follows its commands better "
-            f"with {self.description} (likeness {self.score:.2f} against "
+            f"with {self.description} (correlation {self.score:.2f} against "
             f"{minus(f'{self.own:.2f}')}). "
             f"{self.remedy}"
         )
@@ -78,7 +78,7 @@ class _Reading(NamedTuple):
     remedy: str = ""
 
 
-class _Likeness(NamedTuple):
+class _MeanCorrelation(NamedTuple):
     """Mean correlation of a motion with its commands.
 
     Attributes:
@@ -113,49 +113,49 @@ def find_convention(
     shift = 0.0 if MIN_USUAL_LAG_S <= lag <= MAX_USUAL_LAG_S else lag
     commanded = Commanded(poses.time, *caused, shift, MAX_USUAL_LAG_S)
 
-    def likeness(reading: _Reading) -> _Likeness:
+    def correlate(reading: _Reading) -> _MeanCorrelation:
         motion = of_poses(ResampledPoses(poses.time, reading.position, reading.attitude))
         correlation = commanded.correlate(motion)
         score, k_best = max(((correlation.best(a)[0], k) for k, a in enumerate(axes)))
         linear = replace(correlation, excited=correlation.excited & LINEAR_AXES)
-        return _Likeness(score, linear.best(axes[k_best])[0])
+        return _MeanCorrelation(score, linear.best(axes[k_best])[0])
 
-    unchanged = likeness(_Reading(poses.attitude, poses.position))
+    unchanged = correlate(_Reading(poses.attitude, poses.position))
     if unchanged.whole > 1.0 - MIN_GAIN:
         return None
-    return _choose_reading(unchanged, [(likeness(r), r) for r in _list_readings(poses, angles)])
+    return _choose_reading(unchanged, [(correlate(r), r) for r in _list_readings(poses, angles)])
 
 
 def _choose_reading(
-    own: _Likeness, scored: list[tuple[_Likeness, _Reading]]
+    own: _MeanCorrelation, scored: list[tuple[_MeanCorrelation, _Reading]]
 ) -> OtherReading | None:
     """Describe the readings that are clearly better and about as good as the best of them.
 
     Args:
-        own: likeness of the poses as they were read.
-        scored: other readings and their likeness, the simplest first.
+        own: correlation of the poses as they were read.
+        scored: other readings and their correlation, the simplest first.
 
     Returns:
         At most two readings in one, the simplest ones; None where none is clearly better.
     """
     threshold = max(own.whole + MIN_GAIN, MIN_CORRELATION)
     candidates = [
-        (likeness, reading)
-        for likeness, reading in scored
-        if likeness.whole >= threshold and likeness.linear >= own.linear + MIN_LINEAR_GAIN
+        (correlation, reading)
+        for correlation, reading in scored
+        if correlation.whole >= threshold and correlation.linear >= own.linear + MIN_LINEAR_GAIN
     ]
     if not candidates:
         return None
-    best_likeness = max(likeness for likeness, _ in candidates)
+    highest = max(correlation for correlation, _ in candidates)
     best_readings = [
         reading
-        for likeness, reading in candidates
-        if likeness.whole >= best_likeness.whole - TIE_MARGIN
-        and likeness.linear >= best_likeness.linear - LINEAR_TIE_MARGIN
+        for correlation, reading in candidates
+        if correlation.whole >= highest.whole - TIE_MARGIN
+        and correlation.linear >= highest.linear - LINEAR_TIE_MARGIN
     ][:2]
     wording = ", or with ".join(reading.description for reading in best_readings)
     remedy = " Or: ".join(dict.fromkeys(reading.remedy for reading in best_readings))
-    return OtherReading(best_likeness.whole, own.whole, wording, remedy)
+    return OtherReading(highest.whole, own.whole, wording, remedy)
 
 
 def _list_readings(poses: ResampledPoses, angles: bool) -> Iterator[_Reading]:

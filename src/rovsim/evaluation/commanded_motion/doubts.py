@@ -36,8 +36,8 @@ MAX_END_GAP_S, MAX_END_GAP_STEPS = 2.0, 5.0
 # Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
 # of a ship that steers reach 0.8 along wrong axes, and of a catamaran 0.98 along the right ones.
 CLEAR_CORRELATION = 0.9
-# Likeness, along any axes or by any convention, beyond which a log is surely that of the run. With
-# the logs of other runs, runs of 12 s reach 0.56 (tank=tiny, seven seeds), of 60 s 0.25.
+# Correlation, along any axes or by any convention, beyond which a log is surely that of the run.
+# With the logs of other runs, runs of 12 s reach 0.56 (tank=tiny, seven seeds), of 60 s 0.25.
 SURELY_OWN_CORRELATION = 0.65
 TRANSLATION_AXES = ("surge", "sway", "heave")
 
@@ -110,25 +110,25 @@ def _sentence(half: str) -> str:
     return half[0].upper() + half[1:]
 
 
-def _of_other_axes(axes: Array, likeness: float, as_described: float) -> str:
+def _of_other_axes(axes: Array, correlation: float, as_described: float) -> str:
     """Describe the axes (3, 3) along which a motion is like its commands, more than as described.
 
     Both correlations are means over the excited axes.
     """
     return (
         f"the vehicle moves along other axes than those commanded: {_describe_swaps(axes)} "
-        f"(likeness {likeness:.2f}; as described {as_described:.2f}). Check 'mocap.body_axes', "
-        "'mocap.world_axes' and the order and signs of 'commands.columns'."
+        f"(correlation {correlation:.2f}; as described {as_described:.2f}). Check "
+        "'mocap.body_axes', 'mocap.world_axes' and the order and signs of 'commands.columns'."
     )
 
 
-def _of_same_log(runs: Sequence[str], likeness: float) -> str:
+def _of_same_log(runs: Sequence[str], correlation: float) -> str:
     """Say that other runs name the log of a motion that is unlike it (mean correlation)."""
     named = f"runs {' and '.join(runs)} name" if len(runs) > 1 else f"run {runs[0]} names"
     return (
-        f"{named} the same log of commands, and this motion is unlike it (likeness "
-        f"{likeness:.2f}): correct 'commands' of the run whose log it is not. If it is one log of "
-        "several runs, check 'commands_shift_s', then the axes."
+        f"{named} the same log of commands, and this motion is unlike it (correlation "
+        f"{correlation:.2f}): correct 'commands' of the run whose log it is not. If it is one log "
+        "of several runs, check 'commands_shift_s', then the axes."
     )
 
 

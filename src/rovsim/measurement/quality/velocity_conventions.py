@@ -105,14 +105,14 @@ def _compare(of: Recording | Export, kind: str, measured: Array) -> _Both | None
 
 
 def _judge(kind: str, both: _Both) -> str:
-    quantity, likeness = PLURALS[kind], _cosine(both.measured, both.body)
-    if likeness > ALIKE_COSINE:
+    quantity, cosine = PLURALS[kind], _cosine(both.measured, both.body)
+    if cosine > ALIKE_COSINE:
         return _judge_size(kind, both)
     in_world = _cosine(both.measured, both.world)
     if in_world > ALIKE_COSINE:
         return (
-            f"The {quantity} lie along the axes of the world, by the poses beside them (likeness "
-            f"{in_world:.2f}, along the body {likeness:.2f}): turn them into the body's axes, or "
+            f"The {quantity} lie along the axes of the world, by the poses beside them (cosine "
+            f"{in_world:.2f}, along the body {cosine:.2f}): turn them into the body's axes, or "
             "leave them out."
         )
     signs = max(product((1.0, -1.0), repeat=3), key=lambda s: _cosine(both.measured * s, both.body))
@@ -120,13 +120,13 @@ def _judge(kind: str, both: _Both) -> str:
     if mirrored > ALIKE_COSINE:
         axes = " and ".join(n for n, s in zip("xyz", signs, strict=True) if s < 0.0)
         return (
-            f"The {quantity} fit the poses beside them with the sign of {axes} turned (likeness "
-            f"{mirrored:.2f}, as they are {likeness:.2f}): poses and {quantity} have other axes. "
+            f"The {quantity} fit the poses beside them with the sign of {axes} turned (cosine "
+            f"{mirrored:.2f}, as they are {cosine:.2f}): poses and {quantity} have other axes. "
             "Bring them to the same."
         )
-    if likeness < UNLIKE_COSINE:
+    if cosine < UNLIKE_COSINE:
         return (
-            f"The {quantity} do not fit the poses beside them (likeness {likeness:.2f}): check "
+            f"The {quantity} do not fit the poses beside them (cosine {cosine:.2f}): check "
             "their axes, their order and their clock, or leave them out."
         )
     return ""
