@@ -37,7 +37,8 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
         start: a hypothesis without a law, to which the terms are added.
 
     Returns:
-        The law with its rivals; None where not even one term is worth adding.
+        The law with its rivals; None where not even one term is worth adding, or where no law could
+        be as likely as the accepted effects.
     """
     site, middle = fits.runs[0].motion.site, middle_of(fits.runs)
     terms: tuple[LawTerm, ...] = ()
@@ -50,9 +51,10 @@ def select_terms(fits: LawFits, start: Hypothesis) -> FittedLaw | None:
         used_kinds = [t.kind for t in terms]
         remaining = [t for t in list_terms(fits.runs, fixed_place) if t.kind not in used_kinds]
         columns = fits.project(fit, remaining, middle)
-        if len(columns.terms) < MAX_TERMS:
+        count = MAX_TERMS - len(terms)
+        if len(columns.terms) < MAX_TERMS or not fits.may_compete(score, columns, count):
             break
-        kinds = choose_kinds(propose(columns, MAX_TERMS - len(terms)))[:TERMS_TRIED]
+        kinds = choose_kinds(propose(columns, count))[:TERMS_TRIED]
         laws = fit_products(fits, fit, terms, kinds, columns)
         kind = next(
             (k for k, candidate in laws.items() if fits.is_worth(candidate, fit, score)), None
