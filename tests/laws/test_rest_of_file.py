@@ -26,20 +26,21 @@ from rovsim.estimation.observer.noise import FIRST_NOISE
 from rovsim.estimation.prior import Prior
 
 OFF = 0.2  # of each coefficient
+FEW_PER_CENT = 0.05  # of each coefficient
 WEAK, WEAKER = 0.95, 0.75  # thrusters of this strength
 COEFFICIENTS = ("linear_damping", "quadratic_damping", "added_mass")
 
 
-def fly_off(folder, gain, special=None):
+def fly_off(folder, gain, special=None, share=OFF, duration=20.0):
     """The file, runs of a vehicle of which all is off and special effects act, and by how much."""
     base, _ = observed(folder / "right", duration=2.0)
     body = base.body
     stated = dict(zip(COEFFICIENTS, (body.linear, body.quadratic, np.diag(body.M_A)), strict=True))
-    off = {n: dict(zip(AXES, OFF * x, strict=True)) for n, x in stated.items()}
+    off = {n: dict(zip(AXES, share * x, strict=True)) for n, x in stated.items()}
     off["thruster_gain"] = {"all": gain}
     off |= special or {}
     hidden = tuple(EffectEntry(effect=name, parameters=own) for name, own in off.items())
-    base, runs = observed(folder / "off", duration=20.0, effects=hidden)
+    base, runs = observed(folder / "off", duration=duration, effects=hidden)
     return base, runs, off
 
 
@@ -81,7 +82,7 @@ def test_what_the_rest_of_the_file_hides_is_in_the_intervals(flown, bank):
     """Nothing is fitted of heave, rotations and thrust, which are as wrong."""
     _, runs, off = flown
     found = fitted(bank, ("surge", "sway"))
-    wider, scale = include_rest(found, runs)
+    wider, scale = include_rest(found, runs, loose=True)
     assert np.abs(miss(found, off)).max() > 2.5
     assert np.abs(miss(wider, off)).max() < 2.5
     assert np.all(wider.std >= found.std)
@@ -165,9 +166,24 @@ def test_a_file_may_be_right_but_for_what_was_selected(flown, tmp_path):
     assert is_right_elsewhere(fit_whole(found, other), found.hypothesis)
 
 
-def test_one_effect_may_be_all_that_is_wrong(flown, bank):
+def test_what_is_too_little_to_be_found_is_in_the_intervals(tmp_path):
+    base, runs, off = fly_off(tmp_path, 1.0, share=FEW_PER_CENT, duration=40.0)
+    found = fitted(FilterBank.design(runs, base, FIRST_NOISE), AXES, COEFFICIENTS[1:])
+    wider, _ = include_rest(found, runs, loose=False)
+    assert np.abs(miss(found, off)).max() > 5.0
+    assert np.abs(miss(wider, off)).max() < 2.5
+
+
+def test_one_effect_may_be_all_that_is_wrong(tmp_path):
+    base, _ = observed(tmp_path / "right", duration=2.0)
+    off = {"added_mass": dict(zip(AXES, OFF * np.diag(base.body.M_A), strict=True))}
+    hidden = (EffectEntry(effect="added_mass", parameters=off["added_mass"]),)
+    base, runs = observed(tmp_path / "off", duration=20.0, effects=hidden)
+    bank = FilterBank.design(runs, base, FIRST_NOISE)
     found = fitted(bank, AXES, ("added_mass",))
-    assert include_rest(found, flown[1]) == (found, None)
+    wider, scale = include_rest(found, runs, loose=False)
+    assert scale is None
+    assert np.all(wider.std < 1.5 * found.std)
     assert fit_whole(found, bank) is None
 
 

@@ -14,11 +14,12 @@ from rovsim.diagnosis.selection.vehicle_file.steps import without_gain
 from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.structure.residual_structure import find_structure
-from rovsim.diagnosis.uncertainty.common_scale import CommonScale, include_scale
+from rovsim.diagnosis.uncertainty.common_scale import CommonScale
 from rovsim.diagnosis.uncertainty.file_values import is_right_elsewhere, settle_whole_file
 from rovsim.diagnosis.uncertainty.identifiability import find_doubtful
 from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit, fit_noise_only, polish
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -212,9 +213,9 @@ def finalise_answer(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> Final
         answer = replace(answer, fit=_refit_to_replays(answer.fit, answer.bank))
     whole_file_fit, selected = answer.whole_file_fit, answer.fit.hypothesis
     if answer.leaves_physics or whole_file_fit is None:
-        return FinalAnswer(answer, *include_rest(answer.fit, runs))
+        return FinalAnswer(answer, *include_rest(answer.fit, runs, has_loose_file(selected)))
     if is_right_elsewhere(whole_file_fit, selected):
-        return FinalAnswer(answer, *include_scale(answer.fit, runs))
+        return FinalAnswer(answer, *include_rest(answer.fit, runs, loose=False))
     final, scale = settle_whole_file(whole_file_fit, selected, answer.bank)
     return FinalAnswer(replace(answer, fit=final), final, scale)
 

@@ -17,9 +17,10 @@ from rovsim.estimation.observer.hypothesis import Bounds, Hypothesis, Term
 from rovsim.estimation.prior import cauchy
 
 DRAG = (LinearDamping, QuadraticDamping)
-PER_AXIS = (*DRAG, AddedMass, ConstantWrench)
+PROPORTIONAL_EFFECTS = (*DRAG, AddedMass)  # files are off by a share of what they state
+PER_AXIS = (*PROPORTIONAL_EFFECTS, ConstantWrench)
 ONE_GAIN = ("all",)  # of all thrusters
-FILE_EFFECTS = (*DRAG, AddedMass, NetBuoyancy, BuoyancyCenter, ThrusterGain)
+FILE_EFFECTS = (*PROPORTIONAL_EFFECTS, NetBuoyancy, BuoyancyCenter, ThrusterGain)
 FILE_EFFECT_IDS = frozenset(effect.id for effect in FILE_EFFECTS)
 MIN_LOOSE_EFFECTS = 3  # file effects: of fewer, the rest of the file may well be right
 # How far a vehicle file is off, relative to what it states. Added mass: two published sets for a

@@ -17,6 +17,7 @@ from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.diagnosis.uncertainty.rest_of_file import include_rest
 from rovsim.dynamics.model import Model
+from rovsim.estimation.file_effects import has_loose_file
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
@@ -134,7 +135,7 @@ def propose_law(
         return None  # values fitted to all runs may leave less to the law
     action = find_action(law.form, fit, runs)
     left = tuple(find_structure(fit, bank))
-    fit, _ = include_rest(fit, runs)
+    fit, _ = include_rest(fit, runs, has_loose_file(fit.hypothesis))
     beside = (*camera, *(e for e in name_terms(fit, ()) if e.term.effect.listed))
     share = (error_without - error_with) / error_base
     return ProposedLaw(law.form, fit, share, action, law.rivals, beside, left)

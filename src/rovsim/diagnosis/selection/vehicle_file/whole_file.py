@@ -1,12 +1,13 @@
 """All of a loose vehicle file, fitted together with what was selected."""
 
-from typing import Sequence
+from typing import Callable, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
-from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.base import Effect, Parameter
 from rovsim.dynamics.effects.thrusters import ThrusterGain, name_gains
+from rovsim.dynamics.model import Model
 from rovsim.estimation.file_effects import (
     FILE_EFFECTS,
     GAIN_RELATIVE_STD,
@@ -23,6 +24,9 @@ from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.prior import Prior
+
+# How far a file may be off in a parameter of an effect of a base model, in its scales.
+SpreadOf = Callable[[Model, type[Effect], Parameter], float]
 
 
 def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit | None:
@@ -61,10 +65,10 @@ def mark_new(selected: Hypothesis, freed: Hypothesis) -> Array:
     return np.array([name not in names for name in freed.parameter_names], bool)
 
 
-def free_rest(h: Hypothesis) -> Hypothesis:
+def free_rest(h: Hypothesis, effects: Sequence[type[Effect]] = FILE_EFFECTS) -> Hypothesis:
     """With all free that the file states; each thruster's own gain where several differ."""
     names = set(h.parameter_names)
-    for effect in (cls.on(h.base.vehicle) for cls in FILE_EFFECTS):
+    for effect in (cls.on(h.base.vehicle) for cls in effects):
         parameters = tuple(k for k in _list_stated(effect, h) if f"{effect.id}.{k}" not in names)
         if parameters:
             h = h.with_term(Term(effect(), parameters))
@@ -79,9 +83,9 @@ def _list_stated(effect: type[Effect], h: Hypothesis) -> Sequence[str]:
     return (*ONE_GAIN, *gains) if selected >= MIN_LOOSE_EFFECTS else ONE_GAIN
 
 
-def list_spreads(h: Hypothesis, freed: Hypothesis) -> Array:
+def list_spreads(h: Hypothesis, freed: Hypothesis, spread_of: SpreadOf = spread_of_file) -> Array:
     """How far the file may be off (n,) in each parameter that only `freed` has, scaled."""
     parameters = [(type(t.effect), p) for t in freed.terms for p in t.parameters]
     pairs = zip(freed.parameter_names, parameters, strict=True)
     new = [parameter for name, parameter in pairs if name not in h.parameter_names]
-    return np.array([spread_of_file(h.base, *parameter) for parameter in new])
+    return np.array([spread_of(h.base, *parameter) for parameter in new])
