@@ -21,6 +21,7 @@ from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.withdrawn_probability import (
     find_constant_heave,
     find_leading,
+    find_negative,
     find_small,
     withdraw_probability,
 )
@@ -109,6 +110,9 @@ def _doubt(
         effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
     if validated.difference:
         effects = withdraw_probability(effects, {validated.difference.effect_id}, "differs")
+    effects = withdraw_probability(effects, validated.varying, "varies")
+    negative = find_negative(effects, validated.problem.base.body)
+    effects = withdraw_probability(effects, negative, "negative")
     if validated.problem.base.vehicle.floats:
         effects = withdraw_probability(effects, find_constant_heave(effects), "depth_at_rest")
     return effects

@@ -104,12 +104,13 @@ class TrainDiagnosis:
     def verdict(self) -> Verdict:
         """The verdict, as `diagnosis.json` has it.
 
-        `unexplained` where something is left but noise; else `missing_effects` where effects were
-        selected; else `adequate`, unless an axis did not move or the model diverged in a run.
+        `unexplained` where something is left but noise, or runs differ; else `missing_effects`
+        where effects were selected; else `adequate`, unless an axis did not move or the model
+        diverged in a run.
         """
         if not self.enough:
             return "insufficient_data"
-        if self.structures or self.refused:
+        if self.structures or self.refused or self.difference:
             return "unexplained"
         if self.selected:
             return "missing_effects"

@@ -28,9 +28,7 @@ def describe_unexplained(diagnosis: TrainDiagnosis) -> Unexplained:
     return Unexplained(
         fraction=rounded_or_none(share),
         significant=True,
-        hint=_format_hint(diagnosis.structures, diagnosis.difference)
-        if diagnosis.structures
-        else REFUSED_EFFECTS_HINT,
+        hint=_format_hint(diagnosis.structures, diagnosis.difference) or REFUSED_EFFECTS_HINT,
         between_runs=_describe_difference(diagnosis.difference),
         proposal=describe_law(diagnosis.proposed) if diagnosis.proposed else None,
         stand_ins=tuple(sorted({*diagnosis.replaced, *doubted})),
@@ -49,7 +47,12 @@ def _describe_difference(difference: RunDifference | None) -> dict[str, FittedEf
 
 
 def _format_hint(structures: Sequence[Structure], difference: RunDifference | None) -> str:
-    """Say on which axes something is left, and what it depends on; the most surprising first."""
+    """Say on which axes something is left, and what it depends on; the most surprising first.
+
+    Empty where nothing is left and runs do not differ.
+    """
+    if not structures:
+        return f"Runs differ in {difference.effect_id}, and in nothing else." if difference else ""
     strongest = structures[0]
     # the first of each other axis
     by_axis = {s.axis: s.what for s in reversed(structures) if s.axis != strongest.axis}

@@ -6,7 +6,7 @@ without it.
 """
 
 from dataclasses import dataclass, replace
-from typing import Iterator, Sequence
+from typing import Collection, Iterator, Sequence
 
 from rovsim.core.progress import begin_stage
 from rovsim.diagnosis.answer import SettledAnswer, choose_answer, settle, settle_noticed
@@ -15,6 +15,7 @@ from rovsim.diagnosis.checks.run_differences import (
     find_harmful,
     find_run_difference,
 )
+from rovsim.diagnosis.checks.varying_effects import find_varying
 from rovsim.diagnosis.equations.masked import find_masked_laws
 from rovsim.diagnosis.selection.filter_delay import (
     SearchStart,
@@ -72,6 +73,7 @@ class ValidatedSearch:
         start: where the search began.
         smoothing: the filter of the cameras; None where they do not smooth.
         holdout: the stretches that the answer was validated on.
+        varying: ids of accepted effects whose values vary from run to run, where nothing is left.
         difference: an effect that has another value in each run; None where there is none.
     """
 
@@ -80,7 +82,8 @@ class ValidatedSearch:
     start: SearchStart
     smoothing: Smoothing | None
     holdout: HoldoutValidation
-    difference: RunDifference | None = None
+    varying: Collection[str]
+    difference: RunDifference | None
 
 
 def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
@@ -124,11 +127,13 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
-    difference = None if answer.complete else find_run_difference(answer.selection)
+    varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
+    may_differ = varying or not answer.complete
+    difference = find_run_difference(answer.selection) if may_differ else None
     reduced = _drop_harmful(answer, usable, holdout) if difference else answer
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
-    return ValidatedSearch(problem, answer, start, smoothing, holdout, difference)
+    return ValidatedSearch(problem, answer, start, smoothing, holdout, varying, difference)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:

@@ -4,6 +4,8 @@ standstills       stretches in which the vehicle stands still although the model
 commanded         thrusters or axes that were never commanded
 observability     effects that these runs could not show
 unlogged_effects  removes effects that only explain where the command log is uncertain
+by_run            products of derivatives and innovations, run by run
+varying_effects   accepted effects whose values vary from run to run
 run_differences   an effect that has another value in each run
 wrong_units       values so far from the vehicle file that a unit may be wrong
 noise_floor       the error that a perfect model would have

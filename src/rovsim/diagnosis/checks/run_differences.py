@@ -1,4 +1,4 @@
-"""Find an effect that has another value in each run, where structure is left.
+"""Find an effect that has another value in each run.
 
 A clock of the log that is set anew, a battery that was changed, ballast or a tether that was moved:
 no single value is right for all runs, and what is left of each looks like unknown physics. To first
@@ -7,25 +7,22 @@ that explains than one value for all runs is a likelihood-ratio statistic. A hul
 its added mass: vortices behind it were explained by a coupling in one run alone, of hundreds of N.
 """
 
-from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import Iterator, Mapping, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
 
+from rovsim.diagnosis.checks.by_run import ProductsByRun, group_runs
 from rovsim.diagnosis.selection.accepted_effects import find_std
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.workspace import HOPELESS_LR
-from rovsim.diagnosis.structure.residual import split_by_run
 from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.estimation.fit import Fit, polish
 from rovsim.estimation.fit import fit as fit_values
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
-from rovsim.estimation.observer.least_squares import as_rows, solve
-from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised
 
 # Of the strongest structure: where more is left with a value for each run, these are not what
@@ -52,34 +49,6 @@ class RunDifference:
         return next(iter(self.by_run.values())).term.id
 
 
-class _Products(NamedTuple):
-    """Products, for each of R runs, of k derivatives with each other and with the innovations.
-
-    Attributes:
-        gram: (R, k, k).
-        b: (R, k).
-    """
-
-    gram: Array
-    b: Array
-
-    def of(self, kept: Sequence[int]) -> "_Products":
-        """Of some of the derivatives alone."""
-        return _Products(self.gram[:, kept][:, :, kept], self.b[:, kept])
-
-    @property
-    def steps(self) -> Array:
-        """Steps (R, k) of the parameters that explain each run best."""
-        return -np.stack([solve(G, b) for G, b in zip(self.gram, self.b, strict=True)])
-
-    @property
-    def difference(self) -> float:
-        """By how much steps of each run lower the sum of squares more than common steps do."""
-        common = self.b.sum(axis=0)
-        apart = -float(np.sum(self.steps * self.b))
-        return apart - float(common @ solve(self.gram.sum(axis=0), common))
-
-
 class _Differing(NamedTuple):
     """A term with those of its parameters free that differ, and the score of that."""
 
@@ -97,16 +66,15 @@ def find_run_difference(selection: SearchResult) -> RunDifference | None:
         selection: where a search ended.
     """
     fit, bank = selection.best, selection.workspace.bank
-    runs = _group_runs(bank.runs)
+    runs = group_runs(bank.runs)
     if len(runs) < 2 or not fit.is_finite:
         return None
     best = max(_list_differing(selection, runs), key=lambda one: one.score, default=None)
     if best is None or best.score < HOPELESS_LR:
         return None
     linearised = _linearise(fit, best.term, bank)
-    products = _multiply(
-        bank.whiten(fit.linearised.e, fit.noise), bank.whiten(linearised, fit.noise), bank, runs
-    )
+    e, J = (bank.whiten(x, fit.noise) for x in (fit.linearised.e, linearised))
+    products = ProductsByRun.of(e, J, bank.runs)
     steps = products.steps
     innovations = [e.copy() for e in fit.linearised.e]
     for step, own in zip(steps, runs.values(), strict=True):
@@ -128,22 +96,12 @@ def find_harmful(accepted: Hypothesis, validation: HoldoutValidation) -> int | N
         validation: judges replays; it knows the whole runs.
     """
     runs = validation.whole_runs
-    judges = [
-        replace(validation, runs=[runs[k] for k in own]) for own in _group_runs(runs).values()
-    ]
+    judges = [replace(validation, runs=[runs[k] for k in own]) for own in group_runs(runs).values()]
     for i in range(len(accepted.terms)):
         without = accepted.without(i).model
         if any(judge.refuses(accepted.model, without) for judge in judges):
             return i
     return None
-
-
-def _group_runs(parts: Sequence[ObservedRun]) -> dict[str, list[int]]:
-    """Places of the parts of each run, by the run's id."""
-    places = defaultdict(list)
-    for k, run in enumerate(parts):
-        places[run.motion.run.id].append(k)
-    return dict(places)
 
 
 def _list_differing(
@@ -169,20 +127,22 @@ def _list_differing(
             term = block.candidate.term(block.candidate.sloped)
             rows.append((term, sensitivities.bank.whiten(columns, noise)))
     for term, derivatives in rows:
-        products = _multiply(e, derivatives, bank, runs)
+        products = ProductsByRun.of(e, derivatives, bank.runs)
         kept = _eliminate(products, penalty)
         if kept:
-            score = products.of(kept).difference - penalty * len(kept)
+            score = products.only(kept).difference - penalty * len(kept)
             yield _Differing(replace(term, free=tuple(term.free[k] for k in kept)), score)
 
 
-def _eliminate(products: _Products, penalty: float) -> list[int]:
+def _eliminate(products: ProductsByRun, penalty: float) -> list[int]:
     """Which derivatives differ: from all of them, down to those that are worth their penalty."""
     kept = np.flatnonzero(np.einsum("rkk->k", products.gram) > 0.0).tolist()
     while kept:
-        whole = products.of(kept).difference
+        whole = products.only(kept).difference
         worth = [
-            whole - products.of([j for j in kept if j != k]).difference if len(kept) > 1 else whole
+            whole - products.only([j for j in kept if j != k]).difference
+            if len(kept) > 1
+            else whole
             for k in kept
         ]
         weakest = int(np.argmin(worth))
@@ -190,17 +150,6 @@ def _eliminate(products: _Products, penalty: float) -> list[int]:
             break
         kept.pop(weakest)
     return kept
-
-
-def _multiply(
-    e: Array, derivatives: Array, bank: FilterBank, runs: Mapping[str, Sequence[int]]
-) -> _Products:
-    """Multiply derivatives (k, 6, n) with each other and with innovations (6, n), both white."""
-    e_parts, J_parts = split_by_run(e, bank.runs), split_by_run(derivatives, bank.runs)
-    rows = [as_rows(part) for part in J_parts]
-    gram = [sum(rows[k] @ rows[k].T for k in own) for own in runs.values()]
-    b = [sum(rows[k] @ e_parts[k].ravel() for k in own) for own in runs.values()]
-    return _Products(np.array(gram, float), np.array(b, float))
 
 
 def _linearise(fit: Fit, term: Term, bank: FilterBank) -> list[Array]:

@@ -6,13 +6,16 @@ An effect that is doubted for several reasons keeps the first.
 from dataclasses import replace
 from typing import Collection, Iterable, Sequence, TypeVar
 
+from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect
 from rovsim.diagnosis.selection.ranking import OrderedEffect
+from rovsim.dynamics.body import Body
 from rovsim.dynamics.effects.buoyancy import NetBuoyancy
 from rovsim.dynamics.effects.constant_wrench import ConstantWrench
 from rovsim.results.fitted import Doubt
 
 E = TypeVar("E", bound=AcceptedEffect)
+SURELY_STDS = 3.0  # standard deviations: one coefficient in 700 is so far off by chance
 
 
 def withdraw_probability(effects: Iterable[E], doubted: Collection[str], doubt: Doubt) -> list[E]:
@@ -38,6 +41,25 @@ def find_leading(effects: Iterable[AcceptedEffect]) -> set[str]:
     Their filter may use later frames as well, and such a filter was not among the rivals.
     """
     return {e.term.id for e in effects if e.leads}
+
+
+def find_negative(effects: Iterable[AcceptedEffect], body: Body) -> set[str]:
+    """Ids of effects by which a coefficient of drag or added mass surely falls below zero.
+
+    Water that pushes, or that weighs less than nothing, is not there: the value is that of
+    something else.
+
+    Args:
+        effects: the accepted effects.
+        body: of the base, with what its file states.
+    """
+    found = set()
+    for one in effects:
+        stated = dict(zip(AXES, body.stated.get(one.term.id, ()), strict=False))
+        total = {n: stated[n] + one.term.effect[n] for n in one.term.free if n in stated}
+        if any(total[n] < -SURELY_STDS * one.std[n] for n in total):
+            found.add(one.term.id)
+    return found
 
 
 def find_small(
