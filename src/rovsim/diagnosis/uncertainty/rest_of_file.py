@@ -35,6 +35,9 @@ from rovsim.estimation.observer.observed_run import ObservedRun
 
 # Of the usual errors of a file (a third): the shares that are compared.
 SHARES = np.geomspace(0.01, 1.0, 25)
+# Likelihood-ratio statistic: one right file in twenty seems to be off by more (Self & Liang 1987,
+# J. Am. Stat. Assoc. 82, 605: half of chi-squared, for a share is not below zero).
+MIN_LR_OF_DEVIATIONS = 2.7
 
 
 def include_rest(
@@ -82,11 +85,11 @@ def _include_deviations(fit: Fit, runs: Sequence[ObservedRun]) -> Fit:
 
 
 def _find_share(nuisance: NuisanceParameters, usual: Array) -> float:
-    """How far the rest of a file is likeliest off, as a share of the usual spread (n,); perhaps 0.
+    """How far the rest of a file is likeliest off, as a share of what is usual (n,); 0 if unsure.
 
     The deviations have a normal prior of that spread; their likelihood is marginal of them.
     """
-    best, best_lr = 0.0, 0.0
+    best, best_lr = 0.0, MIN_LR_OF_DEVIATIONS
     for share in SHARES:
         T = share * usual
         spread = np.eye(len(T)) + T[:, None] * nuisance.information * T
