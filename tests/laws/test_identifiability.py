@@ -20,6 +20,7 @@ from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.selection.withdrawn_probability import (
     find_constant_heave,
     find_leading,
+    find_negative,
     find_small,
     withdraw_probability,
 )
@@ -307,6 +308,18 @@ def test_a_constant_force_in_heave_only_shifts_the_depth_of_what_floats(effect, 
     """A pilot who pushed a floating vehicle down was a wrench of -45 N at a probability of one."""
     named = AcceptedEffect(Term(effect, free), {}, 1.0)
     assert find_constant_heave([named]) == ({effect.id} if doubted else set())
+
+
+@pytest.mark.parametrize(
+    ("change", "std", "doubted"),
+    [(-5.0, 1.0, False), (-20.0, 1.0, True), (-20.0, 5.0, False), (5.0, 1.0, False)],
+)
+def test_water_does_not_push(change, std, doubted):
+    """The file states a damping in surge of 13.7 N s/m."""
+    body = nominal(load_vehicle("bluerov2_heavy")).body
+    drag = AcceptedEffect(Term(LinearDamping(surge=change), ("surge",)), {"surge": std}, 1.0)
+    gain = AcceptedEffect(Term(ThrusterGain(all=-0.9), ("all",)), {"all": 0.1}, 1.0)
+    assert find_negative([drag, gain], body) == ({"linear_damping"} if doubted else set())
 
 
 def test_an_effect_keeps_its_first_doubt():

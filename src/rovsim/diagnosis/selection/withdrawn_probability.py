@@ -6,6 +6,8 @@ An effect that is doubted for several reasons keeps the first.
 from dataclasses import replace
 from typing import Collection, Iterable, Sequence, TypeVar
 
+import numpy as np
+
 from rovsim.core.axes import AXES
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect
 from rovsim.diagnosis.selection.ranking import OrderedEffect
@@ -57,7 +59,7 @@ def find_negative(effects: Iterable[AcceptedEffect], body: Body) -> set[str]:
     for one in effects:
         stated = dict(zip(AXES, body.stated.get(one.term.id, ()), strict=False))
         total = {n: stated[n] + one.term.effect[n] for n in one.term.free if n in stated}
-        if any(total[n] < -SURELY_STDS * one.std[n] for n in total):
+        if any(total[n] < -SURELY_STDS * one.std.get(n, np.inf) for n in total):
             found.add(one.term.id)
     return found
 

@@ -19,7 +19,7 @@ DOUBT_REASONS: dict[Doubt | None, str] = {
     "depth_at_rest": "if it floats at rest elsewhere than in the middle of its depths, that is "
     "the same force in heave",
     "differs": "runs differ in it, so that no value is right for all of them",
-    "varies": "its value varies from run to run, which what belongs to the vehicle does not",
+    "varies": "its value varies from run to run, and that of a property of the vehicle does not",
     "negative": "with it a coefficient falls below zero: water would push, or weigh less than "
     "nothing",
     "perhaps_absent": "as far as its values are known, they may be those of its absence",
