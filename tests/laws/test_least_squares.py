@@ -83,7 +83,7 @@ def test_forward_regression_adds_what_lowers_the_residual_most(columns):
     for _ in range(4):
         others = [k for k in range(8) if k not in expected]
         expected.append(min(others, key=lambda k: left([*expected, k])))
-    assert regress_forward(gram(mixed), mixed @ target, 4) == expected
+    assert list(regress_forward(gram(mixed), mixed @ target, 4).chosen) == expected
 
 
 def test_forward_regression_is_that_of_a_library(columns):
@@ -92,11 +92,11 @@ def test_forward_regression_is_that_of_a_library(columns):
     target = np.random.default_rng(10).normal(size=8) @ mixed
     path = FROLS(max_iter=3, alpha=1e-9, unbias=False).fit(mixed.T, target[:, None]).history_
     theirs = [set(np.flatnonzero(row[0])) for row in path[1:4]]
-    ours = regress_forward(gram(mixed), mixed @ target, 3)
+    ours = regress_forward(gram(mixed), mixed @ target, 3).chosen
     assert [set(ours[: k + 1]) for k in range(3)] == theirs
 
 
 def test_forward_regression_ends_where_nothing_is_left(columns):
     alike = np.vstack([columns[:2], columns[0] + columns[1], np.zeros(500)])
-    assert len(regress_forward(gram(alike), alike @ (columns[0] - columns[1]), 4)) == 2
-    assert regress_forward(np.empty((0, 0)), np.empty(0), 4) == []
+    assert len(regress_forward(gram(alike), alike @ (columns[0] - columns[1]), 4).chosen) == 2
+    assert regress_forward(np.empty((0, 0)), np.empty(0), 4).chosen == ()

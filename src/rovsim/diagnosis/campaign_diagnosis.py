@@ -139,9 +139,8 @@ def _build_ladder(
             score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
     steps = [score.step for score in scores]
     floor = _estimate_noise_floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
-    return Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor))), scores[
-        0
-    ].diverges_in
+    ladder = Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor)))
+    return ladder, scores[0].diverges_in
 
 
 def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:

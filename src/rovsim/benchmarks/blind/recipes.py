@@ -148,7 +148,7 @@ def draw_by(
     """Draw an effect by a recipe, see `drawn`."""
     declared = {p.name: p for p in effect.parameters}
     group = recipe.choices[random.integers(len(recipe.choices))]
-    values = {k: _rounded(random.uniform(*r)) for k, r in recipe.fixed.items()}
+    values = {k: rounded(random.uniform(*r), 4) for k, r in recipe.fixed.items()}
     sign = recipe.sign or random.choice([-1, 1])
     for k in group:
         change = sign * float(random.uniform(*recipe.sizes))
@@ -176,11 +176,8 @@ def _swapped(random: np.random.Generator) -> EffectEntry:
 
 def _moved(p: Parameter, scales: float, strength: float) -> float:
     """Change a parameter by a number of its scales, times the strength, within its range."""
-    return _rounded(p.combine(p.neutral_value, p.neutral_value + scales * p.scale, strength))
-
-
-def _rounded(value: float) -> float:
-    return rounded(value, 4)
+    moved = p.combine(p.neutral_value, p.neutral_value + scales * p.scale, strength)
+    return rounded(moved, 4)
 
 
 def _used(name: str, parameter: str, chosen: tuple[str, ...]) -> bool:

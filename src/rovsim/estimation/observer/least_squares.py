@@ -89,7 +89,7 @@ def find_decreases(H: Array, b: Array, chosen: Sequence[int] = ()) -> Array:
     return np.where(independent, product**2 / np.where(independent, remaining, 1.0), 0.0)
 
 
-def regress_forward(H: Array, b: Array, steps: int) -> list[int]:
+def regress_forward(H: Array, b: Array, steps: int) -> Reduction:
     """Forward regression by orthogonal least squares (Chen, Billings & Luo 1989).
 
     Each step adds the column that lowers the sum of squares most beside those before.
@@ -100,7 +100,7 @@ def regress_forward(H: Array, b: Array, steps: int) -> list[int]:
         steps: how many columns are selected, at most.
 
     Returns:
-        The columns, in the order of their selection.
+        The selected columns, in the order of their selection.
     """
     chosen: list[int] = []
     for _ in range(steps):
@@ -110,7 +110,8 @@ def regress_forward(H: Array, b: Array, steps: int) -> list[int]:
         if best < 0 or decreases[best] <= 0.0:
             break
         chosen.append(best)
-    return chosen
+    x, _ = _fit_columns(H, b, chosen)
+    return Reduction(float(b[chosen] @ x), tuple(chosen), -x)
 
 
 def select_columns(H: Array, b: Array, penalty: float) -> Reduction:

@@ -52,4 +52,4 @@ def _select_forward(G: Array, steps: int) -> list[int]:
     alone = find_decreases(G[1:, 1:], G[1:, 0])
     places = np.sort(np.argsort(-alone, kind="stable")[:MAX_REGRESSION_COLUMNS])
     H, b = G[1:, 1:][np.ix_(places, places)], G[1:, 0][places]
-    return [int(places[k]) for k in regress_forward(H, b, steps)]
+    return [int(places[k]) for k in regress_forward(H, b, steps).chosen]
