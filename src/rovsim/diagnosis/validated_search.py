@@ -23,7 +23,7 @@ from rovsim.diagnosis.selection.filter_delay import (
     search_with_consistent_filter,
     with_camera_filter,
 )
-from rovsim.diagnosis.selection.forward_selection import search
+from rovsim.diagnosis.selection.forward_selection import begin_search, finish_search
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation, keep_apart
 from rovsim.diagnosis.selection.joint_fit import fit_jointly
 from rovsim.diagnosis.selection.search_result import SearchResult
@@ -97,33 +97,32 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     Raises:
         ModelDiverged: in some run the model diverges, whatever the filter's corrections.
     """
-    base, usable = problem.base, problem.usable
+    base, usable, seed = problem.base, problem.usable, problem.settings.seed
     begin_stage("observing")
     smoothing = find_smoothing(base, usable.runs) if problem.cameras_may_smooth else None
     training, reserved = keep_apart(usable.runs)
 
     def search_from(start: SearchStart) -> tuple[SearchResult, Smoothing | None]:
         begin_stage("searching")
-        selection = search(start.workspace, start.base_fit, problem.settings.seed)
-        return (
-            absorb_delay(selection, base, start.smoothing) if start.smoothing else (selection, None)
-        )
+        begun = begin_search(start.workspace, start.base_fit, seed)
+        if start.smoothing:
+            return absorb_delay(finish_search(begun, seed), base, start.smoothing)
+        # one that was stopped leaves much: it is finished where no joint fit is better
+        return (begun if begun.stopped else finish_search(begun, seed)), None
 
     starts = _make_starts(problem, smoothing, training)
     start, selection, smoothing = search_with_consistent_filter(starts, search_from)
     drifts = selection.best.noise.drift is not None
     holdout = HoldoutValidation(reserved, usable.runs, drifts, problem.settings)
-    answer = _unmask(settle_noticed(selection, usable, holdout, problem.settings.seed))
+    answer = _unmask(settle_noticed(selection, usable, holdout, seed))
     if smoothing and holdout.refuses(answer.fit.hypothesis.model, base):
         return search_and_validate(replace(problem, cameras_may_smooth=False))
     begin_stage("checking")
     if answer.leaves_physics:
-        filtered = with_camera_filter(base, smoothing)
-        found = answer.fit.hypothesis
-        joint = fit_jointly(start.workspace, filtered, usable.moved, found.terms)
-        # the same effects again would only be held by the prior of a joint fit as well
-        if joint.best.hypothesis.free_parameters != found.free_parameters:
-            answer = choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
+        answer = _challenge_jointly(answer, problem, start, smoothing, holdout)
+    if answer.selection.stopped and not smoothing:
+        finished = settle_noticed(finish_search(selection, seed), usable, holdout, seed)
+        answer = choose_answer(answer, _unmask(finished), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
@@ -134,6 +133,23 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
     return ValidatedSearch(problem, answer, start, smoothing, holdout, varying, difference)
+
+
+def _challenge_jointly(
+    answer: SettledAnswer,
+    problem: DiagnosisProblem,
+    start: SearchStart,
+    smoothing: Smoothing | None,
+    holdout: HoldoutValidation,
+) -> SettledAnswer:
+    """The better of an answer that leaves physics and of a joint fit of all that may be wrong."""
+    found, usable = answer.fit.hypothesis, problem.usable
+    filtered = with_camera_filter(problem.base, smoothing)
+    joint = fit_jointly(start.workspace, filtered, usable.moved, found.terms)
+    # the same effects again would only be held by the prior of a joint fit as well
+    if joint.best.hypothesis.free_parameters == found.free_parameters:
+        return answer
+    return choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:

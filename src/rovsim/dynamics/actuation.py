@@ -84,7 +84,7 @@ class ThrustPath:
         # logged channels that their kernels read in addition to commands
         self.channels = tuple(dict.fromkeys(name for e in self.readers for name in e.channels))
 
-    @property
+    @cached_property
     def key(self) -> tuple:
         """Equal for paths with the same thrust at the same commands, but for loops on board."""
         mixing = [autopilot.mixer_demand(np.eye(6)).tobytes() for autopilot in self.autopilots]

@@ -6,6 +6,7 @@ command_columns        which columns of a log are angles
 drive                  forces and demands of a model, over steps or at instants
 rest                   where runs begin that nobody measured
 correction             readings, and the filters that correct models by them
+packed_models          models side by side, as the compiled engine reads them
 batch                  the only way into the compiled engine: models, drives, starts to trajectories
 compiled_ahead         compiles the engines that a diagnosis needs later, in another process
 initial_memory         the state of a fluid memory where a replay starts

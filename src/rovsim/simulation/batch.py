@@ -4,7 +4,6 @@ Replay, stepping, training pairs, the force budget, the observer, the tank and t
 use it. Only this module and the engine know which arguments the kernels take.
 """
 
-from collections import Counter
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Sequence
 
@@ -14,21 +13,12 @@ from numpy import ndarray as Array
 from rovsim.core.errors import BadInput
 from rovsim.core.run import Site
 from rovsim.core.threads import on_cores
-from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.base import Wrench
-from rovsim.dynamics.engine.modules import attached, engine
-from rovsim.dynamics.engine.types import (
-    NO_MEMORY,
-    Constants,
-    Inputs,
-    Jobs,
-    SiteArrays,
-    World,
-    WrenchParameters,
-)
+from rovsim.dynamics.engine.types import NO_MEMORY, Inputs, Jobs, SiteArrays, World
 from rovsim.dynamics.model import Model
 from rovsim.simulation.correction import Correction
-from rovsim.simulation.drive import Drive, Reads
+from rovsim.simulation.drive import Drive
+from rovsim.simulation.packed_models import pack
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,19 +80,12 @@ class Batch:
         if learned:
             _refuse_unlike(models)
             self._residual = models[0].residual.data if models[0].residual else None
-        compiled, extra = _slots(models, candidates)
-        slots = [*compiled, *extra]
-        self.engine = engine(compiled, bool(extra))
-        self._parameters = WrenchParameters(
-            np.stack([_slotted(m, slots) for m in models]),
-            attached(extra, sum(len(cls.channels) for cls in compiled)) if extra else None,
-        )
-        self._constants = Constants.stacked([m.constants for m in models])
+        self._packed = pack(tuple(models), tuple(candidates))
+        self.engine = self._packed.engine
         self._site = SiteArrays(
             np.ascontiguousarray(site.tank), np.ascontiguousarray(site.axes), float(site.level)
         )
         self.free = np.concatenate([np.ones(7), models[0].body.free])
-        self._reads = _reads(models[0], slots)
 
     def trajectories(
         self, drives: Sequence[Drive], starts: Starts, time: Array, stride: int = 1
@@ -183,13 +166,14 @@ class Batch:
     def _world(self, drives: Sequence[Drive]) -> World:
         """Physics, drives, learned residual and surroundings of all models."""
         inputs = self._inputs(drives)
-        return World(self._constants, inputs, self._parameters, self._residual, self._site)
+        constants, parameters = self._packed.constants, self._packed.parameters
+        return World(constants, inputs, parameters, self._residual, self._site)
 
     def _inputs(self, drives: Sequence[Drive]) -> Inputs:
         """Stack the drives for the kernels; a drive that several models share is passed once."""
         distinct, row = _distinct(drives)
         first = distinct[0]
-        columns = [drive.engine_columns(self._reads) for drive in distinct]
+        columns = [drive.engine_columns(self._packed.reads) for drive in distinct]
         if len(distinct) == 1:
             wrench, force, ramp = first.wrench[None], columns[0][None], first.ramp[None]
         else:
@@ -213,45 +197,6 @@ def _refuse_unlike(models: Sequence[Model]) -> None:
         expected="models with the same residual",
         remedy="Run different models one after the other.",
     )
-
-
-def _slots(
-    models: Sequence[Model], candidates: Sequence[type[Wrench]]
-) -> tuple[tuple[type[Wrench], ...], list[type[Wrench]]]:
-    """List the wrench effects that an engine is compiled with, and those attached to it.
-
-    An engine takes seconds to compile, and effects that a model lacks hardly slow it down. So it
-    has all built-in wrench effects, or none where no model has any. A user's own effects, and an
-    effect that a model has a second time, are attached.
-    """
-    counts = Counter(candidates)
-    for model in models:
-        counts |= Counter(type(wrench) for wrench in model.wrenches)
-    if not counts:
-        return (), []
-    extra = counts - Counter(built_in().wrenches)
-    return built_in().wrenches, sorted(extra.elements(), key=lambda cls: cls.id)
-
-
-def _slotted(model: Model, slots: Sequence[type[Wrench]]) -> Array:
-    """For each slot 1 where the model has such an effect, else 0, followed by its parameters."""
-    wrenches = list(model.wrenches)
-    blocks = [np.zeros(0)]
-    for cls in slots:
-        wrench = next((w for w in wrenches if type(w) is cls), None)
-        if wrench is not None:
-            wrenches.remove(wrench)
-        values = np.zeros(len(cls.parameters)) if wrench is None else wrench.values
-        blocks += [np.array([float(wrench is not None)]), values]
-    return np.concatenate(blocks)
-
-
-def _reads(model: Model, slots: Sequence[type[Wrench]]) -> Reads | None:
-    """Columns of a drive that the effects of an engine read; None if they read nothing."""
-    if not any(cls.reads() for cls in slots):
-        return None
-    actuators = len(model.body.places) + model.body.B.shape[1]
-    return Reads(actuators, tuple(name for cls in slots for name in cls.channels))
 
 
 def _distinct(drives: Sequence[Drive]) -> tuple[list[Drive], Array]:

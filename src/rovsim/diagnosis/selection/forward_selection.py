@@ -217,8 +217,8 @@ def free_shape(workspace: SearchWorkspace, current: Fit) -> Fit:
     return current
 
 
-def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
-    """Search from a fit of the base until nothing can be added, swapped or removed.
+def begin_search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
+    """Add effects to a fit of the base, and swap, until no addition beats chance.
 
     The noise and the filters of the workspace follow what is accepted on the way.
 
@@ -231,9 +231,15 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     loose = suspect_loose_file(workspace, current)
     if loose is not current:
         workspace, current = _add_and_swap(workspace, loose, seed)
-    stopped = not _may_add(workspace, current)
-    workspace = workspace.relinearise_if_changed(current)
-    current = swap_terms(workspace, current)
+    full = not _may_add(workspace, current)
+    stopped = full and _add_next(workspace, current, seed) is not None
+    return SearchResult(workspace, current, (), stopped=stopped)
+
+
+def finish_search(begun: SearchResult, seed: int) -> SearchResult:
+    """Change what a search accepted until nothing can be swapped or removed, and list rivals."""
+    workspace = begun.workspace.relinearise_if_changed(begun.best)
+    current = swap_terms(workspace, begun.best)
     current = spread_wide(workspace, current, partial(_add_and_swap, seed=seed), MIN_LR_OF_SWAP)
     current = drop_imitations(workspace, change_mode(workspace, current))
     verdict = judge_beside_file(workspace, prefer_file(workspace, current))
@@ -241,7 +247,7 @@ def search(workspace: SearchWorkspace, base: Fit, seed: int) -> SearchResult:
     workspace, current, wandering = challenge_steady(workspace, current)
     current, rivals = swap_and_list_rivals(workspace, current)
     every = [*rivals, *verdict.rivals, *wandering]
-    return SearchResult(workspace, current, keep_likeliest(every), stopped=stopped)
+    return SearchResult(workspace, current, keep_likeliest(every), stopped=begun.stopped)
 
 
 def _add_and_swap(
@@ -249,7 +255,7 @@ def _add_and_swap(
 ) -> tuple[SearchWorkspace, Fit]:
     """Add effects, and swap after each addition, until no addition beats chance."""
     while _may_add(workspace, current):
-        extended = add_best(workspace, current, workspace.chance_limit(current, seed))
+        extended = _add_next(workspace, current, seed)
         if extended is None:
             break
         gain = workspace.score(extended) - workspace.score(current)
@@ -257,6 +263,10 @@ def _add_and_swap(
         polished = free_shape(workspace, move_thresholds(workspace, polished))
         current = swap_terms(workspace, polished, max(MIN_LR_OF_SWAP, MIN_SWAP_SHARE * gain))
     return workspace, current
+
+
+def _add_next(workspace: SearchWorkspace, current: Fit, seed: int) -> Fit | None:
+    return add_best(workspace, current, workspace.chance_limit(current, seed))
 
 
 def _may_add(workspace: SearchWorkspace, current: Fit) -> bool:
@@ -267,4 +277,5 @@ def search_unnoticed(selection: SearchResult, seed: int) -> SearchResult:
     """Continue a search with effects that hardly change the error in 2 s windows."""
     workspace = selection.workspace
     settings = workspace.settings.model_copy(update={"relevant": 0.0})
-    return search(replace(workspace, settings=settings), selection.best, seed)
+    begun = begin_search(replace(workspace, settings=settings), selection.best, seed)
+    return finish_search(begun, seed)

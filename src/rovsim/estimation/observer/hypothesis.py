@@ -50,7 +50,7 @@ class Term:
         resolution = self.resolutions.get(parameter.name, parameter.resolution)
         return replace(parameter, low=low, high=high, resolution=resolution)
 
-    @property
+    @cached_property
     def x(self) -> Array:
         """Values of the free parameters, in units of their scale."""
         return np.array([self.effect[p.name] / p.scale for p in self.parameters])
@@ -164,7 +164,11 @@ class Hypothesis:
     @cached_property
     def perturbed(self) -> list["Hypothesis"]:
         """Hypotheses (k,) that are one of these steps away each; made once, as their models are."""
-        return [self.at(self.x + step) for step in np.diag(self.steps)]
+        return [
+            self.replaced(i, term.at(term.x + step))
+            for i, (term, own) in enumerate(zip(self.terms, self.columns, strict=True))
+            for step in np.diag(self.steps[own])
+        ]
 
     @property
     def columns(self) -> list[list[int]]:
