@@ -47,14 +47,19 @@ ASK_WHAT_CHANGED = (
     "tether. Then diagnose runs that are alike."
 )
 
+RECORD_WITHOUT_AUTOPILOT = (
+    "An autopilot that holds an angle by a sensor better than the cameras looks like a small force "
+    "in the runs where it acts: its thrust tells how the vehicle turns before the cameras do. "
+    "Record runs without it, and diagnose these alone."
+)
+
 # What settles a doubt, where something does:
 ADVICE_ON_DOUBT: dict[Doubt, str] = {
     "looks_ahead": "A negative input_delay beside a pose_filter is what software leaves that "
     "smooths forwards and backwards, and so without delay: export the poses unsmoothed, and "
     "diagnose these.",
-    "varies": "An autopilot that holds an angle by a sensor better than the cameras looks like a "
-    "small force that varies from run to run: its thrust tells how the vehicle turns before the "
-    "cameras do. Record runs without it, and diagnose these alone.",
+    "held": RECORD_WITHOUT_AUTOPILOT,
+    "varies": RECORD_WITHOUT_AUTOPILOT,
     "depth_at_rest": "Let it float without commands for most of a run: the median of a run's "
     "depths is taken for its depth at rest, and a constant force in heave shifts that.",
 }

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Sequence
+from typing import Collection, NamedTuple, Sequence
 
 from rovsim.diagnosis.checks.unlogged_effects import drop_unlogged
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
@@ -157,6 +157,20 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer
         else []
     )
     return SettledAnswer(selection, fit, bank, score, structures, whole_file_fit=whole_file_fit)
+
+
+def settle_without(
+    answer: SettledAnswer, effect_ids: Collection[str], usable: UsableRuns
+) -> SettledAnswer:
+    """An answer without some of its effects, which the structure that they leave does not blame."""
+    h = answer.selection.best.hypothesis
+    for effect_id in effect_ids:
+        h = h.without_effect(effect_id)
+    fit = answer.selection.fit(h)
+    if not effect_ids or not fit.is_finite:
+        return answer
+    reduced = _settle_values(replace(answer.selection, best=fit), usable)
+    return replace(reduced, structures=answer.structures)
 
 
 def _replays_better(

@@ -9,7 +9,14 @@ from dataclasses import dataclass, replace
 from typing import Collection, Iterator, Sequence
 
 from rovsim.core.progress import begin_stage
-from rovsim.diagnosis.answer import SettledAnswer, choose_answer, settle, settle_noticed
+from rovsim.diagnosis.answer import (
+    SettledAnswer,
+    choose_answer,
+    settle,
+    settle_noticed,
+    settle_without,
+)
+from rovsim.diagnosis.checks.held_axes import find_held_only
 from rovsim.diagnosis.checks.run_differences import (
     RunDifference,
     find_harmful,
@@ -74,6 +81,7 @@ class ValidatedSearch:
         smoothing: the filter of the cameras; None where they do not smooth.
         holdout: the stretches that the answer was validated on.
         varying: ids of accepted effects whose values vary from run to run, where nothing is left.
+        held: ids of accepted effects that only show where something on board holds an axis.
         difference: an effect that has another value in each run; None where there is none.
     """
 
@@ -83,6 +91,7 @@ class ValidatedSearch:
     smoothing: Smoothing | None
     holdout: HoldoutValidation
     varying: Collection[str]
+    held: Collection[str]
     difference: RunDifference | None
 
 
@@ -126,13 +135,14 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
+    answer, held = _judge_held(answer, usable)
     varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
     may_differ = varying or not answer.complete
     difference = find_run_difference(answer.selection) if may_differ else None
     reduced = _drop_harmful(answer, usable, holdout) if difference else answer
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
-    return ValidatedSearch(problem, answer, start, smoothing, holdout, varying, difference)
+    return ValidatedSearch(problem, answer, start, smoothing, holdout, varying, held, difference)
 
 
 def _challenge_jointly(
@@ -150,6 +160,18 @@ def _challenge_jointly(
     if joint.best.hypothesis.free_parameters == found.free_parameters:
         return answer
     return choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
+
+
+def _judge_held(answer: SettledAnswer, usable: UsableRuns) -> tuple[SettledAnswer, Collection[str]]:
+    """Remove effects that act where something on board holds an axis, and would act elsewhere.
+
+    Returns:
+        The answer without them, and the ids of those that cannot act elsewhere.
+    """
+    if not answer.complete:
+        return answer, frozenset()
+    held = find_held_only(answer.fit, answer.bank, answer.selection.workspace.penalty)
+    return settle_without(answer, held.refuted, usable), held.unseen
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:
