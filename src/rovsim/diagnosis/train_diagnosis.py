@@ -39,6 +39,7 @@ from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect, rank
 from rovsim.diagnosis.selection.search_result import Rival
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.structure.residual import Structure
+from rovsim.diagnosis.uncertainty.camera_delay import share_delay
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
 from rovsim.diagnosis.validated_search import (
     DiagnosisProblem,
@@ -168,6 +169,9 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
     """
     base, usable = validated.problem.base, validated.problem.usable
     answer, wide_fit, scale = finalise_answer(validated.answer, usable.runs)
+    if validated.smoothing:
+        wide_fit, smoothing = share_delay(wide_fit, validated.smoothing)
+        validated = replace(validated, smoothing=smoothing)
     seeks_law = answer.leaves_physics and validated.difference is None  # that follows no law
     law = _propose(answer, validated) if seeks_law else None
     effects = select_effects(validated, answer, wide_fit, law)

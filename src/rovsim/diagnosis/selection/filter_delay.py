@@ -167,8 +167,8 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
         delay: to be added, s.
         std: standard deviation of that delay, s.
     """
-    total_delay = _find_slow_delay(smoothing.cutoff) + smoothing.latency + delay
-    latency = total_delay - _find_slow_delay(smoothing.noise_cutoff)
+    total_delay = find_slow_delay(smoothing.cutoff) + smoothing.latency + delay
+    latency = total_delay - find_slow_delay(smoothing.noise_cutoff)
     low, high = LATENCY_FRAMES
     if low * smoothing.frame < latency < high * smoothing.frame:
         return replace(smoothing, cutoff=smoothing.noise_cutoff, latency=latency)
@@ -178,6 +178,6 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
     return replace(smoothing, cutoff=cutoff, std=np.pi * cutoff**2 * std, latency=0.0)
 
 
-def _find_slow_delay(cutoff: float) -> float:
+def find_slow_delay(cutoff: float) -> float:
     """How late, s, the filter reports slow motions; its cutoff is in Hz."""
     return 1.0 / (np.pi * cutoff)
