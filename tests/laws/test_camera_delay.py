@@ -18,11 +18,11 @@ SMOOTHING = Smoothing(
 STD = (1.0 / (np.pi * 4.0) - 1.0 / (np.pi * 8.0)) / 6.0  # s, the range is three on either side
 
 
-def fitted(effect_id):
-    effect = built_in()[effect_id]
-    term = Term(effect(), effect.free_at({}))
-    count = len(term.free)
-    linearised = SimpleNamespace(hypothesis=Hypothesis(None, (term,)))
+def fitted(*effect_ids):
+    effects = [built_in()[effect_id] for effect_id in effect_ids]
+    terms = tuple(Term(effect(), effect.free_at({})) for effect in effects)
+    count = sum(len(term.free) for term in terms)
+    linearised = SimpleNamespace(hypothesis=Hypothesis(None, terms))
     return Fit(linearised, FIRST_NOISE, 0.0, 1e-6 * np.eye(count))
 
 
@@ -39,3 +39,10 @@ def test_late_thrust_is_no_surer_than_the_delay_of_the_filter(effect_id):
 def test_where_thrust_is_not_late_the_motion_tells_the_cutoff():
     fit = fitted("payload")
     assert share_delay(fit, SMOOTHING) == (fit, SMOOTHING)
+
+
+def test_of_a_delay_and_a_lag_the_delay_gives_way():
+    late = fitted("payload", "thruster_lag", "input_delay")
+    widened = share_delay(late, SMOOTHING)[0].std > late.std
+    names = np.array(late.hypothesis.parameter_names)
+    assert names[widened].tolist() == ["input_delay.delay"]

@@ -58,7 +58,7 @@ ADVICE_ON_DOUBT: dict[Doubt, str] = {
     "looks_ahead": "A negative input_delay beside a pose_filter is what software leaves that "
     "smooths forwards and backwards, and so without delay: export the poses unsmoothed, and "
     "diagnose these.",
-    "held": RECORD_WITHOUT_AUTOPILOT,
+    "autopilot": RECORD_WITHOUT_AUTOPILOT,
     "varies": RECORD_WITHOUT_AUTOPILOT,
     "depth_at_rest": "Let it float without commands for most of a run: the median of a run's "
     "depths is taken for its depth at rest, and a constant force in heave shifts that.",

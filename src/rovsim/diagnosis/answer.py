@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Collection, NamedTuple, Sequence
+from typing import NamedTuple, Sequence
 
 from rovsim.diagnosis.checks.unlogged_effects import drop_unlogged
 from rovsim.diagnosis.selection.cluster_robust import drop_unsure
@@ -160,17 +160,18 @@ def _settle_values(selection: SearchResult, usable: UsableRuns) -> SettledAnswer
 
 
 def settle_without(
-    answer: SettledAnswer, effect_ids: Collection[str], usable: UsableRuns
-) -> SettledAnswer:
-    """An answer without some of its effects, which the structure that they leave does not blame."""
-    h = answer.selection.best.hypothesis
-    for effect_id in effect_ids:
-        h = h.without_effect(effect_id)
-    fit = answer.selection.fit(h)
-    if not effect_ids or not fit.is_finite:
-        return answer
-    reduced = _settle_values(replace(answer.selection, best=fit), usable)
-    return replace(reduced, structures=answer.structures)
+    answer: SettledAnswer, effect_id: str, usable: UsableRuns
+) -> SettledAnswer | None:
+    """An answer without an effect, which is not blamed for the structure that this leaves.
+
+    None where the model diverges without it.
+    """
+    selection = answer.selection
+    fit = selection.fit(selection.best.hypothesis.without_effect(effect_id))
+    if not fit.is_finite:
+        return None
+    reduced = _settle_values(replace(selection, best=fit), usable)
+    return replace(reduced, structures=answer.structures) if reduced.fit.is_finite else None
 
 
 def _replays_better(

@@ -110,7 +110,7 @@ def _doubt(
         effects = withdraw_probability(effects, find_leading(effects), "looks_ahead")
     if validated.difference:
         effects = withdraw_probability(effects, {validated.difference.effect_id}, "differs")
-    effects = withdraw_probability(effects, validated.held, "held")
+    effects = withdraw_probability(effects, validated.feedback_only, "autopilot")
     effects = withdraw_probability(effects, validated.varying, "varies")
     negative = find_negative(effects, validated.problem.base.body)
     effects = withdraw_probability(effects, negative, "negative")

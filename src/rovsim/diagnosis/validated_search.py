@@ -16,7 +16,7 @@ from rovsim.diagnosis.answer import (
     settle_noticed,
     settle_without,
 )
-from rovsim.diagnosis.checks.held_axes import find_held_only
+from rovsim.diagnosis.checks.feedback_axes import find_feedback_axes, find_feedback_only
 from rovsim.diagnosis.checks.run_differences import (
     RunDifference,
     find_harmful,
@@ -81,7 +81,7 @@ class ValidatedSearch:
         smoothing: the filter of the cameras; None where they do not smooth.
         holdout: the stretches that the answer was validated on.
         varying: ids of accepted effects whose values vary from run to run, where nothing is left.
-        held: ids of accepted effects that only show where something on board holds an axis.
+        feedback_only: ids of accepted effects that only show where an autopilot knows more.
         difference: an effect that has another value in each run; None where there is none.
     """
 
@@ -91,7 +91,7 @@ class ValidatedSearch:
     smoothing: Smoothing | None
     holdout: HoldoutValidation
     varying: Collection[str]
-    held: Collection[str]
+    feedback_only: Collection[str]
     difference: RunDifference | None
 
 
@@ -129,20 +129,22 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     begin_stage("checking")
     if answer.leaves_physics:
         answer = _challenge_jointly(answer, problem, start, smoothing, holdout)
-    if answer.selection.stopped and not smoothing:
+    if selection.stopped and answer.selection.stopped and not smoothing:
         finished = settle_noticed(finish_search(selection, seed), usable, holdout, seed)
         answer = choose_answer(answer, _unmask(finished), holdout)
     noise = answer.fit.noise
     if noise.drift and answer.bank.varies_with_place(answer.fit.linearised.e, noise):
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
-    answer, held = _judge_held(answer, usable)
+    answer, feedback_only = _judge_feedback(answer, usable)
     varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
     may_differ = varying or not answer.complete
     difference = find_run_difference(answer.selection) if may_differ else None
     reduced = _drop_harmful(answer, usable, holdout) if difference else answer
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
-    return ValidatedSearch(problem, answer, start, smoothing, holdout, varying, held, difference)
+    return ValidatedSearch(
+        problem, answer, start, smoothing, holdout, varying, feedback_only, difference
+    )
 
 
 def _challenge_jointly(
@@ -162,16 +164,27 @@ def _challenge_jointly(
     return choose_answer(answer, _unmask(settle(joint, usable, holdout)), holdout)
 
 
-def _judge_held(answer: SettledAnswer, usable: UsableRuns) -> tuple[SettledAnswer, Collection[str]]:
-    """Remove effects that act where something on board holds an axis, and would act elsewhere.
+def _judge_feedback(
+    answer: SettledAnswer, usable: UsableRuns
+) -> tuple[SettledAnswer, Collection[str]]:
+    """Remove effects that only show where an autopilot knows more, and would show elsewhere.
+
+    Of a joint fit no effect is sure by itself, so that none is judged.
 
     Returns:
-        The answer without them, and the ids of those that cannot act elsewhere.
+        The answer without them, and the ids of those that would show nowhere else.
     """
-    if not answer.complete:
+    if not answer.complete or answer.selection.is_joint:
         return answer, frozenset()
-    held = find_held_only(answer.fit, answer.bank, answer.selection.workspace.penalty)
-    return settle_without(answer, held.refuted, usable), held.unseen
+    axes = find_feedback_axes(answer.whole_file_fit or answer.fit, answer.bank)
+    weigh = answer.selection.workspace.weigh_term
+    found = find_feedback_only(answer.fit, answer.bank, axes, weigh)
+    if not found.refuted:
+        return answer, found.unseen
+    reduced = settle_without(answer, found.refuted[0], usable)
+    if reduced is None:
+        return answer, found.unseen | set(found.refuted)
+    return _judge_feedback(reduced, usable)
 
 
 def _unmask(answer: SettledAnswer) -> SettledAnswer:

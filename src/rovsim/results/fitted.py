@@ -50,7 +50,7 @@ Doubt = Literal[
     "looks_ahead",  # the cameras' filter may use later frames as well
     "depth_at_rest",  # another depth at rest would look like it
     "differs",  # it has another value in each run
-    "held",  # it only shows where something on board holds an axis by a sensor of its own
+    "autopilot",  # it only shows where an autopilot acts by a sensor better than the cameras
     "varies",  # its value varies from run to run more than noise lets it
     "negative",  # with it a coefficient is surely below zero
     "perhaps_absent",  # its values may all be those of its absence, as far as they are known

@@ -15,7 +15,7 @@ from rovsim.dynamics.engine.types import Constants, WrenchParameters
 from rovsim.dynamics.model import Model
 from rovsim.simulation.drive import Reads
 
-KEPT = 8  # the models that each thread of a fit simulates on one run after another
+KEPT = 8  # what the threads of a fit simulate now, on one run after another
 
 
 class PackedModels(NamedTuple):

@@ -4,7 +4,7 @@ standstills       stretches in which the vehicle stands still although the model
 commanded         thrusters or axes that were never commanded
 observability     effects that these runs could not show
 unlogged_effects  removes effects that only explain where the command log is uncertain
-held_axes         axes that something on board holds, and what shows there alone
+feedback_axes     axes on which an autopilot knows more than the cameras, and what shows there
 by_run            products of derivatives and innovations, run by run
 varying_effects   accepted effects whose values vary from run to run
 run_differences   an effect that has another value in each run

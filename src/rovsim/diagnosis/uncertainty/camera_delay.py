@@ -13,7 +13,7 @@ from rovsim.diagnosis.selection.filter_delay import DELAY_ID, LAG_ID, find_slow_
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.camera import OPEN_STDS, Smoothing
 
-LATE_PARAMETERS = (f"{DELAY_ID}.delay", f"{LAG_ID}.time_constant")
+LATE_PARAMETERS = (f"{DELAY_ID}.delay", f"{LAG_ID}.time_constant")  # the first one gives way
 
 
 def share_delay(fit: Fit, smoothing: Smoothing) -> tuple[Fit, Smoothing]:
@@ -21,14 +21,14 @@ def share_delay(fit: Fit, smoothing: Smoothing) -> tuple[Fit, Smoothing]:
 
     Both unchanged where thrust is not late.
     """
-    h = fit.hypothesis
-    late = [k for k, name in enumerate(h.parameter_names) if name in LATE_PARAMETERS]
+    names = fit.hypothesis.parameter_names
+    late = [names.index(name) for name in LATE_PARAMETERS if name in names]
     if not late:
         return fit, smoothing
-    scales = [p.scale for term in h.terms for p in term.parameters]
+    scales = [p.scale for term in fit.hypothesis.terms for p in term.parameters]
     slowest, fastest = find_slow_delay(smoothing.lowest), find_slow_delay(smoothing.highest)
     std = (slowest - fastest) / (2.0 * OPEN_STDS)
     covariance = fit.covariance.copy()
-    covariance[late, late] += (std / np.array(scales)[late]) ** 2
+    covariance[late[0], late[0]] += (std / scales[late[0]]) ** 2
     cutoff_std = max(smoothing.std, np.pi * smoothing.cutoff**2 * std)
     return replace(fit, covariance=covariance), replace(smoothing, std=cutoff_std)

@@ -19,6 +19,7 @@ DOUBT_REASONS: dict[Doubt | None, str] = {
     "depth_at_rest": "if it floats at rest elsewhere than in the middle of its depths, that is "
     "the same force in heave",
     "differs": "runs differ in it, so that no value is right for all of them",
+    "autopilot": "it only shows where an autopilot seems to know more than the cameras",
     "varies": "its value varies from run to run, and that of a property of the vehicle does not",
     "negative": "with it a coefficient falls below zero: water would push, or weigh less than "
     "nothing",
