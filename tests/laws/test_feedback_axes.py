@@ -37,24 +37,24 @@ def left_by_base(tmp_path, control, **tank):
     return left, bank
 
 
-@pytest.mark.parametrize("control", ["3dof", "6dof"])
-def test_only_an_autopilot_that_sees_more_than_the_cameras_is_found(tmp_path, monkeypatch, control):
-    """That of the tank reads the true angles; with these gains its thrust shows them."""
+@pytest.fixture
+def steer(tmp_path, monkeypatch):
+    """The tank's autopilot reads the true angles; with these gains its thrust shows them."""
     monkeypatch.setattr(pilot, "ANGLE_GAIN", 1.0)
     monkeypatch.setattr(pilot, "RATE_GAIN", 0.6)
     camera, turbulence = {"colour_attitude": 0.006}, {"moment": 0.05}
-    axes = find_feedback_axes(
-        *left_by_base(tmp_path, control, camera=camera, turbulence=turbulence)
-    )
+    return lambda control: left_by_base(tmp_path, control, camera=camera, turbulence=turbulence)
+
+
+@pytest.mark.parametrize("control", ["3dof", "6dof"])
+def test_only_an_autopilot_that_sees_more_than_the_cameras_is_found(steer, control):
+    axes = find_feedback_axes(*steer(control))
     assert not axes[0, :3].any()
     assert axes[0, ROTATION].any() == (control == "3dof")
 
 
-def test_parts_of_a_run_count_together(tmp_path, monkeypatch):
-    monkeypatch.setattr(pilot, "ANGLE_GAIN", 1.0)
-    monkeypatch.setattr(pilot, "RATE_GAIN", 0.6)
-    camera, turbulence = {"colour_attitude": 0.006}, {"moment": 0.05}
-    left, bank = left_by_base(tmp_path, "3dof", camera=camera, turbulence=turbulence)
+def test_parts_of_a_run_count_together(steer):
+    left, bank = steer("3dof")
     (run,) = bank.runs
     middle = run.motion.time.mean()
     parts = [run.limited(run.motion.time < middle), run.limited(run.motion.time >= middle)]

@@ -83,7 +83,8 @@ def advise(
         return _advise_new_data(diagnosis)
     parts = _doubt_units(diagnosis)
     doubts = {s.doubt for s in diagnosis.selected}
-    parts += [text for doubt, text in ADVICE_ON_DOUBT.items() if doubt in doubts]
+    advice = (text for doubt, text in ADVICE_ON_DOUBT.items() if doubt in doubts)
+    parts += dict.fromkeys(advice)  # two doubts may have the same
     if groups:
         names = " and ".join(groups[0])
         parts.append(

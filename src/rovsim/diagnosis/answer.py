@@ -166,11 +166,10 @@ def settle_without(
 
     None where the model diverges without it.
     """
-    selection = answer.selection
-    fit = selection.fit(selection.best.hypothesis.without_effect(effect_id))
-    if not fit.is_finite:
+    selection = answer.selection.without_effect(effect_id)
+    if selection is None:
         return None
-    reduced = _settle_values(replace(selection, best=fit), usable)
+    reduced = _settle_values(selection, usable)
     return replace(reduced, structures=answer.structures) if reduced.fit.is_finite else None
 
 

@@ -207,12 +207,10 @@ def _drop_harmful(
     harmful = find_harmful(answer.fit.hypothesis, holdout)
     if harmful is None:
         return answer
-    selection = answer.selection
-    effect_id = answer.fit.hypothesis.terms[harmful].id
-    fit = selection.fit(selection.best.hypothesis.without_effect(effect_id))
-    if not fit.is_finite:
+    selection = answer.selection.without_effect(answer.fit.hypothesis.terms[harmful].id)
+    if selection is None:
         return answer
-    return _drop_harmful(settle(replace(selection, best=fit), usable, holdout), usable, holdout)
+    return _drop_harmful(settle(selection, usable, holdout), usable, holdout)
 
 
 def _make_starts(

@@ -1,6 +1,6 @@
 """Fit a hypothesis: its likeliest parameters, their covariance, and the noise that it leaves."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Sequence
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy import ndarray as Array
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
-from rovsim.estimation.observer.least_squares import as_rows, gram, solve
+from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step, solve
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.residual_source import Linearised
@@ -156,6 +156,18 @@ def polish(
             break
         polished = refined
     return polished
+
+
+def refit_to_rows(fit: Fit, rows: Array) -> Fit:
+    """The fit to other errors than its own, to first order, within the ranges of its parameters.
+
+    Args:
+        fit: whose noise is kept.
+        rows: whitened errors and derivatives (1 + k, 6, n), from which something was left out.
+    """
+    h, G = fit.hypothesis, gram(as_rows(rows))
+    moved = replace(fit.linearised, hypothesis=h.at(h.x + newton_step(G)))
+    return replace(fit, linearised=moved, covariance=solve(G[1:, 1:], np.eye(len(h.x))))
 
 
 def fit_noise_only(

@@ -1,7 +1,7 @@
 """The only way into the compiled engine: from models, drives and starts to trajectories.
 
 Replay, stepping, training pairs, the force budget, the observer, the tank and the benchmarks all
-use it. Only this module and the engine know which arguments the kernels take.
+use it. Only this module, `packed_models` and the engine know which arguments the kernels take.
 """
 
 from dataclasses import dataclass, field, replace

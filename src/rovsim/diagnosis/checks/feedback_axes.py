@@ -21,15 +21,15 @@ from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from rovsim.core import rotations
-from rovsim.core.robust import STD_PER_MAD
+from rovsim.core.robust import robust_std
 from rovsim.diagnosis.checks.by_run import group_runs
 from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE, split_by_run
 from rovsim.dynamics.mocap_view import NO_CHANGE
 from rovsim.dynamics.model import Model
-from rovsim.estimation.fit import Fit
+from rovsim.estimation.fit import Fit, refit_to_rows
 from rovsim.estimation.kernels.axis import POSE
 from rovsim.estimation.observer.filter_bank import FilterBank
-from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step, solve
+from rovsim.estimation.observer.least_squares import as_rows, gram, solve
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 PAST_READINGS = 9  # of 50 ms: half a second, from which the rate and the angle are known
@@ -79,13 +79,11 @@ def find_feedback_only(fit: Fit, bank: FilterBank, axes: Array, weigh: Weigh) ->
 
 
 def _fit_elsewhere(fit: Fit, bank: FilterBank, axes: Array) -> Fit:
-    """The fit to all but some axes, to first order, within the ranges of its parameters."""
+    """The fit to all but some axes, to first order."""
     rows = bank.whiten(fit.linearised.rows, fit.noise)
     for part, left_out in zip(split_by_run(rows, bank.runs), axes, strict=True):
         part[:, left_out] = 0.0  # a view of `rows`
-    h, G = fit.hypothesis, gram(as_rows(rows))
-    moved = replace(fit.linearised, hypothesis=h.at(h.x + newton_step(G)))
-    return replace(fit, linearised=moved, covariance=solve(G[1:, 1:], np.eye(len(h.x))))
+    return refit_to_rows(fit, rows)
 
 
 def _agree(fit: Fit, elsewhere: Fit, own: list[int]) -> bool:
@@ -158,7 +156,7 @@ def find_unpredicted(run: ObservedRun, model: Model, e: Array) -> Array:
     posed = (run.reading_kinds == POSE) & run.innovation_mask.all(axis=0)
     if run.motion.binned or not (posed | ~free).all():
         return out
-    read = np.concatenate([np.arange(a + 1, b + 1) for a, b in run.segments])[run.settled]
+    read = run.innovation_readings[run.settled]
     thrust, poses = _mean_thrust(run, model), _poses_in_body(run)
     innovations = np.full((len(thrust), 6), np.nan)
     innovations[read] = e.T
@@ -189,7 +187,7 @@ def _regress(rows: Array, y: Array) -> Array:
     Zero where they leave nothing but rounding.
     """
     first = np.linalg.lstsq(rows, y, rcond=None)[0]
-    scale = _robust_std(y - rows @ first)
+    scale = robust_std(y - rows @ first)
     if scale <= MIN_SHARE * np.std(y):
         return np.zeros(len(y))
 
@@ -201,11 +199,7 @@ def _regress(rows: Array, y: Array) -> Array:
 
     weights = least_squares(errors, first, slopes, loss="huber", x_scale="jac").x
     rest = y - rows @ weights
-    return rest / max(_robust_std(rest), MIN_SHARE * scale)
-
-
-def _robust_std(x: Array) -> float:
-    return float(STD_PER_MAD * np.median(np.abs(x)))
+    return rest / max(robust_std(rest), MIN_SHARE * scale)
 
 
 def _mean_thrust(run: ObservedRun, model: Model) -> Array:

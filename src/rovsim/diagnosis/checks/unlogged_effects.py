@@ -6,15 +6,13 @@ their period. A hundredth of lines at 10 Hz is a delay of -1 ms, which precise r
 
 from dataclasses import replace
 
-import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.structure.residual import split_by_run
 from rovsim.diagnosis.structure.uncertain_commands import UncertainCommands
-from rovsim.estimation.fit import Fit
+from rovsim.estimation.fit import Fit, refit_to_rows
 from rovsim.estimation.observer.filter_bank import FilterBank
-from rovsim.estimation.observer.least_squares import as_rows, gram, newton_step, solve
 
 
 def drop_unlogged(selection: SearchResult) -> SearchResult:
@@ -31,10 +29,7 @@ def _find_unlogged(fit: Fit, selection: SearchResult) -> int | None:
     rows = _clear_uncertain(fit, workspace.bank)
     if rows is None:
         return None
-    h, G = fit.hypothesis, gram(as_rows(rows))
-    cleared = replace(fit.linearised, hypothesis=h.at(h.x + newton_step(G)))
-    covariance = solve(G[1:, 1:], np.eye(len(h.x)))
-    as_logged = replace(fit, linearised=cleared, covariance=covariance)
+    h, as_logged = fit.hypothesis, refit_to_rows(fit, rows)
     worth = {
         i: workspace.weigh_term(as_logged, i)
         for i, (term, columns) in enumerate(zip(h.terms, h.columns, strict=True))

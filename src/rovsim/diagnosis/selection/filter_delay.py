@@ -175,9 +175,15 @@ def _refine(smoothing: Smoothing, delay: float, std: float) -> Smoothing | None:
     cutoff = 1.0 / (np.pi * total_delay) if total_delay > 0.0 else np.inf
     if not smoothing.lowest <= cutoff <= smoothing.highest:
         return None
-    return replace(smoothing, cutoff=cutoff, std=np.pi * cutoff**2 * std, latency=0.0)
+    std = find_cutoff_std(cutoff, std)
+    return replace(smoothing, cutoff=cutoff, std=std, latency=0.0)
 
 
 def find_slow_delay(cutoff: float) -> float:
     """How late, s, the filter reports slow motions; its cutoff is in Hz."""
     return 1.0 / (np.pi * cutoff)
+
+
+def find_cutoff_std(cutoff: float, std: float) -> float:
+    """Standard deviation of a cutoff, Hz, of which that of its delay is `std` s."""
+    return float(np.pi * cutoff**2 * std)

@@ -1,6 +1,6 @@
 """Where a search ended: the effects that it accepted, and their rivals."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Iterable
 
 import numpy as np
@@ -78,6 +78,11 @@ class SearchResult:
         See `SearchWorkspace.fit_unless_below`.
         """
         return self.workspace.fit_unless_below(start, current, least, self.prior_std)
+
+    def without_effect(self, effect_id: str) -> "SearchResult | None":
+        """The same without an effect, the others refitted; None where the model then diverges."""
+        fit = self.fit(self.best.hypothesis.without_effect(effect_id))
+        return replace(self, best=fit) if fit.is_finite else None
 
     def prune(self, workspace: SearchWorkspace, fit: Fit) -> Fit:
         """Remove from a fit of the selection what is not worth its penalty.

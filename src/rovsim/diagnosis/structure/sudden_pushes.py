@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 from scipy.stats import binom, chi2, norm
 
 from rovsim.core.axes import AXES
-from rovsim.core.robust import STD_PER_MAD
+from rovsim.core.robust import robust_std
 from rovsim.diagnosis.structure.residual import FALSE_ALARM_RATE, AxisResidual, Structure
 from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.observed_run import ObservedRun
@@ -34,7 +34,7 @@ def find_sudden(residual: AxisResidual) -> Iterator[Structure]:
     if not len(sums):
         return
     # the median hardly changes with the few large innovations that are looked for
-    std = STD_PER_MAD * float(np.median(np.abs(sums)))
+    std = robust_std(sums)
     count = int(np.sum(np.abs(sums) > RARE_STDS * std))
     limit = binom.isf(
         FALSE_ALARM_RATE / len(AXES), len(sums), 2.0 * norm.sf(RARE_STDS / UNEVEN_FACTOR)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy import ndarray as Array
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from rovsim.core.robust import LONG_STEP, STD_PER_MAD
+from rovsim.core.robust import LONG_STEP, robust_std
 from rovsim.core.run import Commands
 from rovsim.diagnosis.structure.response import respond
 from rovsim.dynamics.model import Model
@@ -120,7 +120,7 @@ def find_jittering(commands: Commands) -> Array:
         return np.empty((0, 2))
     usual = np.median(steps)
     # of a stamp: a step has the jitter of two
-    std = STD_PER_MAD * np.median(np.abs(steps - usual)) / np.sqrt(2.0)
+    std = robust_std(steps - usual) / np.sqrt(2.0)
     if not MIN_JITTER_SECONDS < std < MAX_JITTER_SHARE * usual:
         return np.empty((0, 2))
     change = np.abs(np.diff(commands.value, axis=0))

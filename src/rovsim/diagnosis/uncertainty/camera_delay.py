@@ -7,9 +7,12 @@ whatever kind it is, and the other delay no surer than the filter's.
 
 from dataclasses import replace
 
-import numpy as np
-
-from rovsim.diagnosis.selection.filter_delay import DELAY_ID, LAG_ID, find_slow_delay
+from rovsim.diagnosis.selection.filter_delay import (
+    DELAY_ID,
+    LAG_ID,
+    find_cutoff_std,
+    find_slow_delay,
+)
 from rovsim.estimation.fit import Fit
 from rovsim.estimation.observer.camera import OPEN_STDS, Smoothing
 
@@ -22,13 +25,13 @@ def share_delay(fit: Fit, smoothing: Smoothing) -> tuple[Fit, Smoothing]:
     Both unchanged where thrust is not late.
     """
     names = fit.hypothesis.parameter_names
-    late = [names.index(name) for name in LATE_PARAMETERS if name in names]
-    if not late:
+    late = next((names.index(name) for name in LATE_PARAMETERS if name in names), None)
+    if late is None:
         return fit, smoothing
     scales = [p.scale for term in fit.hypothesis.terms for p in term.parameters]
     slowest, fastest = find_slow_delay(smoothing.lowest), find_slow_delay(smoothing.highest)
     std = (slowest - fastest) / (2.0 * OPEN_STDS)
     covariance = fit.covariance.copy()
-    covariance[late[0], late[0]] += (std / scales[late[0]]) ** 2
-    cutoff_std = max(smoothing.std, np.pi * smoothing.cutoff**2 * std)
+    covariance[late, late] += (std / scales[late]) ** 2
+    cutoff_std = max(smoothing.std, find_cutoff_std(smoothing.cutoff, std))
     return replace(fit, covariance=covariance), replace(smoothing, std=cutoff_std)

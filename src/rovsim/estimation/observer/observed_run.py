@@ -182,10 +182,14 @@ class ObservedRun(Steps):
         return np.column_stack([stops - length, stops])
 
     @cached_property
+    def innovation_readings(self) -> Array:
+        """Number (n,) of the reading behind each innovation."""
+        return np.concatenate([np.arange(0), *(np.arange(a + 1, b + 1) for a, b in self.segments)])
+
+    @cached_property
     def time(self) -> Array:
         """Time (n,) of each innovation, s since the first step."""
-        parts = [self.reading_times[a + 1 : b + 1] for a, b in self.segments]
-        return np.concatenate([np.empty(0), *parts])
+        return np.asarray(self.reading_times[self.innovation_readings])
 
     def overlapping(self, begin: float, end: float) -> Array:
         """Mask (n,) of innovations from which on one period overlaps the time `begin` to `end`."""
@@ -194,14 +198,13 @@ class ObservedRun(Steps):
     @cached_property
     def innovation_mask(self) -> Array:
         """Mask (n, 6) of the axes that the reading behind each innovation shows."""
-        parts = [self.reading_mask[a + 1 : b + 1] for a, b in self.segments]
-        return np.concatenate([np.empty((0, 6), bool), *parts])
+        return np.asarray(self.reading_mask[self.innovation_readings])
 
     @cached_property
     def innovation_samples(self) -> Array:
         """Sample or bin (n,) of the motion that each innovation belongs to."""
-        parts = [self.reading_samples[a + 1 : b + 1] for a, b in self.segments]
-        return np.concatenate([np.arange(0), *parts]) - (1 if self.motion.binned else 0)
+        samples = self.reading_samples[self.innovation_readings]
+        return np.asarray(samples - (1 if self.motion.binned else 0))
 
     @cached_property
     def settled(self) -> Array:
