@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,14 @@ def test_an_error_does_not_wait_for_it(monkeypatch):
     assert time.monotonic() - begun < 50
 
 
+def test_an_error_while_it_starts_prints_nothing_of_it(monkeypatch, tmp_path, capfd):
+    monkeypatch.setattr(second, "usable_cores", lambda: 2)
+    monkeypatch.setattr(second, "_obey_the_first", partial(_obey_slowly, tmp_path / "begun"))
+    with pytest.raises(BadInput), second_process(UNKNOWN):
+        _fail_once_there_is(tmp_path / "begun")
+    assert capfd.readouterr().err == ""
+
+
 def test_what_it_was_writing_goes_with_it(monkeypatch, tmp_path):
     monkeypatch.setattr(second, "usable_cores", lambda: 2)
     source, out = tmp_path / "pipe", tmp_path / "out"
@@ -106,10 +115,26 @@ def test_it_ends_when_this_process_is_killed(tmp_path):
     assert not _runs(other)
 
 
+OBEY = second._obey_the_first
+
+
+def _obey_slowly(begun):
+    """Begin as the second process does, and be at it for as long as the test may need."""
+    OBEY()
+    begun.touch()
+    time.sleep(60)
+
+
 def _fail_beside(other):
     """An error while the other process is at work."""
     other.submit(call, "os:getpid").result()
     other.submit(call, "time:sleep", 60)
+    call(*FAILS)
+
+
+def _fail_once_there_is(begun):
+    while not begun.exists():
+        time.sleep(0.05)
     call(*FAILS)
 
 

@@ -69,6 +69,8 @@ class _OtherProcess(ProcessPoolExecutor):
 
     def __init__(self) -> None:
         super().__init__(1, get_context("spawn"), initializer=_obey_the_first)
+        # A call of its own: the pool would print how a signal ended the initializer.
+        super().submit(exit_on_termination)
 
     def submit(self, function: Callable, /, *given: Any, **named: Any) -> Future:
         try:
@@ -89,7 +91,6 @@ class _ThisProcess(Executor):
 def _obey_the_first() -> None:
     """Let the second process end when the first one ends, and ignore Ctrl-C until then."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    exit_on_termination()
     first = parent_process()
     assert first is not None
 
