@@ -7,8 +7,8 @@ from rovsim.application.settings import BlindSettings
 from rovsim.benchmarks.blind.answers import KeptAnswer
 from rovsim.benchmarks.blind.case import SEED_RANGES, Case, Unlisted, seed_of
 from rovsim.benchmarks.blind.flight import fly
+from rovsim.benchmarks.blind.known_laws import LAWS
 from rovsim.benchmarks.blind.law_score import error_drop, is_right, rate_laws
-from rovsim.benchmarks.blind.laws import LAWS
 from rovsim.benchmarks.blind.methods import Method
 from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_by, usual_recipe
@@ -146,7 +146,7 @@ def test_strong_cases_hide_what_others_do_in_a_larger_size():
 
 def test_laws_lie_outside_the_catalogue():
     cases = suite("equations", "development")
-    assert len({c.id for c in cases}) == len(cases) == 58
+    assert len({c.id for c in cases}) == len(cases) == 61
     laws = [c for c in cases if c.kind == "law"]
     assert {c.outside[0].name for c in laws} == set(LAWS)
     assert not set(LAWS) & set(built_in())

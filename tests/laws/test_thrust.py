@@ -21,6 +21,7 @@ from rovsim.dynamics.effects.thrusters import (
     ThrusterLag,
     VoltageSag,
 )
+from rovsim.dynamics.laws.propeller_lag import PropellerLag
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
 from rovsim.dynamics.laws.thruster_rate import PropellerRate, ThrustRate
 from rovsim.dynamics.model import nominal
@@ -160,13 +161,38 @@ def test_what_changes_at_a_limited_rate_gets_there_as_a_ramp_does(law, start):
     assert np.abs(found - static).max() > 1.0
 
 
-@pytest.mark.parametrize("law", [ThrustRate, PropellerRate])
-def test_a_limited_rate_can_be_computed_in_pieces_and_may_be_none(law):
+@pytest.mark.parametrize("start", [None, (-3.0, 0.0, 4.0)])
+@pytest.mark.parametrize("lag", [0.3, 0.05, 0.01])
+def test_a_propeller_spins_up_as_its_equation_says(lag, start):
+    random, h, parts = np.random.default_rng(4), 0.05, 2000
+    asked = np.repeat(random.normal(scale=3.0, size=(8, 3)), 6, axis=0)
+    n, means = asked[0] if start is None else np.array(start), []
+    gone = np.exp(-(np.arange(parts) + 0.5) / parts * h / lag)[:, None]
+    for wanted in asked:
+        passed = wanted + (n - wanted) * gone
+        means.append((passed * np.abs(passed)).mean(axis=0))
+        n = wanted + (n - wanted) * np.exp(-h / lag)
+    law = PropellerLag(time_constant=lag)
+    first = None if start is None else np.array(start)
+    found, after = law.respond(asked * np.abs(asked), h, first)
+    np.testing.assert_allclose(after, n, atol=1e-12)
+    np.testing.assert_allclose(found, means, atol=1e-5)  # of up to 40: midpoints of small parts
+
+
+@pytest.mark.parametrize(
+    ("law", "given"),
+    [
+        (ThrustRate, {"ramp": 0.1}),
+        (PropellerRate, {"ramp": 0.1}),
+        (PropellerLag, {"time_constant": 0.1}),
+    ],
+)
+def test_what_answers_slowly_can_be_computed_in_pieces_and_may_be_none(law, given):
     asked = np.random.default_rng(1).normal(scale=5.0, size=(60, 8))
-    whole, last = law(ramp=0.1).respond(asked, 0.05, None)
+    whole, last = law(**given).respond(asked, 0.05, None)
     state, parts = None, []
     for piece in np.split(asked, [1, 20, 21]):
-        force, state = law(ramp=0.1).respond(piece, 0.05, state)
+        force, state = law(**given).respond(piece, 0.05, state)
         parts.append(force)
     np.testing.assert_array_equal(np.concatenate(parts), whole)
     np.testing.assert_array_equal(state, last)

@@ -11,6 +11,7 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effect_entry import EffectEntry
 from rovsim.dynamics.effects.force_curve import CurveExponent
 from rovsim.dynamics.effects.thrusters import ThrusterLag
+from rovsim.dynamics.laws.propeller_lag import PropellerLag
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
 from rovsim.dynamics.laws.thruster_rate import ThrustRate
 from rovsim.estimation.candidates import list_candidates
@@ -32,6 +33,7 @@ SHAPED = tuple(
     [
         ({"unlisted": [ThrusterPlay(band=2.2)]}, True),
         ({"unlisted": [ThrustRate(ramp=0.07)]}, True),
+        ({"unlisted": [PropellerLag(time_constant=0.15)]}, True),
         ({"effects": SHAPED}, False),
     ],
 )

@@ -6,6 +6,8 @@ field        cases with a vehicle file that is wrong everywhere, and with imperf
 recordings   cases with recordings as other laboratories have them, of the vehicles in vehicles/
 outside      physics that the catalogue does not have
 laws         smooth laws that the catalogue does not have, for the search for equations
+laws_of_thrusters   such laws of how thrusters answer
+known_laws   the laws that are hidden, and what an equation for each has to be made of
 suites       which cases there are
 flight       makes a campaign of raw exports from a case
 independent  a second simulator that shares no physics with the first

@@ -7,7 +7,7 @@ from typing import Any, Literal, Mapping
 import numpy as np
 from pydantic import Field
 
-from rovsim.benchmarks.blind.laws import find_outside
+from rovsim.benchmarks.blind.known_laws import find_outside
 from rovsim.benchmarks.blind.recipes import RECIPES
 from rovsim.core.rounding import rounded
 from rovsim.core.schema import Section

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from rovsim.benchmarks.blind.answers import KeptAnswer
-from rovsim.benchmarks.blind.laws import LAWS, KnownLaw
+from rovsim.benchmarks.blind.known_laws import LAWS, KnownLaw
 from rovsim.results.base import or_nan
 from rovsim.results.blind_benchmark import LawRates
 from rovsim.results.diagnosis import Diagnosis, ProposedEquation

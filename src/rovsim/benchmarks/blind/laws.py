@@ -1,33 +1,15 @@
 """Smooth laws that the catalogue does not have, and for which an equation should be found.
 
-They have the form of effects that are not listed, as in `outside`. Each law says of which
-quantities it is made and on which axes it acts: an equation is right if its largest term acts there
-and is made of these.
+They have the form of effects that are not listed, as in `outside`.
 """
 
-from dataclasses import dataclass
 from math import exp, sqrt, tanh
 
 import numpy as np
 from numba import njit
-from numpy import ndarray as Array
 
-from rovsim.benchmarks.blind.outside import (
-    OUTSIDE_EFFECTS,
-    Backlash,
-    Compression,
-    Jet,
-    Squat,
-    drawn,
-)
 from rovsim.dynamics.body import Body
-from rovsim.dynamics.effects.base import (
-    Coefficients,
-    Effect,
-    Parameter,
-    ThrusterDynamics,
-    Wrench,
-)
+from rovsim.dynamics.effects.base import Coefficients, Parameter, Wrench
 
 # Linear (N s/m) and quadratic (N s2/m2) drag of the default vehicle in surge, sway, heave.
 DRAG_COEFFICIENTS = ((13.7, 141.0), (0.0, 217.0), (33.0, 190.0))
@@ -260,77 +242,3 @@ class SideWake(Coefficients):
         if self["coefficient"]:
             memory = np.array([0.0, self["coefficient"], 0.0, 0.0, 0.0, 0.0])
             body.remember(memory, self["time_constant"])
-
-
-class Slew(ThrusterDynamics):
-    """Speed controllers that ramp the thrust: it changes at a limited rate."""
-
-    id = "slew"
-    listed = False
-    equation = r"|\dot F| \le r"
-    neglects = "a rate that depends on the thrust"
-    source = "definition"
-    parameters = (Parameter("rate", "N/s", "r", low=0.0, scale=30.0),)
-
-    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """Change step by step, as a reference for the law that a diagnosis proposes."""
-        F = force[0] if state is None else state
-        if not self["rate"]:
-            return force, force[-1]
-        out, most = np.empty_like(force), self["rate"] * h
-        for row, static in zip(out, force, strict=True):
-            begin, F = F, F + np.clip(static - F, -most, most)
-            row[:] = 0.5 * (begin + F)
-        return out, F
-
-
-@dataclass(frozen=True)
-class KnownLaw:
-    """A law, and what an equation for it has to be made of.
-
-    Attributes:
-        effect: that is hidden.
-        on: axes that it acts on, in the world or the body.
-        quantities: that it depends on.
-    """
-
-    effect: type[Effect]
-    on: tuple[str, ...]
-    quantities: frozenset[str]
-
-
-def _law(effect: type[Effect], on: str, quantities: str) -> KnownLaw:
-    return KnownLaw(effect, tuple(on.split()), frozenset(quantities.split()))
-
-
-LAWS: dict[str, KnownLaw] = {
-    one.effect.id: one
-    for one in (
-        _law(CoupledCubic, "sway", "u v"),
-        _law(DriftMoment, "yaw", "v"),
-        _law(TurningDrag, "yaw", "v r"),
-        _law(TurningSway, "sway", "u r"),
-        _law(DivingMoment, "pitch", "u w"),
-        _law(Whisker, "yaw", "v"),
-        _law(Canopy, "surge sway heave", "u v w"),
-        _law(Squat, "heave", "u v"),
-        _law(Swirl, "water", "place"),
-        _law(Shear, "water", "place"),
-        _law(Stream, "water", "place"),
-        _law(Jet, "force", "place"),
-        _law(Compression, "force", "depth"),
-        _law(SideWake, "sway", "v memory"),
-        _law(Backlash, "thrusters", "thrust memory"),
-        _law(Slew, "thrusters", "thrust memory"),
-    )
-}
-
-
-def find_outside(name: str) -> type[Effect]:
-    """Return the class of physics outside the catalogue, which may be one of the laws."""
-    return LAWS[name].effect if name in LAWS else OUTSIDE_EFFECTS[name]
-
-
-def drawn_law(name: str, random: np.random.Generator) -> Effect:
-    """Draw a law at strength 1, as `outside.drawn` does."""
-    return drawn(LAWS[name].effect, 1.0, random)

@@ -31,7 +31,7 @@ from rovsim.benchmarks.blind.field import (
     workshops,
     wrong_file,
 )
-from rovsim.benchmarks.blind.laws import LAWS, drawn_law
+from rovsim.benchmarks.blind.known_laws import LAWS, drawn_law
 from rovsim.benchmarks.blind.outside import OUTSIDE_EFFECTS, drawn_outside
 from rovsim.benchmarks.blind.recipes import RECIPES, draw_apart, drawn
 from rovsim.benchmarks.blind.recordings import recordings

@@ -74,7 +74,7 @@ def _find_masked_answer(fits: LawFits, least_gain: float) -> list[Structure]:
     if law is None:
         return []
     gain = law.score - fits.workspace.score(fit)
-    if gain <= least_gain:
+    if gain <= max(least_gain, fits.chance):  # it may stand in the place of a lag
         return []
     axis = find_action(law.form, law.fit, fits.runs).axis
     without, beside = (f.noise.disturbance_std[AXES.index(axis)] for f in (fit, law.fit))

@@ -16,6 +16,8 @@ from rovsim.diagnosis.equations.effect_file import round_start, write_effect
 from rovsim.diagnosis.equations.form import Form, Number, Part, get_law, split_law, stated
 from rovsim.dynamics.effects.base import Effect
 from rovsim.dynamics.effects.fluid_memory import FluidMemory
+from rovsim.dynamics.effects.thrusters import ThrusterLag
+from rovsim.dynamics.laws.propeller_lag import PropellerLag
 from rovsim.dynamics.laws.thruster_play import ThrusterPlay
 from rovsim.dynamics.laws.thruster_rate import PropellerRate, ThrustRate
 from rovsim.dynamics.laws.wake_by_axis import WakeByAxis
@@ -211,6 +213,17 @@ class LimitedPropellerRate(OfThrusters):
     )
 
 
+class LaggingPropeller(OfThrusters):
+    """The speed of a propeller follows by a first order."""
+
+    effect = PropellerLag
+    imitates = (ThrusterLag.id,)
+    imports = (
+        "import numpy as np\nfrom numpy import ndarray as Array\n\n"
+        "from rovsim.dynamics.laws.propeller_lag import lag_speed\n"
+    )
+
+
 def drop_number(h: Hypothesis, gone: str) -> Hypothesis:
     """Return a hypothesis whose law has one parameter less: it is zero, and no longer free."""
     without_law, law = split_law(h)[0], get_law(h)
@@ -223,5 +236,10 @@ def _drop_name(gone: str, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name != gone)
 
 
-OF_THRUSTERS: tuple[type[WithMemory], ...] = (Play, LimitedThrustRate, LimitedPropellerRate)
+OF_THRUSTERS: tuple[type[WithMemory], ...] = (
+    Play,
+    LimitedThrustRate,
+    LimitedPropellerRate,
+    LaggingPropeller,
+)
 FORMS: tuple[type[WithMemory], ...] = (Wake, *OF_THRUSTERS)
