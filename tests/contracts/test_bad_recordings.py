@@ -12,6 +12,7 @@ from recordings import (
 )
 from rovsim.core.errors import BadInput
 from rovsim.measurement.loading import load_campaign
+from rovsim.measurement.quality.usability import usable_reason
 from rovsim.measurement.recording import read_run
 
 COLUMNS = 8  # index of the column line in the QTM files written here
@@ -70,7 +71,6 @@ QTM = {
         lambda lines: [*lines[:20], lines[20][:40], *lines[21:]],
         ["line 21", "stops before", "Export the run again"],
     ),
-    "never found": (unseen, ["no frame in which the body was found", "'runs'"]),
     "one time": (lambda lines: [*lines[:10], lines[9]], ["no frames", "Export the run again"]),
     "frequency": (replaced("FREQUENCY\t100", "FREQUENCY\tfast"), ["'fast'", "Correct"]),
 }
@@ -102,7 +102,7 @@ CSV = {
         ],
         ["line 3, columns qw, qx, qy, qz", "length 1.3 (2 of 2 have not length 1)", "divide"],
     ),
-    "nothing measured": (lambda lines: [lines[0], "0,,,,,,", "1,,,,,,"], ["no frame", "'runs'"]),
+    "nothing measured": (lambda lines: [lines[0], "0,,,,,,", "1,,,,,,"], ["no frames", "'runs'"]),
     "twice": (replaced("y_m", "x_m"), ["two columns are named 'x_m'", "Rename"]),
     "word": (cell(7, 2, "far", ","), ["line 8", "column 'y_m'", "'far'", "Correct"]),
     "NaN time": (cell(7, 0, "nan", ","), ["line 8", "column 'time_s'", "'nan'", "Correct"]),
@@ -185,6 +185,24 @@ def test_a_bad_recording_is_refused_in_words(tmp_path, name, file, edit, words):
         read_run(campaign, "one")
     for word in [str(folder / file), *words]:
         assert word in str(refusal.value)
+
+
+def test_a_run_that_never_shows_the_body_is_one_that_cannot_be_used(tmp_path):
+    folder = write_run(tmp_path)
+    poses = folder / "poses.tsv"
+    write_lines(poses, unseen(poses.read_text().splitlines()))
+    recording, _ = read_run(load_campaign(folder), "one")
+    assert usable_reason(recording) == "too short: the body was seen for 0.00 s, 2 needed"
+
+
+def test_a_single_command_holds_however_early_it_was_logged(tmp_path):
+    folder = write_run(tmp_path)
+    log = folder / "commands.csv"
+    names, *lines = log.read_text().splitlines()
+    columns = lines[0].split(",")[1:]
+    write_lines(log, [names, ",".join(["-5", *columns])])
+    recording, _ = read_run(load_campaign(folder), "one")
+    assert recording.commands.time.tolist() == [-5.0]
 
 
 @pytest.mark.parametrize(

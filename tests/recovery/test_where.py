@@ -171,6 +171,21 @@ def test_blocks_are_means_over_half_a_second():
     assert np.allclose(named(made, "distance to the nearest wall"), 0.0)
 
 
+@pytest.mark.parametrize("force", [np.nan, np.inf, 1e300])
+def test_blocks_with_an_impossible_error_are_left_out(force):
+    measured = motion(sticks(), seconds=3.0)
+    found = sample_run(model(), measured, SimulationSettings())
+    broken, nowhere = found.a_res.copy(), np.full_like(found.a_res, force)
+    broken[found.index // 50 == 2, 1] = force
+    before, after, none = (
+        average_blocks(measured, replace(found, a_res=error))
+        for error in (found.a_res, broken, nowhere)
+    )
+    np.testing.assert_array_equal(after.error, np.delete(before.error, 2, axis=0))
+    np.testing.assert_array_equal(after.time, np.delete(before.time, 2))
+    assert explain_errors(none).blocks is None
+
+
 def test_models_are_searched_on_train_runs():
     run = motion(sticks(), seconds=3.0, start=at_rest())
     train = replace(run, run=replace(run.run, id="t", split="train"))

@@ -21,6 +21,7 @@ from rovsim.measurement.signals.motion import Motion
 from rovsim.results.error_conditions import BLOCK_S, THROUGHOUT
 from rovsim.simulation.samples import Samples
 
+MAX_ERROR = 1e6  # m/s2, rad/s2: a force that is no number, or a parameter that is absurd
 MIN_MEASURED_SHARE = 0.5  # share of a block that must have been measured
 SPEED_NAMES = ("surge speed", "sway speed", "heave speed", "roll rate", "pitch rate", "yaw rate")
 HEADING = "heading"
@@ -74,7 +75,7 @@ class Blocks:
 
 
 def average_blocks(motion: Motion, samples: Samples) -> Blocks:
-    """Average one run over blocks; those with too few samples are left out.
+    """Average one run over blocks; those with too few samples or an impossible error are left out.
 
     Args:
         motion: the run.
@@ -86,18 +87,24 @@ def average_blocks(motion: Motion, samples: Samples) -> Blocks:
     full = count * step >= MIN_MEASURED_SHARE * BLOCK_S
     member = np.searchsorted(block, np.floor(time / BLOCK_S).astype(int))
 
-    def mean(x: Array) -> Array:
+    def mean_of_all(x: Array) -> Array:
         total = np.zeros((len(block), *x.shape[1:]))
         np.add.at(total, member, x)
-        return (total.T / count).T[full]
+        return (total.T / count).T
+
+    axes = find_measured(motion.measured)
+    possible = np.abs(mean_of_all(samples.a_res)[:, axes]) < MAX_ERROR  # which NaN is not
+    kept = full & possible.all(axis=1)
+
+    def mean(x: Array) -> Array:
+        return np.asarray(mean_of_all(x)[kept])
 
     values = {
         c: _mean_angle(mean, x) if c.name == HEADING else mean(x)
         for c, x in _values(motion, samples, time).items()
     }
     acceleration = motion.nu_dot[samples.index]
-    run = np.zeros(int(full.sum()), int)
-    axes = find_measured(motion.measured)
+    run = np.zeros(int(kept.sum()), int)
     return Blocks(mean(samples.a_res), mean(acceleration), values, mean(time), run, axes)
 
 

@@ -198,7 +198,8 @@ def _check_clocks(measured: Array, commands: Array, path: Path) -> None:
             expected="times of the commands in seconds",
             remedy="Divide them, or let `rovsim init` make a copy in s.",
         )
-    if commands[0] >= measured[-1] or commands[-1] <= measured[0]:
+    # a single command holds from then on, however early
+    if commands[0] >= measured[-1] or (len(commands) > 1 and commands[-1] <= measured[0]):
         raise BadInput(
             span,
             where=path,

@@ -21,13 +21,14 @@ RATE_TOLERANCE = 0.02  # share of the header's rate; clock jitter stays far belo
 def tidy_export(export: Export, path: Path) -> Export:
     """Sort by time, keep the first of equal times, and check the rate.
 
-    Poses that only repeat the one before are removed (`without_repeated`).
+    Poses that only repeat the one before are removed (`without_repeated`). Poses in none of which
+    the body was found stay: such a run is too short to be used.
 
     Returns:
         The export, whose `repairs` count what was wrong.
 
     Raises:
-        BadInput: there are neither poses nor a channel with two samples.
+        BadInput: there are neither two frames nor a channel with two samples.
         SeveralRuns: the times start again.
     """
     for time in (export.time[export.tracked], *(c.time for c in export.channels.values())):
@@ -39,8 +40,8 @@ def tidy_export(export: Export, path: Path) -> Export:
     order = np.argsort(export.time, kind="stable")
     time = export.time[order]
     keep = order[np.diff(time, prepend=-np.inf) > 0]
-    if len(keep) < 2 or not export.tracked[keep].any():
-        raise _nothing(export, len(keep), path)
+    if len(keep) < 2 or (channels and not export.tracked[keep].any()):
+        raise _too_few(export, path)
     rate, measured = export.rate, measured_rate(export.time[keep])
     if rate and abs(measured / rate - 1.0) > RATE_TOLERANCE:
         rate, repairs = None, replace(repairs, wrong_header_rate=1)
@@ -61,13 +62,12 @@ def tidy_export(export: Export, path: Path) -> Export:
     return without_repeated(tidied)
 
 
-def _nothing(export: Export, frames: int, path: Path) -> BadInput:
+def _too_few(export: Export, path: Path) -> BadInput:
     lines = max(len(export.time), *(len(c.time) for c in export.channels.values()), 0)
-    problem = "no frame in which the body was found" if frames > 1 else "no frames"
     return BadInput(
-        f"{problem} ({lines} lines)",
+        f"no frames ({lines} lines)",
         where=path,
-        expected="a run with at least two frames and the body in sight",
+        expected="a run with at least two frames",
         remedy="Export the run again, or take it out of 'runs'.",
     )
 
