@@ -157,6 +157,17 @@ def test_what_became_of_the_error_is_told_as_far_as_its_digits_show(content, aft
     assert told in terminal.tell_diagnosis(found, built_in())
 
 
+@pytest.mark.parametrize(("after", "differ"), [(0.17, True), (0.03, False), (None, False)])
+def test_test_runs_that_differ_from_the_train_runs_are_told(content, after, differ):
+    errors = {"nominal": 0.3, "with_effects": after, "noise_floor": 0.024}
+    error = content["diagnosis"].error.model_copy(update=errors)
+    nothing = content["diagnosis"].unexplained.model_copy(update={"significant": False})
+    given = {"verdict": "adequate", "error": error, "unexplained": nothing}
+    found = content["diagnosis"].model_copy(update=given)
+    said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
+    assert ("The error is 7.1 times that" in said) == differ
+
+
 @pytest.mark.parametrize(
     ("probability", "told"),
     [

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, advise
+from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, COMPARE_TEST_RUNS, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.beside_law import (
     doubt_beside_law,
@@ -111,6 +111,7 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
+    assert advise(found, [], [], built_in(), test_runs_differ=True) == COMPARE_TEST_RUNS
 
 
 def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight():

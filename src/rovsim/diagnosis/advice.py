@@ -47,6 +47,11 @@ ASK_WHAT_CHANGED = (
     "tether. Then diagnose runs that are alike."
 )
 
+COMPARE_TEST_RUNS = (
+    "Find out what was changed for the test runs: the load, the trim, the battery, the tether, the "
+    "clock of the log. Or write `split: train` for some of them and diagnose again."
+)
+
 RECORD_WITHOUT_AUTOPILOT = (
     "An autopilot that holds an angle by a sensor better than the cameras looks like a small force "
     "in the runs where it acts: its thrust tells how the vehicle turns before the cameras do. "
@@ -70,6 +75,7 @@ def advise(
     groups: Sequence[Sequence[str]],
     joint: Sequence[Sequence[str]],
     catalogue: Catalogue,
+    test_runs_differ: bool = False,
 ) -> str:
     """Advise in a few sentences what to record, or to check, next.
 
@@ -78,6 +84,7 @@ def advise(
         groups: ids of effects that cannot be told apart, each group by itself.
         joint: parameters, as `effect.parameter`, that are only known together, in groups, too.
         catalogue: says what reveals each effect.
+        test_runs_differ: whether the error on them is far above the noise of the train runs.
     """
     if not diagnosis.enough:
         return _advise_new_data(diagnosis)
@@ -100,6 +107,8 @@ def advise(
     if diagnosis.scale:
         parts.append(FIX_SCALE)
     parts += _advise_excitation(diagnosis)
+    if test_runs_differ:
+        parts.insert(0, COMPARE_TEST_RUNS)
     if diagnosis.difference:
         parts.append(ASK_WHAT_CHANGED.format(diagnosis.difference.effect_id))
     elif diagnosis.structures:

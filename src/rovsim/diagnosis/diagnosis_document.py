@@ -80,6 +80,8 @@ def assemble_diagnosis(
     """
     groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
+    error = _summarise_errors(context.ladder, len(diagnosis.selected))
+    differ = error.times_floor is not None and diagnosis.verdict != "unexplained"
     return Diagnosis(
         verdict=diagnosis.verdict,
         selected=tuple(map(_describe_selected, diagnosis.selected)),
@@ -88,9 +90,9 @@ def assemble_diagnosis(
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
         where=tuple(context.where),
-        unexplained=describe_unexplained(diagnosis),
-        next_experiment=advise(diagnosis, groups, joint, catalogue),
-        error=_summarise_errors(context.ladder, len(diagnosis.selected)),
+        unexplained=describe_unexplained(diagnosis, error),
+        next_experiment=advise(diagnosis, groups, joint, catalogue, differ),
+        error=error,
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,
         not_commanded=diagnosis.not_commanded,

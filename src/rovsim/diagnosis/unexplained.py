@@ -8,7 +8,7 @@ from rovsim.diagnosis.equations.describe import describe_force, describe_law
 from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
-from rovsim.results.diagnosis import Unexplained
+from rovsim.results.diagnosis import DiagnosisErrors, Unexplained
 from rovsim.results.fitted import FittedEffect
 
 REFUSED_EFFECTS_HINT = (
@@ -16,13 +16,25 @@ REFUSED_EFFECTS_HINT = (
 )
 TOO_LITTLE_DATA_HINT = "There is too little data to say what is left."
 
+NOISE_HINT = "Nothing is left but noise."
+TEST_RUNS_DIFFER_HINT = (
+    "Nothing is left but noise in the train runs. The test runs differ from them: there the error "
+    "is {:.2g} times the noise floor."
+)
 
-def describe_unexplained(diagnosis: TrainDiagnosis) -> Unexplained:
-    """Report what no effect of the catalogue explains, and a law for it, where one was found."""
+
+def describe_unexplained(diagnosis: TrainDiagnosis, error: DiagnosisErrors) -> Unexplained:
+    """Report what no effect of the catalogue explains, and a law for it, where one was found.
+
+    Args:
+        diagnosis: of the train runs.
+        error: on the test runs.
+    """
     if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
     if diagnosis.verdict != "unexplained":
-        return Unexplained(fraction=0.0, significant=False, hint="Nothing is left but noise.")
+        hint = TEST_RUNS_DIFFER_HINT.format(error.times_floor) if error.times_floor else NOISE_HINT
+        return Unexplained(fraction=0.0, significant=False, hint=hint)
     share = diagnosis.structures[0].share if diagnosis.structures else None
     doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")
     return Unexplained(
