@@ -250,6 +250,20 @@ def test_a_log_that_ends_while_pushing_is_told(campaign):
     assert "ends" in rewritten(campaign, lambda table: table[: len(table) // 2])
 
 
+def test_a_log_that_begins_while_pushing_is_told(campaign):
+    assert "begins" in rewritten(campaign, lambda table: table[len(table) // 2 :])
+
+
+def test_metres_in_place_of_millimetres_are_told(campaign):
+    poses = campaign / load_campaign(campaign).runs[0].mocap
+    lines = poses.read_text().splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("Frame\t")) + 1
+    rows = [line.split("\t") for line in lines[first:]]
+    metres = [[*row[:2], *(f"{1e-3 * float(x):.6f}" for x in row[2:5]), *row[5:]] for row in rows]
+    poses.write_text("\n".join([*lines[:first], *("\t".join(row) for row in metres)]))
+    assert "may be in metres" in doubts(campaign)
+
+
 def test_a_tank_that_is_too_small_is_told(campaign):
     said = described(campaign, lambda c: c.update(tank={"z": [4.0, 5.0]}))
     assert "outside of the tank: z from" in said

@@ -99,17 +99,36 @@ def test_the_start_of_a_recording_stands_in_its_header(tmp_path, header, start):
     assert find_start(tmp_path / "take") == start
 
 
-def paired(motions, logs):
-    """Which log each motion gets where the motions tell nothing."""
+def pairs(motions, logs, correlation=0.0):
+    """The pairs of motions and logs where every motion tells as much of every log."""
     time = np.arange(0.0, 20.0, 0.1)
     drive = CommandCandidate("csv", ("t1",), time, np.zeros((200, 1)), "pwm", "")
     track = Track("", Export(time, *(np.zeros((200, n)) for n in (3, 4)), np.ones(200, bool)))
-    found = pair(
+    return pair(
         [MotionFile(Path(f"{name}.csv"), track) for name in motions],
         [CommandFile(Path(f"{name}.csv"), drive) for name in logs],
-        lambda motion, log: 0.0,
+        lambda motion, log: correlation,
     )
-    return [one.log.path.stem if one.log else None for one in found]
+
+
+def paired(motions, logs):
+    """Which log each motion gets where the motions tell nothing."""
+    return [one.log.path.stem if one.log else None for one in pairs(motions, logs)]
+
+
+@pytest.mark.parametrize(
+    ("motion", "log", "correlation", "reason"),
+    [
+        ("dive_poses", "dive_pwm", 0.8, "correlation 0.80), and the names agree"),
+        ("alpha", "zulu", 0.8, "its commands cause this motion (correlation 0.80)"),
+        ("dive_poses", "dive_pwm", 0.0, "by its name"),
+        ("alpha", "zulu", 0.0, "the only log beside it"),
+    ],
+)
+def test_a_pair_says_how_it_is_known(motion, log, correlation, reason):
+    (found,) = pairs([motion], [log], correlation)
+    assert found.log is not None
+    assert found.reason.endswith(reason)
 
 
 def test_names_in_any_language_that_start_alike_go_together():

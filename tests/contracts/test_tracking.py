@@ -218,14 +218,15 @@ def test_sweeps_that_begin_in_the_same_second_have_folders_of_their_own(tmp_path
     assert choose_sweep_folder(wanted, given=True) == wanted
 
 
-def test_a_sweep_over_campaigns_takes_those_that_are_there(tmp_path, monkeypatch):
+def test_a_sweep_over_campaigns_takes_one_by_one_where_any_is_there(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("first", "a, b=c é"):
         Path(name).mkdir()
     several = override("campaign=first,a, b=c é", sweep=True)
     assert several == "campaign='first','a, b=c é'"
     assert override("campaign=a, b=c é", sweep=True) == "campaign='a, b=c é'"
-    assert override("campaign=first,third", sweep=True) == "campaign='first,third'"
+    assert override("campaign=first,third", sweep=True) == "campaign='first','third'"
+    assert override("campaign=second,third", sweep=True) == "campaign='second,third'"
     assert override("model=nominal,first", sweep=True) == "model='nominal','first'"
     assert override("campaign=a, b=c é") == "campaign='a, b=c é'"
     with pytest.raises(BadInput, match="For a run with each, add -m"):

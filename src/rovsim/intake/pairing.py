@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
-from typing import Callable, Iterator, Sequence
+from typing import Callable, Iterator, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -42,6 +42,22 @@ class Pair:
         return self.log or self.likely
 
 
+class _Clues(NamedTuple):
+    """Positions of the log that each clue speaks for; None where it speaks for none.
+
+    Attributes:
+        content: the log that the motion follows.
+        name: by the names of the files.
+        folder: the only log in the folder of a motion that is alone there.
+        clock: by the clocks.
+    """
+
+    content: int | None
+    name: int | None
+    folder: int | None
+    clock: int | None
+
+
 def pair(
     motions: Sequence[MotionFile],
     logs: Sequence[CommandFile],
@@ -60,13 +76,14 @@ def pair(
     if not logs:
         return [Pair(m, None, "") for m in motions]
     table = np.array([[score(m, log) for log in logs] for m in motions])
-    by_content = _by_content(table)
-    by_name = _by_name(motions, logs)
-    by_clock = _by_clock(motions, logs)
-    return [
-        _decided(m, list(logs), table[k], by_content[k], by_name[k], by_clock[k])
-        for k, m in enumerate(motions)
-    ]
+    told = (
+        _by_content(table),
+        _by_name(motions, logs),
+        _by_folder(motions, logs),
+        _by_clock(motions, logs),
+    )
+    clues = [_Clues(*one) for one in zip(*told, strict=True)]
+    return [_decided(m, list(logs), table[k], clues[k]) for k, m in enumerate(motions)]
 
 
 def _by_content(table: Array) -> list[int | None]:
@@ -92,8 +109,7 @@ def _by_content(table: Array) -> list[int | None]:
 def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
     """Find the log whose name differs from the motion's only in words for roles and sensors.
 
-    Where there is none, take the log whose name starts with the same words, else the only log in
-    the folder of a motion that is alone there.
+    Where there is none, take the log whose name starts with the same words.
 
     Returns:
         For each motion the position of its log, None where names do not tell.
@@ -103,7 +119,13 @@ def _by_name(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list
         _add_by(key, motions, logs, matches)
     for k, log in _by_first_words(motions, logs):
         matches[k] = log if matches[k] is None else matches[k]
-    _add_by(_by_folder, motions, logs, matches)
+    return matches
+
+
+def _by_folder(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
+    """Find the only log in the folder of a motion that is alone there."""
+    matches: list[int | None] = [None] * len(motions)
+    _add_by(lambda path: str(path.absolute().parent), motions, logs, matches)
     return matches
 
 
@@ -160,10 +182,6 @@ def _by_sensor(path: Path) -> str:
     return sensor_key(path.stem)
 
 
-def _by_folder(path: Path) -> str:
-    return str(path.absolute().parent)
-
-
 def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> list[int | None]:
     """Find the only log whose times overlap those of a motion and of no other motion.
 
@@ -178,37 +196,30 @@ def _by_clock(motions: Sequence[MotionFile], logs: Sequence[CommandFile]) -> lis
     ]
 
 
-def _decided(
-    motion: MotionFile,
-    logs: list[CommandFile],
-    scores: Array,
-    content: int | None,
-    name: int | None,
-    clock: int | None,
-) -> Pair:
+def _decided(motion: MotionFile, logs: list[CommandFile], scores: Array, clues: _Clues) -> Pair:
     """Decide on the log of a motion.
 
     Args:
         motion: of the run.
         logs: all of them.
         scores: (logs,) correlation of the motion with each log.
-        content: position of the log that the motion follows, if any.
-        name: position of the log that the names speak for, if any.
-        clock: position of the log that the clocks speak for, if any.
+        clues: what speaks for which of them.
     """
-    if content is not None and name in (None, content):
+    content, where, why = clues.content, clues.name, "by its name"
+    if where is None:
+        where, why = clues.folder, "the only log beside it"
+    if content is not None and where in (None, content):
         reason = f"its commands cause this motion (correlation {scores[content]:.2f})"
-        return Pair(
-            motion, logs[content], reason + (", and the names agree" if name is not None else "")
-        )
-    if content is not None and name is not None:
+        agree = ", and the names agree" if clues.name is not None else ""
+        return Pair(motion, logs[content], reason + agree)
+    if content is not None and where is not None:
         explanation = (
-            f"by its name {logs[name].path.name}, but the motion is that of "
+            f"{why} {logs[where].path.name}, but the motion is that of "
             f"{logs[content].path.name} (correlation {scores[content]:.2f} against "
-            f"{scores[name]:.2f})"
+            f"{scores[where]:.2f})"
         )
-        return Pair(motion, None, explanation, (logs[content], logs[name]), logs[content])
-    for candidate, explanation in ((name, "by its name"), (clock, "the only log at that time")):
+        return Pair(motion, None, explanation, (logs[content], logs[where]), logs[content])
+    for candidate, explanation in ((where, why), (clues.clock, "the only log at that time")):
         if candidate is not None:
             caveat = f"; the motion does not show it (correlation {scores[candidate]:.2f})"
             return Pair(

@@ -140,7 +140,8 @@ def is_file(word: str) -> bool:
 def override(word: str, sweep: bool = False) -> str:
     """Return a word of the command line as a Hydra override; values of `QUOTED_KEYS` are quoted.
 
-    In a sweep, existing files and folders with commas between them are one value each.
+    In a sweep, files and folders with commas between them are one value each, if any of them is
+    there.
 
     Raises:
         BadInput: the option is not known, or the word has no `=`.
@@ -161,7 +162,7 @@ def override(word: str, sweep: bool = False) -> str:
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
     if key in SWEPT_PATH_KEYS and not os.path.exists(value):
         paths = listed(value)
-        if all(os.path.exists(path) or path in BUILT_IN for path in paths):
+        if any(os.path.exists(path) or path in BUILT_IN for path in paths):
             if len(paths) > 1 and not sweep:
                 raise _several(key, value)
             return f"{key}={','.join(map(quoted, paths)) or 'null'}"

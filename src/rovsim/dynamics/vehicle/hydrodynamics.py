@@ -20,13 +20,13 @@ Numbers = tuple[float, ...] | tuple[tuple[float, ...], ...]
 
 
 def _six_or_matrix(value: Any) -> Numbers:
-    """Check six numbers, or six rows of six, with a diagonal that is not negative."""
+    """Check six finite numbers, or six rows of six, with a diagonal that is not negative."""
     try:
         a = np.array(value, dtype=float)
     except (TypeError, ValueError):
         a = np.empty(0)
     if a.shape not in ((6,), (6, 6)) or not np.isfinite(a).all():
-        raise ValueError("six numbers, or six rows of six numbers")
+        raise ValueError("six finite numbers, or six rows of six")
     if np.any((a if a.ndim == 1 else np.diag(a)) < 0.0):
         raise ValueError("inertia and drag of at least 0 on the diagonal")
     return tuple(a.tolist()) if a.ndim == 1 else tuple(tuple(row) for row in a.tolist())

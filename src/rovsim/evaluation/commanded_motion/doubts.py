@@ -33,6 +33,8 @@ UPSIDE_DOWN_COSINE = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle 
 WALL_TOLERANCE_M, MAX_OUTSIDE_SHARE = 0.5, 0.5
 # s, and times the longest step of a log, by which it ends too early
 MAX_END_GAP_S, MAX_END_GAP_STEPS = 2.0, 5.0
+# m: a path of up to 20 m in metres, where the file should have mm; rad: a vehicle that is driven
+TINY_PATH_M, TURNED_RAD = 0.02, 0.5
 # Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
 # of a ship that steers reach 0.8 along wrong axes, and of a catamaran 0.98 along the right ones.
 CLEAR_CORRELATION = 0.9
@@ -54,7 +56,8 @@ def find_doubts(
     """
     upside_down = list(_upside_down(recording, vehicle))
     mismatches = [] if upside_down else list(_unlike_commands(recording, vehicle, same_log))
-    return (*upside_down, *mismatches, *_out_of_tank(recording), *_log_that_ends(recording))
+    others = (_out_of_tank, _tiny_path, _log_that_falls_short)
+    return (*upside_down, *mismatches, *(text for look in others for text in look(recording)))
 
 
 def _upside_down(recording: Recording, vehicle: Vehicle) -> Iterator[str]:
@@ -203,17 +206,41 @@ def _out_of_tank(recording: Recording) -> Iterator[str]:
         )
 
 
-def _log_that_ends(recording: Recording) -> Iterator[str]:
-    """Remark a log of commands that ends before the recording, unless its last command is zero.
-
-    Logs with rare lines may end that much earlier.
-    """
-    time, end = recording.commands.time, float(recording.time[-1])
-    if len(time) < 2 or not np.any(recording.commands.value[-1]):
+def _tiny_path(recording: Recording) -> Iterator[str]:
+    """Remark a vehicle that turns a lot, and hardly moves: its positions may be in metres."""
+    if not recording.tracked.any():
         return
-    gap = end - float(time[-1])
-    if gap > max(MAX_END_GAP_S, MAX_END_GAP_STEPS * float(np.diff(time).max())):
+    position, attitude = (
+        recording.position[recording.tracked],
+        recording.attitude[recording.tracked],
+    )
+    low, high = usual_range(position)
+    angle = 2.0 * np.arccos(np.clip(np.abs(attitude @ attitude[0]), 0.0, 1.0))
+    length, turned = float(np.max(high - low)), float(np.ptp(usual_range(angle)))
+    if length < TINY_PATH_M and turned > TURNED_RAD:
         yield (
-            f"The log of commands ends {gap:.1f} s before the recording; its last line is held "
+            f"The vehicle turns by {turned:.1f} rad within {1e3 * length:.2g} mm: its positions "
+            "may be in metres, where the format has millimetres. Export them again."
+        )
+
+
+def _log_that_falls_short(recording: Recording) -> Iterator[str]:
+    """Remark a log of commands that begins after the recording or ends before it.
+
+    Not where its first or last command is zero. Logs with rare lines may do so by as much.
+    """
+    time, value, measured = recording.commands.time, recording.commands.value, recording.time
+    if len(time) < 2:
+        return
+    allowed = max(MAX_END_GAP_S, MAX_END_GAP_STEPS * float(np.diff(time).max()))
+    late, early = float(time[0] - measured[0]), float(measured[-1] - time[-1])
+    if late > allowed and value[0].any():
+        yield (
+            f"The log of commands begins {late:.1f} s after the recording; its first line is held "
+            "before. Leave that part out with 'use', or complete the log."
+        )
+    if early > allowed and value[-1].any():
+        yield (
+            f"The log of commands ends {early:.1f} s before the recording; its last line is held "
             "until then. Leave that part out with 'use', or complete the log."
         )

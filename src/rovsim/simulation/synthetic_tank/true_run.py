@@ -268,9 +268,9 @@ def _stay_inside(state: Array, tank: Array, t: float) -> None:
     if not np.isfinite(state).all():
         raise BadInput(
             f"the state is no number after {t:.1f} s: a force was none, or grew without bound",
-            where="tank",
+            where="the simulated vehicle",
             expected="effects that give finite forces at every state",
-            remedy="Look for a division by zero in effects of your own, or hide weaker ones.",
+            remedy="Look for a division by zero in effects of your own, or make others weaker.",
         )
     raise LeftTank(
         f"the vehicle left the tank after {t:.1f} s",
