@@ -254,6 +254,12 @@ def test_a_log_that_begins_while_pushing_is_told(campaign):
     assert "begins" in rewritten(campaign, lambda table: table[len(table) // 2 :])
 
 
+def test_holes_of_a_log_are_told(campaign):
+    assert "holes: 1, of up to" in rewritten(
+        campaign, lambda table: np.delete(table, slice(len(table) // 3, len(table) // 2), axis=0)
+    )
+
+
 def test_metres_in_place_of_millimetres_are_told(campaign):
     poses = campaign / load_campaign(campaign).runs[0].mocap
     lines = poses.read_text().splitlines()

@@ -208,6 +208,19 @@ def test_of_too_much_data_the_parts_are_chosen_that_tell_something(flown):
     assert some.runs[1].motion.time[0] == pytest.approx(moving.time[6000] - 5.0, abs=0.02)
 
 
+def test_what_nobody_logged_is_left_out(flown):
+    moving = flown.motion
+    lines = (moving.commands.time < 20.0) | (moving.commands.time > 22.0)
+    log = replace(
+        moving.commands, time=moving.commands.time[lines], value=moving.commands.value[lines]
+    )
+    runs = _runs(holed=replace(moving, commands=log))
+    (run,) = prepare_train(runs, ReplaySettings(), built_in(), np.ones(6, bool)).runs
+    left_out = moving.time[moving.usable & ~run.motion.usable]
+    assert left_out[[0, -1]] == pytest.approx([20.0, 22.5], abs=0.05)
+    np.testing.assert_array_equal(np.diff(np.flatnonzero(moving.usable & ~run.motion.usable)), 1)
+
+
 def test_a_part_keeps_the_line_that_holds_when_it_begins(flown):
     """A log may have a line only where commands change."""
     motion = flown.motion

@@ -49,7 +49,7 @@ ASK_WHAT_CHANGED = (
 
 COMPARE_TEST_RUNS = (
     "Find out what was changed for the test runs: the load, the trim, the battery, the tether, the "
-    "clock of the log. Or write `split: train` for some of them and diagnose again."
+    "clock of the log, or holes in it. Or write `split: train` for some of them and diagnose again."
 )
 
 RECORD_WITHOUT_AUTOPILOT = (

@@ -19,14 +19,17 @@ from rovsim.core.rotations import unrotate
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
 from rovsim.estimation.settings import MAX_TRAIN_SECONDS
+from rovsim.measurement.quality.unlogged_commands import find_unlogged
 from rovsim.measurement.runs import Runs
+from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.results.diagnosis import LookedAt
 from rovsim.simulation.settings import ReplaySettings
 
 DRIVE_CACHE_BYTES = 1 << 29  # of all runs together: fifty of each in four minutes of runs
 PART_SECONDS = 60.0  # a fifth of it is kept apart for validation, which takes windows of 2 s
-LEAD_SECONDS = 5.0  # of commands before a part: propellers remember half a second
+MEMORY_SECONDS = 0.5  # for which propellers remember what was commanded
+LEAD_SECONDS = 10.0 * MEMORY_SECONDS  # of commands before a part
 SAMPLE_STEP_SECONDS = 0.2  # of the samples that parts are compared by: half a period of 2.5 Hz
 MIN_INFORMATION_SHARE = 1e-6  # of what all parts tell: a direction that hardly any of them shows
 
@@ -65,14 +68,18 @@ def prepare_train(
     most: float = MAX_TRAIN_SECONDS,
 ) -> TrainRuns:
     """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
-    parts = [part for name in runs.of("train") for part in _divide(runs.motions[name])]
+    motions = {name: _where_logged(runs.motions[name]) for name in runs.of("train")}
+    parts = [part for motion in motions.values() for part in _divide(motion)]
     total = sum(part.lasts for part in parts)
     places = [(name, slice(None)) for name in runs.of("train")]
     if total > most:
         parts = _choose(parts, most)
         places = [(part.run, part.at) for part in parts]
     drives: Recent = Recent(DRIVE_CACHE_BYTES)
-    observed = [_prepare(runs, *place, settings, catalogue, free, drives) for place in places]
+    observed = [
+        _prepare(runs.stages[name], motions[name], at, settings, catalogue, free, drives)
+        for name, at in places
+    ]
     return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total)
 
 
@@ -81,19 +88,28 @@ def prepare_test(
 ) -> Iterator[ObservedRun]:
     """Test runs as the observer sees them, one after the other."""
     for name in runs.of("test"):
-        yield _prepare(runs, name, slice(None), settings, catalogue, free)
+        yield prepare_run(runs.stages[name], runs.motions[name], settings, catalogue, free)
+
+
+def _where_logged(motion: Motion) -> Motion:
+    """The motion of a run, of which only that is usable whose commands are known."""
+    time = motion.time
+    unlogged = find_unlogged(motion.commands, float(time[0]), float(time[-1]))
+    if not len(unlogged):
+        return motion
+    known = [(time < begin) | (time > end + MEMORY_SECONDS) for begin, end in unlogged]
+    return replace(motion, usable=motion.usable & np.all(known, axis=0))
 
 
 def _prepare(
-    runs: Runs,
-    name: str,
+    stage: Stage,
+    motion: Motion,
     at: slice,
     settings: ReplaySettings,
     catalogue: Catalogue,
     free: Array,
-    kept: Recent | None = None,
+    kept: Recent,
 ) -> ObservedRun:
-    stage, motion = runs.stages[name], runs.motions[name]
     if at != slice(None):
         begin = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
         span = slice(begin, at.stop)

@@ -19,6 +19,7 @@ from rovsim.evaluation.commanded_motion.cross_correlation import (
     orientations,
 )
 from rovsim.evaluation.commanded_motion.predicted import can_push_sideways, cause, righting
+from rovsim.measurement.quality.unlogged_commands import find_unlogged
 from rovsim.measurement.recording import Recording
 from rovsim.measurement.rough_motion import (
     ResampledPoses,
@@ -31,8 +32,9 @@ MAX_COMMANDS_S = 120.0  # s of commands that are considered
 UPSIDE_DOWN_COSINE = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle hangs upside down
 # m beyond a wall, share of the frames: more than a wrong calibration
 WALL_TOLERANCE_M, MAX_OUTSIDE_SHARE = 0.5, 0.5
-# s, and times the longest step of a log, by which it ends too early
-MAX_END_GAP_S, MAX_END_GAP_STEPS = 2.0, 5.0
+REMEDY_OF_UNLOGGED = (
+    "A diagnosis leaves that part of train runs out, errors do not: use 'use', or complete the log."
+)
 # m: a path of up to 20 m in metres, where the file should have mm; rad: a vehicle that is driven
 TINY_PATH_M, TURNED_RAD = 0.02, 0.5
 # Correlation of vehicles that cannot push sideways. Axis by axis, perfect models of a torpedo and
@@ -56,7 +58,7 @@ def find_doubts(
     """
     upside_down = list(_upside_down(recording, vehicle))
     mismatches = [] if upside_down else list(_unlike_commands(recording, vehicle, same_log))
-    others = (_out_of_tank, _tiny_path, _log_that_falls_short)
+    others = (_out_of_tank, _tiny_path, _unlogged)
     return (*upside_down, *mismatches, *(text for look in others for text in look(recording)))
 
 
@@ -162,14 +164,18 @@ def _first(pair: tuple[float, Array]) -> float:
     return pair[0]
 
 
+def _covered(recording: Recording) -> Array:
+    """Times (n,) in s at which something was measured, but for what `use` leaves out."""
+    return recording.time[recording.tracked] if recording.tracked.any() else recording.time
+
+
 def _predict_caused(recording: Recording, vehicle: Vehicle) -> tuple[Array, Array] | None:
     """Times (n,) in s and body velocities (n, 6) FRD that the commands would cause.
 
     None where there are too few commands, or the run is too short.
     """
     commands = recording.commands
-    # stretches that `use` leaves out are not found, and may last longer than `MAX_COMMANDS_S`
-    covered = recording.time[recording.tracked] if recording.tracked.any() else recording.time
+    covered = _covered(recording)
     if len(commands.time) < 2 or np.ptp(covered) < MIN_MOTION_S:
         return None
     begin = max(float(commands.time[0]), float(covered[0]))
@@ -224,23 +230,28 @@ def _tiny_path(recording: Recording) -> Iterator[str]:
         )
 
 
-def _log_that_falls_short(recording: Recording) -> Iterator[str]:
-    """Remark a log of commands that begins after the recording or ends before it.
-
-    Not where its first or last command is zero. Logs with rare lines may do so by as much.
-    """
-    time, value, measured = recording.commands.time, recording.commands.value, recording.time
-    if len(time) < 2:
-        return
-    allowed = max(MAX_END_GAP_S, MAX_END_GAP_STEPS * float(np.diff(time).max()))
-    late, early = float(time[0] - measured[0]), float(measured[-1] - time[-1])
-    if late > allowed and value[0].any():
+def _unlogged(recording: Recording) -> Iterator[str]:
+    """Remark a log of commands that begins late, ends early or has holes."""
+    measured = _covered(recording)
+    begin, end = float(measured[0]), float(measured[-1])
+    spans = find_unlogged(recording.commands, begin, end)
+    inside = (measured > spans[:, :1]) & (measured < spans[:, 1:])
+    spans = spans[inside.any(axis=1)]
+    lengths = np.diff(spans, axis=1)[:, 0]
+    late, early = (spans == [begin, end]).T
+    if late.any():
         yield (
-            f"The log of commands begins {late:.1f} s after the recording; its first line is held "
-            "before. Leave that part out with 'use', or complete the log."
+            f"The log of commands begins {lengths[0]:.1f} s after the recording; its first line is "
+            f"held before. {REMEDY_OF_UNLOGGED}"
         )
-    if early > allowed and value[-1].any():
+    holes = lengths[~late & ~early]
+    if len(holes):
         yield (
-            f"The log of commands ends {early:.1f} s before the recording; its last line is held "
-            "until then. Leave that part out with 'use', or complete the log."
+            f"The log of commands has holes: {len(holes)}, of up to {holes.max():.2f} s; the line "
+            f"before each is held. {REMEDY_OF_UNLOGGED}"
+        )
+    if early.any():
+        yield (
+            f"The log of commands ends {lengths[-1]:.1f} s before the recording; its last line is "
+            f"held until then. {REMEDY_OF_UNLOGGED}"
         )
