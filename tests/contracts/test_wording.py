@@ -31,6 +31,7 @@ from rovsim.reporting.words.sentences import ladder_sentences, residual_sentence
 from rovsim.reporting.words.sureness import DOUBT_REASONS
 from rovsim.reporting.words.symbols import explain_symbols
 from rovsim.reporting.words.verdict import explain
+from rovsim.results.diagnosis import DisturbedEnd
 from rovsim.results.fitted import Doubt, FittedValue, SelectedEffect
 from rovsim.results.ladder import Ladder, LadderStep
 from synthetic_study import study
@@ -155,6 +156,14 @@ def test_what_became_of_the_error_is_told_as_far_as_its_digits_show(content, aft
     error = content["diagnosis"].error.model_copy(update=errors)
     found = content["diagnosis"].model_copy(update={"error": error})
     assert told in terminal.tell_diagnosis(found, built_in())
+
+
+def test_ends_of_runs_that_hands_may_have_moved_are_told_with_what_leaves_them_out(content):
+    end = DisturbedEnd(run="dive", from_s=33.2, to_s=40.0, times=6.39, use=((1.0, 33.2),))
+    found = content["diagnosis"].model_copy(update={"disturbed_ends": (end,)})
+    said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
+    assert "Run dive leaves 6.4 times as much from 33.2 to 40.0 s" in said
+    assert "`use: [[1.0, 33.2]]`" in said
 
 
 @pytest.mark.parametrize(("after", "differ"), [(0.17, True), (0.03, False), (None, False)])

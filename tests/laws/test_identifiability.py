@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, COMPARE_TEST_RUNS, advise
+from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, COMPARE_TEST_RUNS, LEAVE_OUT_ENDS, advise
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.beside_law import (
     doubt_beside_law,
@@ -50,6 +50,7 @@ from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.random_walk import WalkRate
 from rovsim.estimation.observer.residual_source import Linearised
 from rovsim.estimation.observer.usable_runs import UsableRuns
+from rovsim.results.diagnosis import DisturbedEnd
 from worlds import motion, sticks
 
 TERMS = ("linear_damping", "net_buoyancy")  # surge … yaw, and a force
@@ -112,6 +113,9 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
     assert advise(found, [], [], built_in(), test_runs_differ=True) == COMPARE_TEST_RUNS
+    end = DisturbedEnd(run="a", from_s=0.0, to_s=4.0, times=5.0, use=((4.0, 40.0),))
+    disturbed = replace(found, disturbed_ends=(end,))
+    assert advise(disturbed, [], [], built_in()) == LEAVE_OUT_ENDS
 
 
 def test_an_effect_that_does_not_say_what_reveals_it_asks_for_a_planned_flight():

@@ -52,6 +52,11 @@ COMPARE_TEST_RUNS = (
     "clock of the log, or holes in it. Or write `split: train` for some of them and diagnose again."
 )
 
+LEAVE_OUT_ENDS = (
+    "Look at the ends of runs that are named above: leave out with `use` where the vehicle was "
+    "moved by hand, lifted or aground, and diagnose again."
+)
+
 RECORD_WITHOUT_AUTOPILOT = (
     "An autopilot that holds an angle by a sensor better than the cameras looks like a small force "
     "in the runs where it acts: its thrust tells how the vehicle turns before the cameras do. "
@@ -109,15 +114,7 @@ def advise(
     parts += _advise_excitation(diagnosis)
     if test_runs_differ:
         parts.insert(0, COMPARE_TEST_RUNS)
-    if diagnosis.difference:
-        parts.append(ASK_WHAT_CHANGED.format(diagnosis.difference.effect_id))
-    elif diagnosis.structures:
-        structure = diagnosis.structures[0]
-        parts.append(
-            f"Record some time without commands, then move slowly in {structure.axis} alone. If "
-            f"the remainder ({structure.what}) is there without commands too, it comes from "
-            "outside; if only with motion, from the vehicle."
-        )
+    parts += _advise_on_rest(diagnosis)
     return " ".join(parts) or _confirm(diagnosis)
 
 
@@ -137,6 +134,22 @@ def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     """Say what to check first, if a fitted value is absurdly far from the vehicle file."""
     absurd = list_absurd(diagnosis.base, [s.term for s in diagnosis.selected])
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
+
+
+def _advise_on_rest(diagnosis: TrainDiagnosis) -> list[str]:
+    """Say what to do about what is left unexplained."""
+    if diagnosis.difference:
+        return [ASK_WHAT_CHANGED.format(diagnosis.difference.effect_id)]
+    if diagnosis.disturbed_ends:
+        return [LEAVE_OUT_ENDS]
+    if not diagnosis.structures:
+        return []
+    structure = diagnosis.structures[0]
+    return [
+        f"Record some time without commands, then move slowly in {structure.axis} alone. If the "
+        f"remainder ({structure.what}) is there without commands too, it comes from outside; if "
+        "only with motion, from the vehicle."
+    ]
 
 
 def _advise_excitation(diagnosis: TrainDiagnosis) -> list[str]:

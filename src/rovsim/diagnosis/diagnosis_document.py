@@ -114,6 +114,7 @@ def assemble_diagnosis(
         },
         runs_away_in=tuple(context.diverges_in),
         standstills=tuple(context.standstills),
+        disturbed_ends=tuple(diagnosis.disturbed_ends),
         thrusters=diagnosis.base.vehicle.thruster_names,
         recordings=dict(context.recordings),
         base=describe_model(diagnosis.base),

@@ -30,6 +30,7 @@ from threadpoolctl import threadpool_limits
 
 from rovsim.diagnosis.answer import SettledAnswer, finalise_answer, polish_selection
 from rovsim.diagnosis.checks.commanded import list_not_commanded
+from rovsim.diagnosis.checks.disturbed_ends import find_disturbed_ends
 from rovsim.diagnosis.checks.observability import list_not_observable
 from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.disturbance import ForceInTime, trace_force
@@ -54,7 +55,7 @@ from rovsim.estimation.observer.divergence import ModelDiverged
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.usable_runs import UsableRuns, select_usable
-from rovsim.results.diagnosis import Verdict
+from rovsim.results.diagnosis import DisturbedEnd, Verdict
 from rovsim.results.fitted import Correlation
 
 
@@ -78,6 +79,7 @@ class TrainDiagnosis:
         replaced: ids of accepted effects that the proposed law does without: they are not selected.
         disturbance: what is left as a force in time, where no law holds.
         difference: an effect that has another value in each run.
+        disturbed_ends: of runs, which hold most of what is left.
     """
 
     base: Model
@@ -95,6 +97,7 @@ class TrainDiagnosis:
     replaced: frozenset[str] = frozenset()
     disturbance: ForceInTime | None = None
     difference: RunDifference | None = None
+    disturbed_ends: Sequence[DisturbedEnd] = ()
 
     @property
     def enough(self) -> bool:
@@ -194,6 +197,7 @@ def _summarise(validated: ValidatedSearch) -> TrainDiagnosis:
         replaced=effects.replaced,
         disturbance=None if proposed else _trace(answer),
         difference=validated.difference,
+        disturbed_ends=_find_ends(answer),
     )
 
 
@@ -215,6 +219,13 @@ def _propose(answer: SettledAnswer, validated: ValidatedSearch) -> ProposedLaw |
     catalogued = Catalogued(model, answer.replayed if holdout.runs else model)
     camera = list_camera_effects(validated)
     return propose_law(answer.selection, catalogued, base, holdout, runs, polish, camera)
+
+
+def _find_ends(answer: SettledAnswer) -> Sequence[DisturbedEnd]:
+    """Ends of runs that hold most of what is left; none where nothing is."""
+    if not answer.structures or not answer.fit.is_finite:
+        return ()
+    return find_disturbed_ends(answer.fit, answer.bank)
 
 
 def _trace(answer: SettledAnswer) -> ForceInTime | None:

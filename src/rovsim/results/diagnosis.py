@@ -193,6 +193,20 @@ class Answer(Section):
     not_observable: tuple[str, ...] = ()
 
 
+class DisturbedEnd(Section):
+    """The beginning or the end of a run leaves far more than the rest: moved by hand, lifted?
+
+    From when to when, s; how many `times` as much (of variance); `use`: what is left of the run, as
+    campaign.yaml takes it.
+    """
+
+    run: str
+    from_s: float
+    to_s: float
+    times: float
+    use: tuple[tuple[float, float], ...]
+
+
 class Diagnosis(Result):
     """The verdict and all that led to it; `base` is the diagnosed model's file.
 
@@ -200,10 +214,10 @@ class Diagnosis(Result):
     `not_commanded` thrusters and surfaces by name, or axes, that stayed at rest;
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
     from which on the model runs away from a train run, by its id; `runs_away_in`: test runs in
-    which it does so within 2 s, and has no error; `standstills` of train runs; `thrusters` their
-    names in the vehicle file: the parameter `t1` of an effect is of the first. `recordings` that it
-    is of: the start of each file's SHA-256, by its path from the campaign; empty in files of
-    earlier versions.
+    which it does so within 2 s, and has no error; `standstills` of train runs, and their
+    `disturbed_ends` where these hold most of what is unexplained; `thrusters` their names in the
+    vehicle file: the parameter `t1` of an effect is of the first. `recordings` that it is of: the
+    start of each file's SHA-256, by its path from the campaign; empty in files of earlier versions.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -231,6 +245,7 @@ class Diagnosis(Result):
     not_followed_from_s: dict[str, float] = Field(default_factory=dict)
     runs_away_in: tuple[str, ...] = ()
     standstills: tuple[Standstill, ...] = ()
+    disturbed_ends: tuple[DisturbedEnd, ...] = ()
     thrusters: tuple[str, ...] = ()
     recordings: dict[str, str] = Field(default_factory=dict)
     base: dict[str, JsonValue]

@@ -1,6 +1,7 @@
 """Checks of the runs, and of the values of an answer.
 
 standstills       stretches in which the vehicle stands still although the model would move
+disturbed_ends    ends of runs that leave far more than the rest: moved by hand
 commanded         thrusters or axes that were never commanded
 observability     effects that these runs could not show
 unlogged_effects  removes effects that only explain where the command log is uncertain

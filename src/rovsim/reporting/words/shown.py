@@ -4,13 +4,14 @@ from typing import Mapping, Sequence
 
 from rovsim.core.axes import AXES, VELOCITY_UNITS
 from rovsim.reporting.wording import listed, significant
-from rovsim.results.diagnosis import Diagnosis, LookedAt, Standstill
+from rovsim.results.diagnosis import Diagnosis, DisturbedEnd, LookedAt, Standstill
 
 
 def shown_sentences(diagnosis: Diagnosis) -> list[str]:
     """Say all that the recordings could not show, and which parts of them were not used."""
     return [
         *held_sentences(diagnosis.standstills),
+        *map(_say_end, diagnosis.disturbed_ends),
         *still_sentences(diagnosis.not_excited),
         *idle_sentences(diagnosis.not_commanded),
         *silent_sentences(diagnosis),
@@ -30,6 +31,17 @@ def _say_standstill(one: Standstill) -> str:
         f"Run {one.run} stands still from {one.from_s:.1f} to {one.to_s:.1f} s, where the model "
         f"would gain {significant(one.gained, 2)} {unit} in {one.axis}. If it was held by hand or "
         f"lay on the floor, leave that out: `use: {use}` in this run of campaign.yaml."
+    )
+
+
+def _say_end(one: DisturbedEnd) -> str:
+    """Say that an end of a run leaves far more than the rest: hands may have moved the vehicle."""
+    use = str([list(span) for span in one.use])
+    return (
+        f"Run {one.run} leaves {significant(one.times, 2)} times as much from {one.from_s:.1f} to "
+        f"{one.to_s:.1f} s as runs do elsewhere (variance), and such ends are most of what is "
+        "unexplained. If the vehicle was moved by hand, lifted or aground, leave that out: "
+        f"`use: {use}` in this run of campaign.yaml."
     )
 
 
