@@ -74,6 +74,19 @@ def test_swapped_markers_are_found_and_nothing_else(method, seed, size, turn, le
     np.testing.assert_array_equal(np.flatnonzero(mask), np.flatnonzero(planted))
 
 
+@settings(deadline=None, max_examples=20)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_frames_that_jut_out_by_as_much_as_a_step_take_no_good_ones_with_them(seed):
+    """Of single frames some are within reach of one side alone: a quarter of a run went."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, 30.0, 1.0 / RATE)
+    eta = noisy(truth(t)[0], rng)
+    off = 20 + 48 * np.arange(60) + rng.integers(0, 20, 60)  # never two in a row
+    eta[off, :3] += rng.normal(scale=0.012, size=(60, 3))
+    rejected = find_outliers(record(t, eta), VelocityGate())
+    assert not rejected[np.setdiff1d(np.arange(len(t)), off)].any()
+
+
 def test_a_body_held_swapped_for_a_moment_is_found_whole():
     """The same displacement for 0.2 s: half as far as the body could travel in that time."""
     rng = np.random.default_rng(5)

@@ -19,6 +19,10 @@ MAX_LOOK_BACK = 1000
 DETOUR_COST = 3.0
 # The same for leaving out an end of the run, where a swap can be judged from one side only.
 CUT_END_COST = 1.0
+# A frame that juts out: from the line between its neighbours further than so many times the median,
+# which no frame in a million is by noise, than such a share of the tolerance of a step, and so many
+# times further than the frames beside it.
+JUTTING_RATIO, JUTTING_SHARE, JUTTING_LEAD = 6.0, 0.5, 1.4
 # From such steps on, frames are compared with their neighbours; of faster cameras the filter
 # takes away what the gate lets pass.
 SLOW_STEP_S = 0.04
@@ -179,12 +183,32 @@ def find_outliers(recording: Recording, settings: VelocityGate | Hampel | KeepAl
 def _stretches(
     gate: VelocityGate, time: Array, position: Array, attitude: Array, step: float
 ) -> tuple[Array, Array]:
-    """First and last index, (s,) each, of every stretch without dropout or implausible step."""
+    """First and last index, (s,) each, of every stretch without dropout or implausible step.
+
+    A frame that juts out is a stretch of its own: it may be within reach of one side alone, and
+    would take the other side's stretch with it.
+    """
+    juts = _jutting(time, position, gate.tolerance)
+    juts |= _jutting(time, rotations.continuous(attitude), 0.5 * gate.angle_tolerance)
     plausible = _within_reach(
         gate, np.diff(time), position[1:] - position[:-1], attitude[:-1], attitude[1:], step
     )
-    breaks = np.flatnonzero(~plausible | (np.diff(time) > LONG_STEP * step))
+    alone = juts[:-1] | juts[1:]
+    breaks = np.flatnonzero(~plausible | alone | (np.diff(time) > LONG_STEP * step))
     return np.concatenate([[0], breaks + 1]), np.concatenate([breaks, [len(time) - 1]])
+
+
+def _jutting(time: Array, x: Array, tolerance: float) -> Array:
+    """Mask (n,) of the rows of `x` (n, c) that are far from the line between their neighbours."""
+    if len(x) < 3:
+        return np.zeros(len(x), bool)
+    share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
+    off = np.linalg.norm(x[1:-1] - x[:-2] - share[:, None] * (x[2:] - x[:-2]), axis=1)
+    limit = max(JUTTING_RATIO * float(np.median(off)), JUTTING_SHARE * tolerance)
+    off = np.pad(off, 2)
+    # it spoils the lines of the two beside it by half of that; where a jump begins, two are alike
+    beside = np.maximum(off[:-2], off[2:])
+    return np.asarray((off[1:-1] > limit) & (off[1:-1] > JUTTING_LEAD * beside))
 
 
 def _within_reach(
