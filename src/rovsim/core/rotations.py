@@ -168,6 +168,11 @@ def turns(q: Array) -> Array:
     return log(multiply(conjugate(q[:-1]), q[1:]))
 
 
+def angle_between(a: Array, b: Array) -> Array:
+    """Angle (...), rad, of the shorter turn between attitudes (..., 4)."""
+    return 2.0 * np.arccos(np.minimum(np.abs(np.sum(a * b, axis=-1)), 1.0))
+
+
 def body_rates(q: Array, q_dot: Array) -> Array:
     """Angular velocity (..., 3) in the body frame: omega = 2 q* q_dot (Fossen 2021, eq. 2.78)."""
     return 2.0 * multiply(conjugate(q), q_dot)[..., 1:]

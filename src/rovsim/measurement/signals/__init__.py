@@ -2,6 +2,7 @@
 
 clock            uniform clocks, and the usable stretches on them
 outliers         finds frames that cannot be true
+half_turns       finds frames in which a body was found half a turn off
 neighbours       finds single frames that do not fit the frames beside them
 resample         puts poses on a uniform clock; long gaps stay gaps
 chosen_channels  chooses the channels that tell best how a vehicle turned and moved

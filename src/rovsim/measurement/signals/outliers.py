@@ -10,6 +10,7 @@ from rovsim.core import rotations
 from rovsim.core.robust import LONG_STEP, STD_PER_MAD
 from rovsim.core.schema import Section
 from rovsim.measurement.recording.recording import Recording
+from rovsim.measurement.signals.half_turns import find_half_turned
 from rovsim.measurement.signals.neighbours import Neighbours, find_far
 
 # How far back the gate looks for a stretch to continue from; bounds the work on hopeless runs.
@@ -40,6 +41,9 @@ class VelocityGate(Section):
     also compared with a cubic through the two frames to either side. A frame is rejected if it is
     further from the cubic than a vehicle at full speed that stops dead would be (a third of a
     step), and much further than the frames nearby.
+
+    After a loss of half a second nearly every attitude is within reach. Frames of a body that was
+    found again half a turn off are therefore rejected first (`half_turns`).
     """
 
     kind: Literal["velocity_gate"] = "velocity_gate"
@@ -64,8 +68,22 @@ class VelocityGate(Section):
         Returns:
             Mask (n,), True for frames to reject.
         """
+        frames, count = np.arange(len(time)), -1
+        while True:
+            turned = find_half_turned(
+                time[frames], attitude[frames], step, self.max_rate, self.angle_tolerance
+            )
+            frames = frames[~turned]
+            if len(frames) == count:  # nothing was turned among what is plausible
+                break
+            frames = frames[self._plausible(time[frames], position[frames], attitude[frames], step)]
+            count = len(frames)
+        return ~np.isin(np.arange(len(time)), frames)
+
+    def _plausible(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
+        """Mask (n,) of the frames to which the body can have moved."""
         if step < SLOW_STEP_S:
-            return ~self._chained(time, position, attitude, step)
+            return self._chained(time, position, attitude, step)
         frames, count = np.arange(len(time)), -1
         while len(frames) != count:
             count = len(frames)
@@ -76,7 +94,7 @@ class VelocityGate(Section):
                 frames = frames[
                     self._chained(time[frames], position[frames], attitude[frames], step)
                 ]
-        return ~np.isin(np.arange(len(time)), frames)
+        return np.isin(np.arange(len(time)), frames)
 
     def _chained(self, time: Array, position: Array, attitude: Array, step: float) -> Array:
         """Mask (n,) of the frames in the chain."""
@@ -226,7 +244,7 @@ def _within_reach(
     """
     # Jittered stamps can be closer than a step although the exposures were not.
     elapsed = np.maximum(elapsed, step)
-    angle = 2.0 * np.arccos(np.clip(np.abs(np.sum(q0 * q1, axis=-1)), 0.0, 1.0))
+    angle = rotations.angle_between(q0, q1)
     plausible = np.linalg.norm(moved, axis=-1) <= gate.max_speed * elapsed + gate.tolerance
     return plausible & (angle <= gate.max_rate * elapsed + gate.angle_tolerance)
 
