@@ -267,7 +267,7 @@ def test_metres_in_place_of_millimetres_are_told(campaign):
     rows = [line.split("\t") for line in lines[first:]]
     metres = [[*row[:2], *(f"{1e-3 * float(x):.6f}" for x in row[2:5]), *row[5:]] for row in rows]
     poses.write_text("\n".join([*lines[:first], *("\t".join(row) for row in metres)]))
-    assert "may be in metres" in doubts(campaign)
+    assert "a thousand times too small" in doubts(campaign)
 
 
 def test_a_tank_that_is_too_small_is_told(campaign):

@@ -159,19 +159,31 @@ def test_what_became_of_the_error_is_told_as_far_as_its_digits_show(content, aft
 
 
 def test_ends_of_runs_that_hands_may_have_moved_are_told_with_what_leaves_them_out(content):
-    end = DisturbedEnd(run="dive", from_s=33.2, to_s=40.0, times=6.39, use=((1.0, 33.2),))
-    found = content["diagnosis"].model_copy(update={"disturbed_ends": (end,)})
+    end = DisturbedEnd(run="dive", from_s=33.2, to_s=40.0, times=6.39)
+    given = {"disturbed_ends": (end,), "unlogged_s": {"dive": 6.0}}
+    found = content["diagnosis"].model_copy(update=given)
     said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     assert "Run dive leaves 6.4 times as much from 33.2 to 40.0 s" in said
-    assert "`use: [[1.0, 33.2]]`" in said
+    assert "leave that out with `use`" in said
+    assert "begins later or ends earlier: 6.0 s of dive." in said
 
 
-@pytest.mark.parametrize(("after", "differ"), [(0.17, True), (0.03, False), (None, False)])
-def test_test_runs_that_differ_from_the_train_runs_are_told(content, after, differ):
+@pytest.mark.parametrize(
+    ("after", "verdict", "differ"),
+    [
+        (0.17, "adequate", True),
+        (0.17, "missing_effects", True),
+        (0.17, "unexplained", False),
+        (0.17, "insufficient_data", False),
+        (0.03, "adequate", False),
+        (None, "adequate", False),
+    ],
+)
+def test_test_runs_that_differ_from_the_train_runs_are_told(content, after, verdict, differ):
     errors = {"nominal": 0.3, "with_effects": after, "noise_floor": 0.024}
     error = content["diagnosis"].error.model_copy(update=errors)
     nothing = content["diagnosis"].unexplained.model_copy(update={"significant": False})
-    given = {"verdict": "adequate", "error": error, "unexplained": nothing}
+    given = {"verdict": verdict, "error": error, "unexplained": nothing}
     found = content["diagnosis"].model_copy(update=given)
     said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     assert ("The error is 7.1 times that" in said) == differ

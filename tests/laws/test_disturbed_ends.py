@@ -50,10 +50,8 @@ def test_ends_are_told_with_what_is_left_of_their_runs():
     first, last = found(RUNS, (0, 0.0, 6.0), (2, 33.0, 40.0))
     assert (first.run, first.from_s) == ("a", 100.0)
     assert first.to_s == pytest.approx(106.0, abs=1.0)
-    assert first.use == ((first.to_s, 140.0),)
     assert first.times == pytest.approx(9.0, rel=0.2)
     assert (last.run, last.to_s) == ("c", 140.0)
-    assert last.use == ((100.0, last.from_s),)
     assert last.from_s == pytest.approx(133.0, abs=1.0)
 
 
@@ -74,4 +72,14 @@ def test_a_border_between_parts_of_a_run_is_no_end():
     parts = [run("a", after=40.0), run("a", before=40.0)]
     assert found(parts, (0, 34.0, 40.0)) == ()
     (last,) = found(parts, (1, 34.0, 40.0))
-    assert last.use == ((100.0, last.from_s),)
+    assert last.to_s == 140.0
+
+
+def test_blocks_without_readings_do_not_count():
+    seldom = run("seldom")
+    seldom.innovation_mask[(seldom.time % 3.0) > 1.0] = False
+    assert found([seldom]) == ()
+    (first,) = found([seldom, *RUNS], (0, 0.0, 8.0))
+    assert first.run == "seldom"
+    seldom.innovation_mask[:] = False
+    assert found([seldom]) == ()

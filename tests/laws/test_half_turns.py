@@ -122,6 +122,16 @@ def test_a_body_that_turns_half_round_while_it_is_lost_is_kept(rate, start, more
     assert not half_turned(spinning(rate), found).any()
 
 
+@settings(deadline=None, max_examples=20)
+@given(takes=st.floats(1.3, 5.0), seed=st.integers(0, 2**32 - 1))
+def test_a_body_that_only_turns_at_the_ends_of_a_tank_which_no_camera_sees_is_kept(takes, seed):
+    leg = 12.0
+    into = np.clip((TIME % leg - (leg - takes)) / takes, 0.0, 1.0)
+    yaw = np.pi * (TIME // leg + into)
+    attitude = noisy(rotations.from_euler(0 * TIME, 0 * TIME, yaw), np.random.default_rng(seed))
+    assert not half_turned(attitude, into == 0.0).any()
+
+
 def test_a_body_that_turns_already_when_it_is_lost_is_kept():
     """Nothing else in the run turns as far; of the turn, 0.2 s before and after are seen."""
     yaw = 2.5 * np.clip(TIME - 20.0, 0.0, np.pi / 2.5 + 0.4)

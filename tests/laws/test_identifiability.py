@@ -113,7 +113,7 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
     assert advise(found, [], [], built_in(), test_runs_differ=True) == COMPARE_TEST_RUNS
-    end = DisturbedEnd(run="a", from_s=0.0, to_s=4.0, times=5.0, use=((4.0, 40.0),))
+    end = DisturbedEnd(run="a", from_s=0.0, to_s=4.0, times=5.0)
     disturbed = replace(found, disturbed_ends=(end,))
     assert advise(disturbed, [], [], built_in()) == LEAVE_OUT_ENDS
 

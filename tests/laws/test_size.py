@@ -215,7 +215,9 @@ def test_what_nobody_logged_is_left_out(flown):
         moving.commands, time=moving.commands.time[lines], value=moving.commands.value[lines]
     )
     runs = _runs(holed=replace(moving, commands=log))
-    (run,) = prepare_train(runs, ReplaySettings(), built_in(), np.ones(6, bool)).runs
+    train = prepare_train(runs, ReplaySettings(), built_in(), np.ones(6, bool))
+    (run,) = train.runs
+    assert train.unlogged == {"holed": pytest.approx(2.5, abs=0.05)}
     left_out = moving.time[moving.usable & ~run.motion.usable]
     assert left_out[[0, -1]] == pytest.approx([20.0, 22.5], abs=0.05)
     np.testing.assert_array_equal(np.diff(np.flatnonzero(moving.usable & ~run.motion.usable)), 1)

@@ -13,8 +13,8 @@ TIMES = np.arange(0.0, END, 0.02)
 
 
 def log(time, value=None):
-    """A log whose every line has another command, unless values (m,) are given."""
-    value = np.sin(np.arange(len(time)) + 1.0) if value is None else value
+    """A log whose commands rise from line to line, unless values (m,) are given."""
+    value = 0.2 + 0.02 * time if value is None else value
     return Commands(time, np.asarray(value, dtype=float)[:, None], "demand")
 
 
@@ -48,6 +48,18 @@ def test_lines_that_lack_one_by_one_are_no_holes():
 def test_a_log_that_only_writes_changes_has_no_holes():
     time = np.cumsum(np.random.default_rng(2).exponential(0.5, 80))
     assert not len(find_unlogged(log(time), 0.0, float(time[-1])))
+
+
+def test_a_stick_that_is_held_without_lines_makes_no_holes():
+    time = TIMES[TIMES % 2.0 < 1.0]
+    moved = np.cumsum(np.full(len(time), 0.02))  # it goes on from where it was held
+    assert not len(find_unlogged(log(time, 0.3 + np.sin(moved)), 0.0, END))
+
+
+def test_a_log_that_is_silent_at_rest_has_no_holes_there():
+    time = TIMES[TIMES % 4.0 < 3.0]
+    value = np.where(time % 4.0 < 2.97, 0.5 + 0.1 * np.sin(time), 0.0)  # zero, then nothing
+    assert not len(find_unlogged(log(time, value), 0.0, END))
 
 
 def test_a_hole_between_equal_commands_is_none():

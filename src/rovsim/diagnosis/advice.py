@@ -53,7 +53,7 @@ COMPARE_TEST_RUNS = (
 )
 
 LEAVE_OUT_ENDS = (
-    "Look at the ends of runs that are named above: leave out with `use` where the vehicle was "
+    "Look at the ends of runs in `disturbed_ends`: leave out with `use` where the vehicle was "
     "moved by hand, lifted or aground, and diagnose again."
 )
 

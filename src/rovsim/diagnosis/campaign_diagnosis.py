@@ -91,7 +91,9 @@ def diagnose_campaign(
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
     ladder, diverges_in = _build_ladder(diagnosis, runs, settings, catalogue)
-    context = CampaignContext(recordings, shares, ladder, train.looked_at, standstills, diverges_in)
+    context = CampaignContext(
+        recordings, shares, ladder, train.looked_at, standstills, diverges_in, train.unlogged
+    )
     document = assemble_diagnosis(diagnosis, context, catalogue)
     return CampaignDiagnosis(
         document, conditions, diagnosis.proposed.source if diagnosis.proposed else None

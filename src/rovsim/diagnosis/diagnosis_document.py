@@ -1,6 +1,6 @@
 """Assemble the content of `diagnosis.json`: what was found on the train runs, and its context."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Mapping, Sequence
 
 import numpy as np
@@ -56,6 +56,7 @@ class CampaignContext:
         standstills: stretches of train runs in which the vehicle stands still although the base
             would move.
         diverges_in: ids of the test runs in which the base diverges.
+        unlogged: by train run, how many s are not used as nobody knows what was commanded.
     """
 
     recordings: Mapping[str, str]
@@ -64,6 +65,7 @@ class CampaignContext:
     looked_at: LookedAt | None = None
     standstills: Sequence[Standstill] = ()
     diverges_in: Sequence[str] = ()
+    unlogged: Mapping[str, float] = field(default_factory=dict)
 
 
 def assemble_diagnosis(
@@ -81,7 +83,7 @@ def assemble_diagnosis(
     groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
     error = _summarise_errors(context.ladder, len(diagnosis.selected))
-    differ = error.times_floor is not None and diagnosis.verdict != "unexplained"
+    differ = error.times_floor(diagnosis.verdict) is not None
     return Diagnosis(
         verdict=diagnosis.verdict,
         selected=tuple(map(_describe_selected, diagnosis.selected)),
@@ -115,6 +117,7 @@ def assemble_diagnosis(
         runs_away_in=tuple(context.diverges_in),
         standstills=tuple(context.standstills),
         disturbed_ends=tuple(diagnosis.disturbed_ends),
+        unlogged_s={run: round(seconds, 1) for run, seconds in context.unlogged.items()},
         thrusters=diagnosis.base.vehicle.thruster_names,
         recordings=dict(context.recordings),
         base=describe_model(diagnosis.base),

@@ -2,7 +2,7 @@
 
 from typing import Sequence
 
-from rovsim.core.rounding import rounded_or_none
+from rovsim.core.rounding import rounded, rounded_or_none
 from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.equations.describe import describe_force, describe_law
 from rovsim.diagnosis.fitted_values import describe_values
@@ -19,7 +19,7 @@ TOO_LITTLE_DATA_HINT = "There is too little data to say what is left."
 NOISE_HINT = "Nothing is left but noise."
 TEST_RUNS_DIFFER_HINT = (
     "Nothing is left but noise in the train runs. The test runs differ from them: there the error "
-    "is {:.2g} times the noise floor."
+    "is {:g} times the noise floor."
 )
 
 
@@ -33,7 +33,8 @@ def describe_unexplained(diagnosis: TrainDiagnosis, error: DiagnosisErrors) -> U
     if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
     if diagnosis.verdict != "unexplained":
-        hint = TEST_RUNS_DIFFER_HINT.format(error.times_floor) if error.times_floor else NOISE_HINT
+        times = error.times_floor(diagnosis.verdict)
+        hint = TEST_RUNS_DIFFER_HINT.format(rounded(times, 2)) if times else NOISE_HINT
         return Unexplained(fraction=0.0, significant=False, hint=hint)
     share = diagnosis.structures[0].share if diagnosis.structures else None
     doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")

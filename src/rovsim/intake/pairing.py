@@ -214,7 +214,7 @@ def _decided(motion: MotionFile, logs: list[CommandFile], scores: Array, clues: 
         return Pair(motion, logs[content], reason + agree)
     if content is not None and where is not None:
         explanation = (
-            f"{why} {logs[where].path.name}, but the motion is that of "
+            f"{why}: {logs[where].path.name}, but the motion is that of "
             f"{logs[content].path.name} (correlation {scores[content]:.2f} against "
             f"{scores[where]:.2f})"
         )

@@ -130,10 +130,13 @@ class DiagnosisErrors(Section):
     with_effects: float | None
     noise_floor: float | None
 
-    @property
-    def times_floor(self) -> float | None:
-        """How many times the noise floor the error with effects is; None if they are near it."""
-        if not self.with_effects or not self.noise_floor:
+    def times_floor(self, verdict: Verdict) -> float | None:
+        """How many times the noise floor the error with effects is, where test runs surely differ.
+
+        None where it is near the floor, or where the train runs leave more than noise, too.
+        """
+        nothing_left = verdict in ("adequate", "missing_effects")
+        if not (nothing_left and self.with_effects and self.noise_floor):
             return None
         ratio = self.with_effects / self.noise_floor
         return ratio if ratio > MIN_TIMES_FLOOR else None
@@ -196,15 +199,13 @@ class Answer(Section):
 class DisturbedEnd(Section):
     """The beginning or the end of a run leaves far more than the rest: moved by hand, lifted?
 
-    From when to when, s; how many `times` as much (of variance); `use`: what is left of the run, as
-    campaign.yaml takes it.
+    From when to when, s; how many `times` as much (of variance).
     """
 
     run: str
     from_s: float
     to_s: float
     times: float
-    use: tuple[tuple[float, float], ...]
 
 
 class Diagnosis(Result):
@@ -215,7 +216,8 @@ class Diagnosis(Result):
     `not_observable` effects that the runs could not show, were they there; `not_followed_from_s` s
     from which on the model runs away from a train run, by its id; `runs_away_in`: test runs in
     which it does so within 2 s, and has no error; `standstills` of train runs, and their
-    `disturbed_ends` where these hold most of what is unexplained; `thrusters` their names in the
+    `disturbed_ends` where these hold most of what is unexplained; `unlogged_s` of train runs that
+    were not used, by run, as nobody knows what was commanded; `thrusters` their names in the
     vehicle file: the parameter `t1` of an effect is of the first. `recordings` that it is of: the
     start of each file's SHA-256, by its path from the campaign; empty in files of earlier versions.
     """
@@ -246,6 +248,7 @@ class Diagnosis(Result):
     runs_away_in: tuple[str, ...] = ()
     standstills: tuple[Standstill, ...] = ()
     disturbed_ends: tuple[DisturbedEnd, ...] = ()
+    unlogged_s: dict[str, float] = Field(default_factory=dict)
     thrusters: tuple[str, ...] = ()
     recordings: dict[str, str] = Field(default_factory=dict)
     base: dict[str, JsonValue]

@@ -162,7 +162,7 @@ def override(word: str, sweep: bool = False) -> str:
         return f"{key}=[{','.join(quoted(item) for item in listed(value[1:-1]))}]"
     if key in SWEPT_PATH_KEYS and not os.path.exists(value):
         paths = listed(value)
-        if any(os.path.exists(path) or path in BUILT_IN for path in paths):
+        if not paths or any(os.path.exists(path) or path in BUILT_IN for path in paths):
             if len(paths) > 1 and not sweep:
                 raise _several(key, value)
             return f"{key}={','.join(map(quoted, paths)) or 'null'}"

@@ -45,7 +45,8 @@ class _Power(NamedTuple):
         energy, count = (
             np.bincount(member, x.sum(axis=0)) for x in (np.square(white) * read, read * 1.0)
         )
-        return _Power(run, BLOCK_SECONDS * block, energy / np.maximum(count, 1.0))
+        known = count > 0.0
+        return _Power(run, BLOCK_SECONDS * block[known], energy[known] / count[known])
 
 
 def find_disturbed_ends(fit: Fit, bank: FilterBank) -> tuple[DisturbedEnd, ...]:
@@ -57,7 +58,10 @@ def find_disturbed_ends(fit: Fit, bank: FilterBank) -> tuple[DisturbedEnd, ...]:
     """
     white = bank.whiten(fit.linearised.e, fit.noise)
     parts = split_by_run(white, bank.runs)
-    powers = [_Power.of(*pair) for pair in zip(bank.runs, parts, strict=True)]
+    each = (_Power.of(*pair) for pair in zip(bank.runs, parts, strict=True))
+    powers = [one for one in each if len(one.power)]
+    if not powers:
+        return ()
     usual = float(np.median(np.concatenate([one.power for one in powers])))
     ends, inside, total = [], 0.0, 0.0
     for one in powers:
@@ -99,15 +103,12 @@ def _split(power: Array) -> int:
 def _describe(one: _Power, at: slice, usual: float) -> DisturbedEnd:
     """Report an end in the times of the recording."""
     run, motion = one.run, one.run.motion
-    start, end = float(motion.time[0]), float(motion.end)
     first = at.start == 0
-    border = float(one.begins[at.stop if first else at.start]) + float(run.edges[0])
-    used = (border, end) if first else (start, border)
-    from_s, to_s = (start, border) if first else (border, end)
+    border = float(one.begins[at.stop if first else at.start] + run.edges[0])
+    begin, end = (motion.time[0], border) if first else (border, motion.end)
     return DisturbedEnd(
         run=motion.run.id,
-        from_s=round(from_s, 2),
-        to_s=round(to_s, 2),
+        from_s=round(float(begin), 2),
+        to_s=round(float(end), 2),
         times=rounded(float(np.mean(one.power[at])) / usual),
-        use=((round(used[0], 2), round(used[1], 2)),),
     )

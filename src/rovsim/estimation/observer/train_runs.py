@@ -7,9 +7,9 @@ other) about forces linear in velocity, its square, acceleration, attitude, plac
 in the run. Which runs they come from does not matter.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Iterator, NamedTuple, Sequence
+from typing import Iterator, Mapping, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -22,6 +22,7 @@ from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.measurement.quality.unlogged_commands import find_unlogged
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.chain import Stage
+from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.results.diagnosis import LookedAt
 from rovsim.simulation.settings import ReplaySettings
@@ -36,11 +37,15 @@ MIN_INFORMATION_SHARE = 1e-6  # of what all parts tell: a direction that hardly 
 
 @dataclass(frozen=True, eq=False)
 class TrainRuns:
-    """Train runs, or parts of them, of `seconds` in all; those of the campaign last `of` s."""
+    """Train runs, or parts of them, of `seconds` in all; those of the campaign last `of` s.
+
+    `unlogged`: by run id, how many s are not used as nobody knows what was commanded.
+    """
 
     runs: tuple[ObservedRun, ...]
     seconds: float
     of: float
+    unlogged: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def looked_at(self) -> LookedAt:
@@ -68,7 +73,13 @@ def prepare_train(
     most: float = MAX_TRAIN_SECONDS,
 ) -> TrainRuns:
     """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
-    motions = {name: _where_logged(runs.motions[name]) for name in runs.of("train")}
+    whole = {name: runs.motions[name] for name in runs.of("train")}
+    motions = {name: _where_logged(motion) for name, motion in whole.items()}
+    unlogged = {
+        name: float(np.sum(motion.usable & ~motions[name].usable)) * time_step(motion.time)
+        for name, motion in whole.items()
+        if motions[name] is not motion
+    }
     parts = [part for motion in motions.values() for part in _divide(motion)]
     total = sum(part.lasts for part in parts)
     places = [(name, slice(None)) for name in runs.of("train")]
@@ -80,7 +91,7 @@ def prepare_train(
         _prepare(runs.stages[name], motions[name], at, settings, catalogue, free, drives)
         for name, at in places
     ]
-    return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total)
+    return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total, unlogged)
 
 
 def prepare_test(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.robust import usual_range
-from rovsim.core.rotations import half_turn, matrix, multiply
+from rovsim.core.rotations import angle_between, half_turn, matrix, multiply
 from rovsim.core.signs import minus
 from rovsim.dynamics.vehicle import Vehicle
 from rovsim.evaluation.commanded_motion.clocks import MIN_PEAK_LEAD, tell_following
@@ -221,12 +221,12 @@ def _tiny_path(recording: Recording) -> Iterator[str]:
         recording.attitude[recording.tracked],
     )
     low, high = usual_range(position)
-    angle = 2.0 * np.arccos(np.clip(np.abs(attitude @ attitude[0]), 0.0, 1.0))
+    angle = angle_between(attitude, attitude[0])
     length, turned = float(np.max(high - low)), float(np.ptp(usual_range(angle)))
     if length < TINY_PATH_M and turned > TURNED_RAD:
         yield (
             f"The vehicle turns by {turned:.1f} rad within {1e3 * length:.2g} mm: its positions "
-            "may be in metres, where the format has millimetres. Export them again."
+            "seem to be a thousand times too small, as metres are where millimetres should be."
         )
 
 

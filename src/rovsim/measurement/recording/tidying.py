@@ -65,9 +65,11 @@ def tidy_export(export: Export, path: Path) -> Export:
 def _too_few(export: Export, path: Path) -> BadInput:
     lines = max(len(export.time), *(len(c.time) for c in export.channels.values()), 0)
     return BadInput(
-        f"no frames ({lines} lines)",
+        f"no frames, and no channel with two samples ({lines} lines)"
+        if export.channels
+        else f"no frames ({lines} lines)",
         where=path,
-        expected="a run with at least two frames",
+        expected="a run with at least two frames, or two samples of a channel",
         remedy="Export the run again, or take it out of 'runs'.",
     )
 

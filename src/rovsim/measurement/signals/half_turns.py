@@ -9,13 +9,14 @@ from rovsim.core import rotations
 from rovsim.core.robust import LONG_STEP
 
 # s: spans over which the turns of a run are measured. In the shortest, 4 mrad of noise per axis,
-# much for a camera, makes a tenth of a radian per second; the longest is a long loss.
+# much for a camera, makes a tenth of a radian per second; after a loss of more than the longest
+# a vehicle may have turned round.
 SPANS_S = (0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 SEEN_SHARE = 0.5  # of the frames that begin a span without a loss, or that span tells too little
 BRIDGED_S = 0.2  # a loss within a span is shorter: half a turn in it is a jump for the gate
 USUAL_PERCENT = 99.9  # of the turns in a run; the rest may be jumps that were not cut
 RATE_MARGIN = 1.5  # a loss may hide a turn that is half as fast again as those that were seen
-# rad/s: a vehicle that hardly turned while it was seen may turn while it is lost, half round in 6 s
+# rad/s: a vehicle that hardly turned while it was seen may turn while it is lost
 MIN_RATE = 0.5
 AS_IS, UNKNOWN = 0, -1  # labels; 1, 2, 3: half a turn about body x, y, z; XOR composes two
 
@@ -27,8 +28,9 @@ def find_half_turned(
 
     Each stretch without dropout or jump is compared with the one before. If the turn between them
     is beyond what this run usually turns by in that time, and within it after half a turn about
-    one axis, one of the two is turned. After a loss in which more than one of these is possible,
-    frames are judged by themselves. Of all stretches that are linked so, most frames are right.
+    one axis, one of the two is turned. After a loss in which more than one of these is possible, or
+    of more than a second, frames are judged by themselves: some vehicles only turn at the ends of
+    a tank, where no camera sees them. Of all stretches that are linked so, most frames are right.
 
     Args:
         time: (n,) s.
@@ -40,6 +42,8 @@ def find_half_turned(
     Returns:
         Mask (n,), True for the frames that are half a turn off.
     """
+    if len(time) < 2:
+        return np.zeros(len(time), bool)
     elapsed = np.maximum(np.diff(time), step)  # jittered stamps can be closer than exposures
     jumps = rotations.angle_between(attitude[:-1], attitude[1:]) > max_rate * elapsed + tolerance
     losses = elapsed > max(BRIDGED_S, LONG_STEP * step)
@@ -134,8 +138,11 @@ class _Stretches:
         label[0], last = AS_IS, 0
         for j in range(1, len(start)):
             elapsed = max(self.time[self.starts[j]] - self.time[self.ends[last]], step)
-            rate = max(usual[np.searchsorted(SPANS_S[1:], elapsed)], at_end[last], at_start[j])
-            reach = min(rate, usual[0]) * elapsed + tolerance
+            reach = np.inf
+            if elapsed <= SPANS_S[-1]:
+                span = np.searchsorted(SPANS_S[1:], elapsed)
+                rate = max(usual[span], at_end[last], at_start[j])
+                reach = min(rate, usual[0]) * elapsed + tolerance
             possible = np.flatnonzero(rotations.angle_between(turned[last], start[j]) <= reach)
             if len(possible):
                 sure = len(possible) == 1

@@ -12,6 +12,7 @@ def shown_sentences(diagnosis: Diagnosis) -> list[str]:
     return [
         *held_sentences(diagnosis.standstills),
         *map(_say_end, diagnosis.disturbed_ends),
+        *unlogged_sentences(diagnosis.unlogged_s),
         *still_sentences(diagnosis.not_excited),
         *idle_sentences(diagnosis.not_commanded),
         *silent_sentences(diagnosis),
@@ -36,13 +37,22 @@ def _say_standstill(one: Standstill) -> str:
 
 def _say_end(one: DisturbedEnd) -> str:
     """Say that an end of a run leaves far more than the rest: hands may have moved the vehicle."""
-    use = str([list(span) for span in one.use])
     return (
         f"Run {one.run} leaves {significant(one.times, 2)} times as much from {one.from_s:.1f} to "
         f"{one.to_s:.1f} s as runs do elsewhere (variance), and such ends are most of what is "
-        "unexplained. If the vehicle was moved by hand, lifted or aground, leave that out: "
-        f"`use: {use}` in this run of campaign.yaml."
+        "unexplained. If the vehicle was moved by hand, lifted or aground, leave that out with "
+        "`use` in this run of campaign.yaml."
     )
+
+
+def unlogged_sentences(unlogged: Mapping[str, float]) -> list[str]:
+    """Say how many s of train runs were left out, as nobody knows what was commanded."""
+    if not unlogged:
+        return []
+    parts = listed(f"{seconds:.1f} s of {run}" for run, seconds in unlogged.items())
+    return [
+        f"Not used, as the log of commands has a hole there, begins later or ends earlier: {parts}."
+    ]
 
 
 def still_sentences(axes: Sequence[str]) -> list[str]:

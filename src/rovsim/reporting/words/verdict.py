@@ -207,9 +207,9 @@ def error_sentence(diagnosis: Diagnosis) -> str:
         text += f" {FLOOR_COUNTS_ALL.format(significant(floor))}"
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
-        if error.times_floor:
+        if times := error.times_floor(diagnosis.verdict):
             text += (
-                f" The error is {error.times_floor:.2g} times that, although nothing but noise is "
+                f" The error is {significant(times, 2)} times that, although nothing but noise is "
                 "left in the train runs: the test runs differ from them."
             )
     return f"{text} {ERROR_MEANING}."
