@@ -33,7 +33,8 @@ UPSIDE_DOWN_COSINE = -0.5  # cosine of the tilt: 120 degrees; beyond, a vehicle 
 # m beyond a wall, share of the frames: more than a wrong calibration
 WALL_TOLERANCE_M, MAX_OUTSIDE_SHARE = 0.5, 0.5
 REMEDY_OF_UNLOGGED = (
-    "A diagnosis leaves that part of train runs out, errors do not: use 'use', or complete the log."
+    "A diagnosis does not use that part of train runs, but errors count it: leave it out with "
+    "'use', or complete the log."
 )
 # m: a path of up to 20 m in metres, where the file should have mm; rad: a vehicle that is driven
 TINY_PATH_M, TURNED_RAD = 0.02, 0.5
