@@ -10,6 +10,7 @@ from recordings import (
     write_lines,
     write_run,
 )
+from rovsim.apps.cli.main import main
 from rovsim.core.errors import BadInput
 from rovsim.measurement.loading import load_campaign
 from rovsim.measurement.quality.usability import usable_reason
@@ -193,6 +194,19 @@ def test_a_run_that_never_shows_the_body_is_one_that_cannot_be_used(tmp_path):
     write_lines(poses, unseen(poses.read_text().splitlines()))
     recording, _ = read_run(load_campaign(folder), "one")
     assert usable_reason(recording) == "too short: the body was seen for 0.00 s, 2 needed"
+
+
+def test_init_leaves_out_a_file_that_never_shows_the_body(tmp_path, capsys):
+    folder = write_run(tmp_path / "raw")
+    (folder / "campaign.yaml").unlink()
+    lost = folder / "lost.tsv"
+    write_lines(lost, unseen((folder / "poses.tsv").read_text().splitlines()))
+    main(["init", str(folder), f"out={tmp_path / 'out'}"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert "lost.tsv is left out: no frame in which the body was found" in said
+    with pytest.raises(SystemExit):
+        main(["init", str(lost), f"out={tmp_path / 'lost'}"])
+    assert "no frame in which the body was found" in capsys.readouterr().err.replace("\n", " ")
 
 
 def test_a_single_command_holds_however_early_it_was_logged(tmp_path):

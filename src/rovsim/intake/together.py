@@ -9,7 +9,6 @@ from rovsim.core.errors import BadInput
 from rovsim.intake.names import sensor_key, without_sensor
 from rovsim.intake.survey import Contents, Track
 from rovsim.measurement.recording.joined import FULL_POSES, POSE_CHANNELS, join, list_held, span_of
-from rovsim.measurement.recording.tidying import tidy_export
 
 JOINED_FORMAT = "csv"  # other formats hold all sensors of a run in one file
 MIN_OVERLAP_SHARE = 0.5  # of the shorter file that lies beside another of its run
@@ -135,7 +134,7 @@ def _joined(files: Sequence[Contents], reason: str) -> Contents:
     """
     main, *rest = sorted(files, key=lambda contents: not contents.drives)
     export = join({contents.named: contents.tracks[0].export for contents in (main, *rest)})
-    track = Track("", tidy_export(export, main.named))
+    track = Track.of("", export, main.named)
     notes: tuple[str, ...] = (f"guess: {_names(files)} are one run: {reason}",)
     notes += tuple(note for contents in files for note in contents.notes)
     return replace(main, tracks=(track,), notes=notes, beside=tuple(rest))

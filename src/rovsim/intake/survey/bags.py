@@ -15,7 +15,6 @@ from rovsim.measurement.recording.formats.rosbag2.topic_names import (
     short_type,
     tell_of_unread,
 )
-from rovsim.measurement.recording.tidying import tidy_export
 
 # Key of `mocap.topics` -> message types, regex of topics preferred, regex of topics never taken.
 CHANNEL_TOPICS = {
@@ -109,7 +108,7 @@ def _tracks(path: Path, topics: list[str], notes: list[str]) -> Iterator[Track]:
     for topic in topics:
         mocap = Mocap(format="rosbag2", body=topic, world_axes="z_up", body_axes="flu")
         try:
-            yield Track(topic, tidy_export(read_bag(path, mocap), path))
+            yield Track.of(topic, read_bag(path, mocap), path)
         except BadInput as error:
             notes.append(f"{topic} is not read: {error.found}.")
 
@@ -118,6 +117,6 @@ def _of_channels(path: Path, beside: dict[str, str], notes: list[str]) -> Iterat
     """Read the motion of a bag without poses from its sensors, by key of `mocap.topics`."""
     mocap = Mocap(format="rosbag2", world_axes="z_up", body_axes="flu", topics=Topics(**beside))
     try:
-        yield Track("", tidy_export(read_bag(path, mocap), path), beside)
+        yield Track.of("", read_bag(path, mocap), path, beside)
     except BadInput as error:
         notes.append(f"{', '.join(beside.values())}: {error.found}.")

@@ -4,9 +4,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Mapping
 
+from rovsim.core.errors import BadInput
 from rovsim.intake.survey.sizes import Key, Unit
 from rovsim.measurement.recording.candidates import CommandCandidate
 from rovsim.measurement.recording.exports import Export
+from rovsim.measurement.recording.tidying import tidy_export
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +24,26 @@ class Track:
     body: str
     export: Export
     topics: Mapping[str, str] = field(default_factory=dict)
+
+    @staticmethod
+    def of(
+        body: str, export: Export, path: Path, topics: Mapping[str, str] | None = None
+    ) -> "Track":
+        """Sort what was read from a file; `body` and `topics` as above.
+
+        Raises:
+            BadInput: nothing was measured, or the body was never found.
+            SeveralRuns: the times start again.
+        """
+        tidied = tidy_export(export, path)
+        if not tidied.tracked.any() and not tidied.channels:
+            raise BadInput(
+                f"no frame in which the body was found ({len(export.time)} lines)",
+                where=path,
+                expected="a run with the body in sight",
+                remedy="Export the run again, or take it out of 'runs'.",
+            )
+        return Track(body, tidied, topics or {})
 
     @property
     def posed(self) -> bool:

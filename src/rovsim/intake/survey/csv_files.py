@@ -19,7 +19,6 @@ from rovsim.measurement.recording.formats.csv import KNOWN_COLUMNS, read_csv
 from rovsim.measurement.recording.one_run import check_one_run
 from rovsim.measurement.recording.tables.delimited import Lines, csv_lines
 from rovsim.measurement.recording.tables.named_columns import TIME_COLUMN, no_time
-from rovsim.measurement.recording.tidying import tidy_export
 
 EXPECTED_COMMANDS = "pulses of 800 to 2200 us, shares from -1 to 1, or columns named after axes"
 
@@ -110,7 +109,7 @@ def _some(names: list[str]) -> str:
 
 def _track(path: Path) -> Track:
     mocap = Mocap(format="csv", world_axes="ned", body_axes="frd")
-    return Track("", tidy_export(read_csv(path, mocap), path))
+    return Track.of("", read_csv(path, mocap), path)
 
 
 def _unknown(others: TimedColumns) -> str:

@@ -13,7 +13,6 @@ from rovsim.intake.survey.sniff import sniff
 from rovsim.measurement.campaign_file import Mocap
 from rovsim.measurement.recording.candidates import FoundCommands
 from rovsim.measurement.recording.readers import MocapReader, command_readers, mocap_readers
-from rovsim.measurement.recording.tidying import tidy_export
 
 
 def look(path: Path, scratch: Path, units: Mapping[Key, Unit] = MappingProxyType({})) -> Contents:
@@ -89,7 +88,7 @@ def _tracks(path: Path, reader: MocapReader, bodies: Sequence[str]) -> Iterator[
         # signs, and the axes y_up and fur of Motive, are applied later: these are the file's own
         mocap = Mocap(format=reader.name, body=body, world_axes=world_axes, body_axes=body_axes)
         try:
-            yield Track(body, tidy_export(reader.read(path, mocap), path))
+            yield Track.of(body, reader.read(path, mocap), path)
         except BadInput:
             if len(bodies) == 1:
                 raise
