@@ -21,7 +21,6 @@ from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
 from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.measurement.quality.unlogged_commands import find_unlogged
 from rovsim.measurement.runs import Runs
-from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion, Poses
 from rovsim.results.diagnosis import LookedAt
@@ -73,24 +72,22 @@ def prepare_train(
     most: float = MAX_TRAIN_SECONDS,
 ) -> TrainRuns:
     """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
-    whole = {name: runs.motions[name] for name in runs.of("train")}
-    motions = {name: _where_logged(motion) for name, motion in whole.items()}
-    unlogged = {
-        name: float(np.sum(motion.usable & ~motions[name].usable)) * time_step(motion.time)
-        for name, motion in whole.items()
-        if motions[name] is not motion
-    }
-    parts = [part for motion in motions.values() for part in _divide(motion)]
+    parts: list[_Part] = []
+    unlogged: dict[str, float] = {}
+    for name in runs.of("train"):  # one by one: memory may not hold all motions
+        motion = runs.motions[name]
+        logged = _where_logged(motion)
+        parts += _divide(logged)
+        if logged is not motion:
+            samples = int(np.sum(motion.usable & ~logged.usable))
+            unlogged[name] = samples * time_step(motion.time)
     total = sum(part.lasts for part in parts)
     places = [(name, slice(None)) for name in runs.of("train")]
     if total > most:
         parts = _choose(parts, most)
         places = [(part.run, part.at) for part in parts]
     drives: Recent = Recent(DRIVE_CACHE_BYTES)
-    observed = [
-        _prepare(runs.stages[name], motions[name], at, settings, catalogue, free, drives)
-        for name, at in places
-    ]
+    observed = [_prepare(runs, *place, settings, catalogue, free, drives) for place in places]
     return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total, unlogged)
 
 
@@ -113,14 +110,15 @@ def _where_logged(motion: Motion) -> Motion:
 
 
 def _prepare(
-    stage: Stage,
-    motion: Motion,
+    runs: Runs,
+    name: str,
     at: slice,
     settings: ReplaySettings,
     catalogue: Catalogue,
     free: Array,
     kept: Recent,
 ) -> ObservedRun:
+    stage, motion = runs.stages[name], _where_logged(runs.motions[name])
     if at != slice(None):
         begin = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
         span = slice(begin, at.stop)
