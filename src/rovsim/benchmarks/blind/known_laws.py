@@ -20,10 +20,9 @@ from rovsim.benchmarks.blind.laws import (
     TurningSway,
     Whisker,
 )
-from rovsim.benchmarks.blind.laws_of_thrusters import Slew, SpinUp
+from rovsim.benchmarks.blind.laws_of_thrusters import Backlash, Slew, SpinUp
 from rovsim.benchmarks.blind.outside import (
     OUTSIDE_EFFECTS,
-    Backlash,
     Compression,
     Jet,
     Squat,

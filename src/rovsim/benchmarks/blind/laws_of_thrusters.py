@@ -11,6 +11,26 @@ from rovsim.dynamics.effects.base import Parameter, ThrusterDynamics
 SPIN_UP_PARTS = 20  # of a step, in which a speed hardly changes
 
 
+class Backlash(ThrusterDynamics):
+    """Hysteresis of the thrusters: the force follows only once it has to move by a whole band."""
+
+    id = "backlash"
+    listed = False
+    equation = r"F \leftarrow \min(\max(F, F_\text{static} - w), F_\text{static} + w)"
+    neglects = "a band that grows with the force"
+    source = "play operator (Krasnosel'skii & Pokrovskii 1989)"
+    parameters = (Parameter("width", "N", "w", low=0.0, scale=2.0),)
+
+    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
+        """Apply the play operator step by step."""
+        F = force[0] if state is None else state
+        out, w = np.empty_like(force), self["width"]
+        for row, static in zip(out, force, strict=True):
+            F = np.clip(F, static - w, static + w)
+            row[:] = F
+        return out, F
+
+
 class Slew(ThrusterDynamics):
     """Speed controllers that ramp the thrust: it changes at a limited rate."""
 

@@ -7,10 +7,10 @@ to them is that something is left unexplained.
 from math import cos, exp, floor, pi, sin, tanh
 
 import numpy as np
-from numpy import ndarray as Array
 
+from rovsim.benchmarks.blind.laws_of_thrusters import Backlash
 from rovsim.core.rounding import rounded
-from rovsim.dynamics.effects.base import Effect, Parameter, ThrusterDynamics, Wrench
+from rovsim.dynamics.effects.base import Effect, Parameter, Wrench
 
 
 class SquareWave(Wrench):
@@ -193,26 +193,6 @@ class Compression(Wrench):
         """A weight proportional to depth, zero at the depth it was trimmed at."""
         F = p.stiffness * (at.position[2] - at.tank[2][0] - 1.5)
         return F * at.R[2][0], F * at.R[2][1], F * at.R[2][2], 0.0, 0.0, 0.0
-
-
-class Backlash(ThrusterDynamics):
-    """Hysteresis of the thrusters: the force follows only once it has to move by a whole band."""
-
-    id = "backlash"
-    listed = False
-    equation = r"F \leftarrow \min(\max(F, F_\text{static} - w), F_\text{static} + w)"
-    neglects = "a band that grows with the force"
-    source = "play operator (Krasnosel'skii & Pokrovskii 1989)"
-    parameters = (Parameter("width", "N", "w", low=0.0, scale=2.0),)
-
-    def respond(self, force: Array, h: float, state: Array | None) -> tuple[Array, Array]:
-        """Apply the play operator step by step, as a reference for that of the catalogue."""
-        F = force[0] if state is None else state
-        out, w = np.empty_like(force), self["width"]
-        for row, static in zip(out, force, strict=True):
-            F = np.clip(F, static - w, static + w)
-            row[:] = F
-        return out, F
 
 
 OUTSIDE_EFFECTS: dict[str, type[Effect]] = {
