@@ -98,7 +98,14 @@ def fit_memory_laws(
         if not without_law.is_finite:
             continue
         laws = [(form, without_law.hypothesis.with_term(law)) for form, law in kind.begin(moving)]
-        yield fits.find_likeliest(dict(enumerate(laws)), without_law)
+        acting = (x for x in laws if _changes_anything(fits, *x, without_law))
+        yield fits.find_likeliest(dict(enumerate(acting)), without_law)
+
+
+def _changes_anything(fits: LawFits, form: WithMemory, h: Hypothesis, without_law: Fit) -> bool:
+    """Whether a law changes any innovation: none of thrusters does where loops drive all axes."""
+    e = fits.workspace.bank.innovations(form.follow(h).model)
+    return not all(map(np.array_equal, e, without_law.linearised.e))
 
 
 def _fit_thrust_law(fits: LawFits, start: Hypothesis, grown: FittedLaw | None) -> FittedLaw | None:
