@@ -1,11 +1,17 @@
-"""Pairs of many runs: as they are while memory holds them, spread over all runs beyond."""
+"""Pairs of runs that can be used: as they are while memory holds them, spread over all beyond."""
+
+from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests import worlds
 
+from rovsim.core.errors import BadInput
+from rovsim.core.run import RunInfo
 from rovsim.dynamics.learned.settings import FeatureSettings
-from rovsim.learning.pairs import Gathered
+from rovsim.learning.pairs import Gathered, training_runs
 from rovsim.simulation.samples import Samples
 
 FEATURES = FeatureSettings(blocks=("velocity",))
@@ -40,3 +46,32 @@ def test_the_rows_kept_are_spread_over_all_runs():
         gathered.take(str(k), samples(100, 100 * k))
     shares = np.bincount((gathered.pairs[0][:, 0] // 100).astype(int), minlength=20)
     assert shares.min() == shares.max() == 13
+
+
+def flown(name, usable=True):
+    """A train run of 20 s at 6dof, whose commands rise from line to line, at 50 Hz."""
+    rising = np.repeat(np.linspace(0.2, 0.6, 1000)[:, None], 8, axis=1)
+    run = worlds.motion(rising, seconds=20.0)
+    return replace(run, run=RunInfo(name, "6dof", "train"), usable=np.full(len(run.time), usable))
+
+
+def test_runs_of_which_nothing_can_be_used_are_left_out():
+    kept = training_runs([flown("a", usable=False), flown("b")], "all")
+    assert [run.run.id for run in kept] == ["b"]
+
+
+def test_without_a_run_that_can_be_used_each_is_named_with_the_reason():
+    with pytest.raises(BadInput, match=r"a \(6dof, train, nothing of it can be used\)"):
+        list(training_runs([flown("a", usable=False)], "6dof"))
+
+
+def test_nothing_is_learned_where_nobody_knows_what_was_commanded():
+    run = flown("a")
+    time, value = run.commands.time, run.commands.value
+    logged = (time < 8.0) | (time > 11.0)
+    commands = replace(run.commands, time=time[logged], value=value[logged])
+    (learned,) = training_runs([replace(run, commands=commands)], "6dof")
+    unknown = (run.time > 8.1) & (run.time < 11.5)
+    surely_known = (run.time < 7.9) | (run.time > 11.6)
+    assert not learned.usable[unknown].any()
+    assert learned.usable[surely_known].all()

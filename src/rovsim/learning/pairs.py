@@ -11,6 +11,7 @@ from rovsim.core.errors import BadInput
 from rovsim.dynamics.learned.settings import FeatureSettings
 from rovsim.dynamics.model import Model
 from rovsim.learning.learner import spread_rows
+from rovsim.measurement.quality.unlogged_commands import keep_logged
 from rovsim.measurement.signals.motion import Motion
 from rovsim.simulation.samples import Samples, sample_run
 from rovsim.simulation.settings import SimulationSettings
@@ -37,25 +38,30 @@ def _refuse_parts(motion: Motion) -> None:
 
 
 def training_runs(motions: Iterable[Motion], control: str) -> Iterator[Motion]:
-    """Yield the train runs with this control, one after the other.
+    """Yield the train runs with this control of which something can be used, one after the other.
+
+    Stretches of which nobody knows what was commanded are not usable in them.
 
     Raises:
         BadInput: there is no such run, or not all axes of one were measured.
     """
     descriptions, empty = [], True
-    for motion in motions:
-        descriptions.append(f"{motion.run.id} ({motion.run.control}, {motion.run.split})")
-        if motion.run.split == "train" and flown_with(control, motion.run):
+    for motion in map(keep_logged, motions):
+        facts = [motion.run.control, motion.run.split]
+        facts += [] if motion.usable.any() else ["nothing of it can be used"]
+        descriptions.append(f"{motion.run.id} ({', '.join(facts)})")
+        wanted = motion.run.split == "train" and flown_with(control, motion.run)
+        if wanted and motion.usable.any():
             _refuse_parts(motion)
             empty = False
             yield motion
     if empty:
         raise BadInput(
-            f"no train run with control {control}",
+            f"no train run with control {control} that can be used",
             where="campaign.yaml",
             expected="at least one run with that control and split: train",
             remedy=f"Its runs are {', '.join(descriptions)}. "
-            "Train with the other control, or record such a run.",
+            "Train with the other control (in a study: study.controls), or record such a run.",
         )
 
 

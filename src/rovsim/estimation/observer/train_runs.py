@@ -19,7 +19,7 @@ from rovsim.core.rotations import unrotate
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
 from rovsim.estimation.settings import MAX_TRAIN_SECONDS
-from rovsim.measurement.quality.unlogged_commands import find_unlogged
+from rovsim.measurement.quality.unlogged_commands import MEMORY_SECONDS, keep_logged
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.motion import Motion, Poses
@@ -28,7 +28,6 @@ from rovsim.simulation.settings import ReplaySettings
 
 DRIVE_CACHE_BYTES = 1 << 29  # of all runs together: fifty of each in four minutes of runs
 PART_SECONDS = 60.0  # a fifth of it is kept apart for validation, which takes windows of 2 s
-MEMORY_SECONDS = 0.5  # for which propellers remember what was commanded
 LEAD_SECONDS = 10.0 * MEMORY_SECONDS  # of commands before a part
 SAMPLE_STEP_SECONDS = 0.2  # of the samples that parts are compared by: half a period of 2.5 Hz
 MIN_INFORMATION_SHARE = 1e-6  # of what all parts tell: a direction that hardly any of them shows
@@ -76,7 +75,7 @@ def prepare_train(
     unlogged: dict[str, float] = {}
     for name in runs.of("train"):  # one by one: memory may not hold all motions
         motion = runs.motions[name]
-        logged = _where_logged(motion)
+        logged = keep_logged(motion)
         parts += _divide(logged)
         if logged is not motion:
             samples = int(np.sum(motion.usable & ~logged.usable))
@@ -99,16 +98,6 @@ def prepare_test(
         yield prepare_run(runs.stages[name], runs.motions[name], settings, catalogue, free)
 
 
-def _where_logged(motion: Motion) -> Motion:
-    """The motion of a run, of which only that is usable whose commands are known."""
-    time = motion.time
-    unlogged = find_unlogged(motion.commands, float(time[0]), float(time[-1]))
-    if not len(unlogged):
-        return motion
-    known = [(time < begin) | (time > end + MEMORY_SECONDS) for begin, end in unlogged]
-    return replace(motion, usable=motion.usable & np.all(known, axis=0))
-
-
 def _prepare(
     runs: Runs,
     name: str,
@@ -118,7 +107,7 @@ def _prepare(
     free: Array,
     kept: Recent,
 ) -> ObservedRun:
-    stage, motion = runs.stages[name], _where_logged(runs.motions[name])
+    stage, motion = runs.stages[name], keep_logged(runs.motions[name])
     if at != slice(None):
         begin = int(np.searchsorted(motion.time, motion.time[at.start] - LEAD_SECONDS))
         span = slice(begin, at.stop)

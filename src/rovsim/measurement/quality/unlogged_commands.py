@@ -5,11 +5,16 @@ second, and goes on far from where it was, lines were lost. The line before such
 guess than the line after it.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.robust import LONG_STEP
 from rovsim.core.run import Commands
+from rovsim.measurement.signals.motion import Motion
+
+MEMORY_SECONDS = 0.5  # for which propellers remember what was commanded
 
 # s, and times the usual step of a log, or the longest of an unsteady one, by which it begins too
 # late or ends too early
@@ -53,6 +58,16 @@ def find_unlogged(commands: Commands, begin: float, end: float) -> Array:
     if end - time[-1] > allowed and acts[-1]:
         spans.append((time[-1], end))
     return np.reshape(spans, (-1, 2))
+
+
+def keep_logged(motion: Motion) -> Motion:
+    """The motion of a run, of which only that is usable whose commands are known."""
+    time = motion.time
+    unlogged = find_unlogged(motion.commands, float(time[0]), float(time[-1]))
+    if not len(unlogged):
+        return motion
+    known = [(time < begin) | (time > end + MEMORY_SECONDS) for begin, end in unlogged]
+    return replace(motion, usable=motion.usable & np.all(known, axis=0))
 
 
 def _jumps(value: Array) -> Array:
