@@ -128,15 +128,48 @@ def _list_differing(
             rows.append((term, sensitivities.bank.whiten(columns, noise)))
     for term, derivatives in rows:
         products = ProductsByRun.of(e, derivatives, bank.runs)
-        kept = _eliminate(products, penalty)
+        kept = choose_differing(products, penalty)
         if kept:
             score = products.only(kept).difference - penalty * len(kept)
             yield _Differing(replace(term, free=tuple(term.free[k] for k in kept)), score)
 
 
+def choose_differing(products: ProductsByRun, penalty: float) -> list[int]:
+    """Which derivatives have other steps in each run, each of them worth its penalty.
+
+    Found one by one, or left when the idle ones are gone, whichever explains more: of thrusters
+    and the sum of all, elimination loses the sum first, since any one of these can be missed.
+
+    Args:
+        products: of all derivatives.
+        penalty: of each that differs.
+    """
+
+    def score(kept: list[int]) -> float:
+        return products.only(kept).difference - penalty * len(kept) if kept else 0.0
+
+    return max(_eliminate(products, penalty), _add_up(products, penalty), key=score)
+
+
+def _acting(products: ProductsByRun) -> list[int]:
+    return [int(k) for k in np.flatnonzero(np.einsum("rkk->k", products.gram) > 0.0)]
+
+
+def _add_up(products: ProductsByRun, penalty: float) -> list[int]:
+    """From none, each time the derivative that explains most, as long as it is worth it."""
+    kept, explained = list[int](), 0.0
+    while rest := [k for k in _acting(products) if k not in kept]:
+        wholes = {k: products.only([*kept, k]).difference for k in rest}
+        best = max(rest, key=wholes.__getitem__)
+        if wholes[best] - explained < penalty:
+            break
+        kept, explained = [*kept, best], wholes[best]
+    return sorted(kept)
+
+
 def _eliminate(products: ProductsByRun, penalty: float) -> list[int]:
-    """Which derivatives differ: from all of them, down to those that are worth their penalty."""
-    kept = np.flatnonzero(np.einsum("rkk->k", products.gram) > 0.0).tolist()
+    """From all derivatives down to those that are worth their penalty."""
+    kept = _acting(products)
     while kept:
         whole = products.only(kept).difference
         worth = [
