@@ -2,10 +2,12 @@
 
 from typing import Sequence
 
+from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.checks.wrong_units import list_absurd
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
+from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.results.fitted import Doubt
 
@@ -42,9 +44,13 @@ CHECK_UNITS = (
 )
 
 ASK_WHAT_CHANGED = (
-    "Find out what was changed between the runs, as they differ in {}: the clock of the log "
-    "(`commands_shift_s` of a run in campaign.yaml moves it), the battery, ballast, markers, the "
-    "tether. Then diagnose runs that are alike."
+    "Find out what was changed between the runs, as they differ in {}: the battery, ballast, "
+    "markers, the tether. Then diagnose runs that are alike."
+)
+
+ALIGN_CLOCKS = (
+    "The logs of commands have other clocks: add {} in campaign.yaml, and diagnose again. By so "
+    "much later than in {} the motion follows its commands. Test runs may need a shift, too."
 )
 
 COMPARE_TEST_RUNS = (
@@ -136,10 +142,20 @@ def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
+def _advise_on_difference(difference: RunDifference) -> str:
+    """Say what to do where an effect has another value in each run."""
+    if difference.effect_id != InputDelay.id:
+        return ASK_WHAT_CHANGED.format(difference.effect_id)
+    lags = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
+    (first, lag), *others = sorted(lags.items(), key=lambda x: x[1])
+    shifts = (f"`commands_shift_s: {x - lag:.3f}` to {run}" for run, x in others)
+    return ALIGN_CLOCKS.format(", ".join(shifts), first)
+
+
 def _advise_on_rest(diagnosis: TrainDiagnosis) -> list[str]:
     """Say what to do about what is left unexplained."""
     if diagnosis.difference:
-        return [ASK_WHAT_CHANGED.format(diagnosis.difference.effect_id)]
+        return [_advise_on_difference(diagnosis.difference)]
     if diagnosis.disturbed_ends:
         return [LEAVE_OUT_ENDS]
     if not diagnosis.structures:

@@ -73,5 +73,6 @@ def _format_hint(structures: Sequence[Structure], difference: RunDifference | No
     if by_axis:
         hint += f" Also {'; '.join(f'{axis}: {by_axis[axis]}' for axis in reversed(by_axis))}."
     if difference:
-        hint += f" Runs differ in {difference.effect_id}, which explains most of it."
+        how = "which explains most of it" if difference.explains else "as their commands show"
+        hint += f" Runs differ in {difference.effect_id}, {how}."
     return hint

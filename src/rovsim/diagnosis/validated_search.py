@@ -16,6 +16,7 @@ from rovsim.diagnosis.answer import (
     settle_noticed,
     settle_without,
 )
+from rovsim.diagnosis.checks.clocks import find_clock_difference
 from rovsim.diagnosis.checks.feedback_axes import find_feedback_axes, find_feedback_only
 from rovsim.diagnosis.checks.run_differences import (
     RunDifference,
@@ -138,12 +139,19 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     answer, feedback_only = _judge_feedback(answer, usable)
     varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
     may_differ = varying or not answer.complete
-    difference = find_run_difference(answer.selection) if may_differ else None
+    difference = _find_difference(answer, problem) if may_differ else None
     reduced = _drop_harmful(answer, usable, holdout) if difference else answer
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
     return ValidatedSearch(
         problem, answer, start, smoothing, holdout, varying, feedback_only, difference
+    )
+
+
+def _find_difference(answer: SettledAnswer, problem: DiagnosisProblem) -> RunDifference | None:
+    """An effect that has another value in each run: one that explains what is left, or a clock."""
+    return find_run_difference(answer.selection) or find_clock_difference(
+        problem.base, problem.usable.runs, problem.settings
     )
 
 

@@ -39,9 +39,16 @@ class RunValues(NamedTuple):
 
 @dataclass(frozen=True)
 class RunDifference:
-    """An effect that has another value in each run; its values in each, by the run's id."""
+    """An effect that has another value in each run.
+
+    Attributes:
+        by_run: its values in each, by the run's id.
+        explains: whether these values explain most of what is left; else they were found without
+            a model.
+    """
 
     by_run: Mapping[str, RunValues]
+    explains: bool = True
 
     @property
     def effect_id(self) -> str:
