@@ -69,3 +69,15 @@ def test_parts_of_a_run_are_one_run():
     parts = [replace(motion, usable=motion.usable & x) for x in (half, ~half)]
     assert find_lag(BASE, parts, SETTINGS).value == pytest.approx(0.1, abs=0.01)
     assert difference(*parts) is None
+
+
+def test_axes_that_nothing_moves_do_not_count():
+    motion = late(0.1)
+    rounding = 1e-17 * np.random.default_rng(1).normal(size=(len(motion.time), 3))
+    flat = replace(
+        motion,
+        nu=np.hstack([motion.nu[:, :3], rounding]),
+        nu_dot=np.hstack([motion.nu_dot[:, :3], rounding]),
+    )
+    assert find_lag(BASE, [flat], SETTINGS).value == pytest.approx(0.1, abs=0.01)
+    assert find_lag(BASE, [replace(flat, nu_dot=0.0 * flat.nu_dot)], SETTINGS) is None

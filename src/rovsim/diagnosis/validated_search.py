@@ -140,7 +140,8 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
     varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
     may_differ = varying or not answer.complete
     difference = _find_difference(answer, problem) if may_differ else None
-    reduced = _drop_harmful(answer, usable, holdout) if difference else answer
+    judged = difference is not None and answer.fit.is_finite
+    reduced = _drop_harmful(answer, usable, holdout) if judged else answer
     if reduced is not answer:
         answer, difference = reduced, find_run_difference(reduced.selection) or difference
     return ValidatedSearch(

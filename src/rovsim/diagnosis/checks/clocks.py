@@ -28,6 +28,7 @@ from rovsim.simulation.settings import SimulationSettings
 MAX_LAG, LAG_STEP = 0.6, 0.02  # s; larger lags are told when a run is read
 SAMPLE_SECONDS = 0.05  # s between rows: forces of thrusters change within tenths of a second
 BLOCK_SECONDS, MIN_BLOCKS = 4.0, 5  # s; what is left is independent from block to block
+MIN_ACCELERATION = 1e-6  # m/s2, rad/s2; less is rounding, on an axis that nothing moves
 # s: of 36 campaigns whose clocks agree, of effects known and unknown, the most was 0.025
 MIN_DIFFERENCE = 0.05
 MIN_SIGMAS = 5.0  # by which lags differ surely: spreads of few blocks are rough
@@ -124,8 +125,8 @@ def _sum_squares(base: Model, motion: Motion, settings: SimulationSettings, lags
 
 def _likeliest(squares: Array, lags: Array) -> float:
     """The lag that leaves least of all axes (6, l), to a fraction of a step; NaN at the ends."""
-    moving = squares.max(axis=1) > 0.0
-    cost = np.log(np.maximum(squares[moving], np.finfo(float).tiny)).sum(axis=0)
+    moving = squares.min(axis=1) > MIN_ACCELERATION**2
+    cost = np.log(squares[moving]).sum(axis=0)
     k = int(np.argmin(cost))
     if not 0 < k < len(lags) - 1:
         return float("nan")
