@@ -11,7 +11,7 @@ from rovsim.diagnosis.selection.forward_selection import search_unnoticed
 from rovsim.diagnosis.selection.holdout_validation import HoldoutValidation
 from rovsim.diagnosis.selection.search_result import SearchResult
 from rovsim.diagnosis.selection.vehicle_file.steps import without_gain
-from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file
+from rovsim.diagnosis.selection.vehicle_file.whole_file import fit_whole_file, sharpen_covariance
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.structure.residual_structure import find_structure
 from rovsim.diagnosis.uncertainty.common_scale import CommonScale
@@ -228,6 +228,7 @@ def finalise_answer(answer: SettledAnswer, runs: Sequence[ObservedRun]) -> Final
     whole_file_fit, selected = answer.whole_file_fit, answer.fit.hypothesis
     if answer.leaves_physics or whole_file_fit is None:
         return FinalAnswer(answer, *include_rest(answer.fit, runs, has_loose_file(selected)))
+    whole_file_fit = sharpen_covariance(whole_file_fit, selected, answer.bank)
     if is_right_elsewhere(whole_file_fit, selected):
         return FinalAnswer(answer, *include_rest(answer.fit, runs, loose=False))
     final, scale = settle_whole_file(whole_file_fit, selected, answer.bank)

@@ -44,7 +44,7 @@ def free_nuisance(
         runs: that it was fitted to.
     """
     bank = FilterBank.design(runs, fit.hypothesis.model, fit.noise)
-    linearised = bank.linearise(freed)
+    linearised = bank.linearise_centrally(freed)
     if not linearised.is_finite:
         return None
     names, selected_names = freed.parameter_names, fit.hypothesis.parameter_names

@@ -1,5 +1,6 @@
 """All of a loose vehicle file, fitted together with what was selected."""
 
+from dataclasses import replace
 from typing import Callable, Sequence
 
 import numpy as np
@@ -22,6 +23,7 @@ from rovsim.estimation.fit import Fit, fit_noise_only
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
+from rovsim.estimation.observer.least_squares import as_rows, gram, solve
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.prior import Prior
 
@@ -37,6 +39,24 @@ def fit_whole_file(selected: Hypothesis, bank: FilterBank, noise: Noise) -> Fit 
     prior = make_file_prior(selected, hypothesis)
     linearised = levenberg_marquardt(hypothesis, bank, noise, prior)
     return fit_noise_only(linearised, bank, noise, prior) if linearised.is_finite else None
+
+
+def sharpen_covariance(whole: Fit, selected: Hypothesis, bank: FilterBank) -> Fit:
+    """Such a fit with the covariance by central differences: the common scale is hardly known.
+
+    Args:
+        whole: all of the file, fitted.
+        selected: what was selected, as it was fitted.
+        bank: that it was fitted with.
+    """
+    linearised = bank.linearise_centrally(whole.hypothesis)
+    if not linearised.is_finite:
+        return whole
+    prior = make_file_prior(selected, whole.hypothesis)
+    information = gram(as_rows(bank.whiten(linearised.J, whole.noise)))
+    information += np.diag(prior.weights(whole.hypothesis.x))
+    covariance = solve(information, np.eye(len(information)))
+    return replace(whole, linearised=linearised, covariance=covariance)
 
 
 def measure_misfit(whole: Fit, selected: Hypothesis) -> float:
