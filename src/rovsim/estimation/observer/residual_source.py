@@ -13,6 +13,8 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.hypothesis import Hypothesis
 from rovsim.estimation.observer.noise import Noise
 
+MIN_STEP_SHARE = 0.1  # of a step: where a range ends sooner, rounding would be all there is
+
 Errors = Callable[[Sequence[Model]], list[Array]]
 
 
@@ -83,13 +85,17 @@ def linearise_centrally(at: Hypothesis, errors: Errors) -> Linearised:
     difference to one side makes that look as if the runs determined the factor to 3 %.
     """
     forward = linearise(at, errors)
-    backward = {i: h for i in range(len(at.x)) if (h := step_back(at, i)) is not None}
+    back = {i: h for i in range(len(at.x)) if (h := step_back(at, i)) is not None}
+    near = MIN_STEP_SHARE * np.abs(at.steps)
+    backward = {i: h for i, h in back.items() if abs(at.x[i] - h.x[i]) > near[i]}
     J = [of_run.copy() for of_run in forward.J]
     if backward:
         outputs = errors([h.model for h in backward.values()])
         for k, e_back in enumerate(outputs):
-            for i, e in zip(backward, e_back, strict=True):
-                J[k][i] = 0.5 * (J[k][i] + (forward.e[k] - e) / at.steps[i])
+            for (i, h), e in zip(backward.items(), e_back, strict=True):
+                ahead, behind = at.steps[i], at.x[i] - h.x[i]  # shorter where the range ends
+                slope_behind = (forward.e[k] - e) / behind
+                J[k][i] = (behind * J[k][i] + ahead * slope_behind) / (ahead + behind)
     return Linearised(at, forward.e, J)
 
 
