@@ -185,9 +185,22 @@ def fit_noise_only(
         unknown = np.full((len(linearised.hypothesis.x), len(linearised.hypothesis.x)), np.inf)
         return Fit(linearised, noise, -np.inf, unknown)
     fitted_noise, two_log_likelihood = bank.fit_noise(linearised.e, noise)
-    information = gram(as_rows(bank.whiten(linearised.J, fitted_noise)))
+    covariance = find_covariance(linearised, bank, fitted_noise, prior)
+    return Fit(linearised, fitted_noise, two_log_likelihood, covariance)
+
+
+def find_covariance(
+    linearised: Linearised, bank: FilterBank, noise: Noise, prior: Prior | None = None
+) -> Array:
+    """Covariance (k, k) of the scaled parameters of a hypothesis, under a given noise.
+
+    Args:
+        linearised: the hypothesis, its innovations and their derivatives.
+        bank: that these innovations come from.
+        noise: of the innovations.
+        prior: see `fit_noise_only`.
+    """
+    information = gram(as_rows(bank.whiten(linearised.J, noise)))
     if prior is not None:
         information = information + np.diag(prior.weights(linearised.hypothesis.x))
-    return Fit(
-        linearised, fitted_noise, two_log_likelihood, solve(information, np.eye(len(information)))
-    )
+    return solve(information, np.eye(len(information)))

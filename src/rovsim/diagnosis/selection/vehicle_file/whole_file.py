@@ -19,11 +19,10 @@ from rovsim.estimation.file_effects import (
     mark_gain,
     spread_of_file,
 )
-from rovsim.estimation.fit import Fit, fit_noise_only
+from rovsim.estimation.fit import Fit, find_covariance, fit_noise_only
 from rovsim.estimation.levenberg_marquardt import levenberg_marquardt
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis, Term
-from rovsim.estimation.observer.least_squares import as_rows, gram, solve
 from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.prior import Prior
 
@@ -53,9 +52,7 @@ def sharpen_covariance(whole: Fit, selected: Hypothesis, bank: FilterBank) -> Fi
     if not linearised.is_finite:
         return whole
     prior = make_file_prior(selected, whole.hypothesis)
-    information = gram(as_rows(bank.whiten(linearised.J, whole.noise)))
-    information += np.diag(prior.weights(whole.hypothesis.x))
-    covariance = solve(information, np.eye(len(information)))
+    covariance = find_covariance(linearised, bank, whole.noise, prior)
     return replace(whole, linearised=linearised, covariance=covariance)
 
 
