@@ -16,7 +16,7 @@ from rovsim.dynamics.model import Model
 from rovsim.estimation.candidates import Candidate
 from rovsim.estimation.observer.filter_bank import FilterBank
 from rovsim.estimation.observer.hypothesis import Hypothesis
-from rovsim.estimation.observer.residual_source import Linearised, step_back
+from rovsim.estimation.observer.residual_source import Linearised, slopes_behind
 
 MAX_ROUNDING_STDS = 1e-6  # standard deviations: a fainter difference is that of rounded numbers
 MIN_VISIBLE_STDS = 0.1  # standard deviations by which a whole scale moves all readings together
@@ -148,18 +148,11 @@ def _silence_curvature(bank: FilterBank, linearised: Linearised) -> list[Array]:
     lengths = measure_columns(bank, linearised.J)
     meant = lengths > MAX_ROUNDING_STDS
     faint_ones = np.flatnonzero(meant & (lengths < MIN_VISIBLE_STDS)).tolist()
-    stepped_back = {i: step_back(linearised.hypothesis, i) for i in faint_ones}
-    possible = {i: h for i, h in stepped_back.items() if h is not None}
+    faint, _, slopes = slopes_behind(linearised, faint_ones, bank.evaluate)
     scale = np.where(meant, 1.0, 0.0)[:, None, None]
-    if not possible:
+    if not faint:
         return [scale * J for J in linearised.J]
-    faint = list(possible)
-    sizes = np.array([(linearised.hypothesis.x - h.x)[i] for i, h in possible.items()])
-    outputs = bank.evaluate([h.model for h in possible.values()])
-    central = [
-        0.5 * (J[faint] + (e - e_back) / sizes[:, None, None])
-        for J, e, e_back in zip(linearised.J, linearised.e, outputs, strict=True)
-    ]
+    central = [0.5 * (J[faint] + back) for J, back in zip(linearised.J, slopes, strict=True)]
     scale[faint, 0, 0] = measure_columns(bank, central) >= MIN_CENTRAL_SHARE * lengths[faint]
     return [scale * J for J in linearised.J]
 

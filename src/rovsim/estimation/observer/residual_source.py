@@ -4,7 +4,7 @@ The errors are innovations in `filter_bank`, and errors of replays in `replay_fi
 """
 
 from dataclasses import dataclass
-from typing import Callable, Protocol, Sequence
+from typing import Callable, Iterable, NamedTuple, Protocol, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -85,18 +85,37 @@ def linearise_centrally(at: Hypothesis, errors: Errors) -> Linearised:
     difference to one side makes that look as if the runs determined the factor to 3 %.
     """
     forward = linearise(at, errors)
-    back = {i: h for i in range(len(at.x)) if (h := step_back(at, i)) is not None}
-    near = MIN_STEP_SHARE * np.abs(at.steps)
-    backward = {i: h for i, h in back.items() if abs(at.x[i] - h.x[i]) > near[i]}
+    back = slopes_behind(forward, range(len(at.x)), errors)
     J = [of_run.copy() for of_run in forward.J]
-    if backward:
-        outputs = errors([h.model for h in backward.values()])
-        for k, e_back in enumerate(outputs):
-            for (i, h), e in zip(backward.items(), e_back, strict=True):
-                ahead, behind = at.steps[i], at.x[i] - h.x[i]  # shorter where the range ends
-                slope_behind = (forward.e[k] - e) / behind
-                J[k][i] = (behind * J[k][i] + ahead * slope_behind) / (ahead + behind)
+    for row, (i, behind) in enumerate(zip(back.numbers, back.sizes, strict=True)):
+        ahead = at.steps[i]
+        if abs(behind) > MIN_STEP_SHARE * abs(ahead):  # shorter where the range ends
+            for of_run, slopes in zip(J, back.slopes, strict=True):
+                of_run[i] = (behind * of_run[i] + ahead * slopes[row]) / (ahead + behind)
     return Linearised(at, forward.e, J)
+
+
+class SlopesBehind(NamedTuple):
+    """One-sided differences of errors, in the other direction than in `linearise`.
+
+    Attributes:
+        numbers: of the c parameters whose range lets them step back.
+        sizes: of these steps (c,), with the sign of a step ahead.
+        slopes: derivatives (c, 6, n) of each run; empty where no parameter can step back.
+    """
+
+    numbers: list[int]
+    sizes: Array
+    slopes: list[Array]
+
+
+def slopes_behind(at: Linearised, numbers: Iterable[int], errors: Errors) -> SlopesBehind:
+    """Differences from one step back, of those of these parameters that can take it."""
+    back = {i: h for i in numbers if (h := step_back(at.hypothesis, i)) is not None}
+    sizes = np.array([at.hypothesis.x[i] - h.x[i] for i, h in back.items()])
+    outputs = errors([h.model for h in back.values()]) if back else []
+    slopes = [(e - b) / sizes[:, None, None] for e, b in zip(at.e, outputs, strict=bool(back))]
+    return SlopesBehind(list(back), sizes, slopes)
 
 
 def _reuse_derivatives(at: Hypothesis, previous: Linearised) -> dict[int, list[Array]]:
