@@ -14,6 +14,10 @@ from rovsim.dynamics.catalogue import built_in
 from rovsim.dynamics.effects.thrusters import ThrusterDeadband
 from rovsim.dynamics.mocap_view import NO_CHANGE
 from rovsim.estimation.observer.observed_run import prepare_run
+from rovsim.estimation.observer.steps import GROUP_SECONDS, MAX_LOST, choose_group_seconds
+from rovsim.estimation.observer.train_runs import prepare_train
+from rovsim.measurement.runs import Runs
+from rovsim.measurement.signals.motion import Poses
 from rovsim.simulation.drive import Actuation, JoinedSteps
 from rovsim.simulation.settings import ReplaySettings
 from rovsim.simulation.synthetic_tank.settings import Camera
@@ -102,3 +106,53 @@ def test_the_noise_of_a_reading_is_that_of_a_mean(tmp_path):
         runs.append(observed(tmp_path / str(noise), duration=8.0, camera=camera)[1][0])
     still, noisy = (run.read(NO_CHANGE)[20:-20, :3] for run in runs)
     assert np.std(noisy - still) == pytest.approx(2e-3 / np.sqrt(5), rel=0.15)
+
+
+def shaken(motion, axis, alpha, hz):
+    """The same motion, with one axis that oscillates by `alpha` m/s2 or rad/s2."""
+    nu_dot = np.zeros_like(motion.nu_dot)
+    nu_dot[:, axis] = alpha * np.sin(2.0 * np.pi * hz * motion.time)
+    return replace(motion, nu_dot=nu_dot)
+
+
+@given(st.integers(0, 5), st.floats(0.05, 30.0), st.floats(0.3, 3.0))
+def test_the_mean_of_a_group_loses_little_of_a_fast_motion(axis, alpha, hz):
+    still = worlds.motion(worlds.sticks())
+    still = replace(still, usable=np.ones(len(still.time), bool))
+    seconds = choose_group_seconds(shaken(still, axis, alpha, hz))
+    lost = alpha / np.sqrt(2.0) * seconds**2 / 24.0
+    assert lost < 1.1 * max(MAX_LOST[axis], alpha * 0.02**2 / 24.0)
+    assert seconds == GROUP_SECONDS or lost > 0.6 * MAX_LOST[axis]
+
+
+def test_hits_do_not_make_readings_shorter():
+    still = worlds.motion(worlds.sticks())
+    hits = shaken(still, 3, 100.0, 1.0)
+    hits.nu_dot[np.arange(len(hits.time)) % 10 > 0] = 0.0
+    assert choose_group_seconds(hits) == GROUP_SECONDS
+    assert choose_group_seconds(shaken(still, 3, 100.0, 1.0)) < GROUP_SECONDS
+    assert (
+        choose_group_seconds(replace(hits, usable=np.zeros(len(hits.time), bool))) == GROUP_SECONDS
+    )
+
+
+def test_the_fastest_run_sets_the_readings_of_all(tmp_path):
+    """Their noise is compared, so they have to be means of equally many frames."""
+    _, (run,) = observed(tmp_path, duration=20.0, camera=Camera(**STILL))
+    stage = Poses(
+        run.motion.run,
+        run.motion.site,
+        run.motion.time,
+        run.frames[:, :7],
+        run.motion.usable,
+        run.motion.commands,
+    )
+    fast = shaken(run.motion, 3, 15.0, 1.2)
+    both = Runs({"a": run.motion, "b": fast}, {"a": stage, "b": stage}, dict(a="train", b="train"))
+    free = np.ones(6, bool)
+    prepared = prepare_train(both, ReplaySettings(), built_in(), free)
+    assert [r.group for r in prepared.runs] == [3, 3]
+    slow = Runs({"a": run.motion}, {"a": stage}, {"a": "train"})
+    assert prepare_train(slow, ReplaySettings(), built_in(), free).runs[0].group == 5
+    less = prepare_train(both, ReplaySettings(), built_in(), free, most=39.0)
+    assert less.seconds < 25.0  # as many readings as of 39 s of slow motion, and not more

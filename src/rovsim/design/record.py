@@ -29,7 +29,10 @@ def record(path: Array, commands: Commands, model: Model, setup: RecordingSetup)
         RUN_INFO, setup.site, motion.time, motion.eta, motion.usable, commands, motion.measured
     )
     free = model.body.free
-    return prepare_run(stage, motion, setup.replay, setup.catalogue, free)
+    group_seconds = setup.like.group_seconds
+    return prepare_run(
+        stage, motion, setup.replay, setup.catalogue, free, group_seconds=group_seconds
+    )
 
 
 def _samples(

@@ -165,7 +165,9 @@ def _estimate_noise_floor(
     if diagnosis.fit is None or reached is None:
         return None
     fit = diagnosis.proposed.fit if diagnosis.proposed else diagnosis.fit
-    test = prepare_test(runs, settings.replay, catalogue, diagnosis.base.body.free)
+    group_seconds = diagnosis.usable.runs[0].group_seconds
+    free = diagnosis.base.body.free
+    test = prepare_test(runs, settings.replay, catalogue, free, group_seconds)
     floor = simulate_noise_floor(
         _list_models(diagnosis)[-1], test, fit.noise, settings.signals, settings.seed
     )

@@ -13,7 +13,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.estimation.kernels.axis import BIN_MEAN, POSE, SUM
-from rovsim.estimation.observer.steps import Steps, divide_run
+from rovsim.estimation.observer.steps import GROUP_SECONDS, Steps, divide_run
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
 from rovsim.measurement.signals.measured import find_measured
@@ -223,6 +223,7 @@ def prepare_run(
     catalogue: Catalogue,
     free: Array,
     kept: Recent | None = None,
+    group_seconds: float = GROUP_SECONDS,
 ) -> ObservedRun:
     """Prepare a run for the observer; without usable stretches it has no segments.
 
@@ -233,9 +234,10 @@ def prepare_run(
         catalogue: the effects that may act in it.
         free: axes (6,) in which the vehicle can move.
         kept: where its drives are kept, perhaps with those of other runs.
+        group_seconds: about how long the frames of a reading take, see `choose_group_seconds`.
     """
     grid = StepGrid.over(motion, settings.step)
-    steps = divide_run(stage, motion, grid)
+    steps = divide_run(stage, motion, grid, group_seconds)
     fine_grid = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
     drives = Drives(motion.commands, fine_grid, settings.commands, steps.substeps, kept)
     replay_drives = drives

@@ -18,6 +18,7 @@ from rovsim.core.bounded_cache import Recent
 from rovsim.core.rotations import unrotate
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.estimation.observer.observed_run import ObservedRun, prepare_run
+from rovsim.estimation.observer.steps import GROUP_SECONDS, choose_group_seconds
 from rovsim.estimation.settings import MAX_TRAIN_SECONDS
 from rovsim.measurement.quality.unlogged_commands import MEMORY_SECONDS, keep_logged
 from rovsim.measurement.runs import Runs
@@ -70,32 +71,45 @@ def prepare_train(
     free: Array,
     most: float = MAX_TRAIN_SECONDS,
 ) -> TrainRuns:
-    """Train runs of up to `most` s as the observer sees them; see `prepare_run`."""
+    """Train runs of up to `most` s as the observer sees them; see `prepare_run`.
+
+    Of motion so fast that readings must be shorter there may be as many readings, and not more.
+    """
     parts: list[_Part] = []
+    group_seconds = GROUP_SECONDS
     unlogged: dict[str, float] = {}
     for name in runs.of("train"):  # one by one: memory may not hold all motions
         motion = runs.motions[name]
         logged = keep_logged(motion)
         parts += _divide(logged)
+        group_seconds = min(group_seconds, choose_group_seconds(logged))
         if logged is not motion:
             samples = int(np.sum(motion.usable & ~logged.usable))
             unlogged[name] = samples * time_step(motion.time)
     total = sum(part.lasts for part in parts)
+    most *= group_seconds / GROUP_SECONDS
     places = [(name, slice(None)) for name in runs.of("train")]
     if total > most:
         parts = _choose(parts, most)
         places = [(part.run, part.at) for part in parts]
     drives: Recent = Recent(DRIVE_CACHE_BYTES)
-    observed = [_prepare(runs, *place, settings, catalogue, free, drives) for place in places]
+    observed = [
+        _prepare(runs, *place, settings, catalogue, free, drives, group_seconds) for place in places
+    ]
     return TrainRuns(tuple(observed), sum(part.lasts for part in parts), total, unlogged)
 
 
 def prepare_test(
-    runs: Runs, settings: ReplaySettings, catalogue: Catalogue, free: Array
+    runs: Runs,
+    settings: ReplaySettings,
+    catalogue: Catalogue,
+    free: Array,
+    group_seconds: float = GROUP_SECONDS,
 ) -> Iterator[ObservedRun]:
-    """Test runs as the observer sees them, one after the other."""
+    """Test runs as the observer sees them, one after the other; see `prepare_run`."""
     for name in runs.of("test"):
-        yield prepare_run(runs.stages[name], runs.motions[name], settings, catalogue, free)
+        stage, motion = runs.stages[name], runs.motions[name]
+        yield prepare_run(stage, motion, settings, catalogue, free, group_seconds=group_seconds)
 
 
 def _prepare(
@@ -106,6 +120,7 @@ def _prepare(
     catalogue: Catalogue,
     free: Array,
     kept: Recent,
+    group_seconds: float,
 ) -> ObservedRun:
     stage, motion = runs.stages[name], keep_logged(runs.motions[name])
     if at != slice(None):
@@ -115,7 +130,7 @@ def _prepare(
         after_lead = np.arange(at.stop - begin) >= at.start - begin
         motion = motion.part(span)
         motion = replace(motion, usable=motion.usable & after_lead)
-    return prepare_run(stage, motion, settings, catalogue, free, kept)
+    return prepare_run(stage, motion, settings, catalogue, free, kept, group_seconds)
 
 
 def _choose(parts: Sequence[_Part], most: float) -> list[_Part]:
