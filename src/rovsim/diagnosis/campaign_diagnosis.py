@@ -10,7 +10,7 @@ from rovsim.core.files import write_text
 from rovsim.core.horizons import STANDARD_HORIZON, STANDARD_WINDOW
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import begin_stage, step
-from rovsim.diagnosis.checks.noise_floor import simulate_noise_floor
+from rovsim.diagnosis.checks.noise_floor import NoiseFloor, simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.diagnosis_document import CampaignContext, assemble_diagnosis
 from rovsim.diagnosis.settings import DiagnosisSettings
@@ -90,9 +90,18 @@ def diagnose_campaign(
     diagnosis = diagnose_train_runs(base, train.runs, settings, catalogue)
     begin_stage("scoring")
     shares = [finding.share() for m in searched_models for finding in m.explanation.findings]
-    ladder, diverges_in = _build_ladder(diagnosis, runs, settings, catalogue)
+    steps, diverges_in = _climb(diagnosis, runs, settings)
+    floor = _estimate_noise_floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
+    floor_step = LadderStep(model=NOISE_FLOOR, windows_2s=floor.error if floor else None)
     context = CampaignContext(
-        recordings, shares, ladder, train.looked_at, standstills, diverges_in, train.unlogged
+        recordings,
+        shares,
+        Ladder(steps=(*steps, floor_step)),
+        train.looked_at,
+        standstills,
+        diverges_in,
+        train.unlogged,
+        floor.times if floor else None,
     )
     document = assemble_diagnosis(diagnosis, context, catalogue)
     return CampaignDiagnosis(
@@ -121,15 +130,15 @@ def _scan_train_runs(
     return [search.result], standstills
 
 
-def _build_ladder(
-    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, catalogue: Catalogue
-) -> tuple[Ladder, Sequence[str]]:
+def _climb(
+    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings
+) -> tuple[Sequence[LadderStep], Sequence[str]]:
     """Make the ladder: errors of the base and with one effect more each, on the test runs.
 
-    A proposed law, with the effects beside it, comes after all effects; the noise floor is last.
+    A proposed law, with the effects beside it, comes after all effects.
 
     Returns:
-        The ladder, and ids of the test runs in which the base diverges.
+        Its steps, and ids of the test runs in which the base diverges.
     """
     models, window_settings = _list_models(diagnosis), settings.only(STANDARD_WINDOW)
     scores = [StepScore(model.name) for model in models]
@@ -139,10 +148,7 @@ def _build_ladder(
             step()
             prediction = replay(model, motion, window_settings, open_loop=False)
             score.add(motion, subtract(motion, prediction.horizons[STANDARD_HORIZON]))
-    steps = [score.step for score in scores]
-    floor = _estimate_noise_floor(diagnosis, runs, settings, catalogue, steps[-1].windows_2s)
-    ladder = Ladder(steps=(*steps, LadderStep(model=NOISE_FLOOR, windows_2s=floor)))
-    return ladder, scores[0].diverges_in
+    return [score.step for score in scores], scores[0].diverges_in
 
 
 def _list_models(diagnosis: TrainDiagnosis) -> list[Model]:
@@ -156,7 +162,7 @@ def _estimate_noise_floor(
     settings: DiagnosisSettings,
     catalogue: Catalogue,
     reached: float | None,
-) -> float | None:
+) -> NoiseFloor | None:
     """The noise floor: the error of a perfect model; None where it cannot be estimated.
 
     Part of what is taken for noise may be physics. If the floor is above the error `reached`, by
@@ -175,4 +181,4 @@ def _estimate_noise_floor(
         return None
     # the error reached varies by chance, too: it is a root mean square over w windows
     chance = 1.0 / np.sqrt(2.0 * floor.windows)
-    return None if floor.error > (1.0 + chance) * reached else floor.error
+    return None if floor.error > (1.0 + chance) * reached else floor

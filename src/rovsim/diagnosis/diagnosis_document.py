@@ -57,6 +57,7 @@ class CampaignContext:
             would move.
         diverges_in: ids of the test runs in which the base diverges.
         unlogged: by train run, how many s are not used as nobody knows what was commanded.
+        times_floor: see `DiagnosisErrors`.
     """
 
     recordings: Mapping[str, str]
@@ -66,6 +67,7 @@ class CampaignContext:
     standstills: Sequence[Standstill] = ()
     diverges_in: Sequence[str] = ()
     unlogged: Mapping[str, float] = field(default_factory=dict)
+    times_floor: float | None = None
 
 
 def assemble_diagnosis(
@@ -82,8 +84,8 @@ def assemble_diagnosis(
     """
     groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
-    error = _summarise_errors(context.ladder, len(diagnosis.selected))
-    differ = error.times_floor(diagnosis.verdict) is not None
+    error = _summarise_errors(context, len(diagnosis.selected))
+    differ = error.surely_above(diagnosis.verdict) is not None
     return Diagnosis(
         verdict=diagnosis.verdict,
         selected=tuple(map(_describe_selected, diagnosis.selected)),
@@ -141,18 +143,20 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     return ScaleOfForces(std=rounded_or_none(scale.std), parameters=scale.parameters)
 
 
-def _summarise_errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
+def _summarise_errors(context: CampaignContext, selected: int) -> DiagnosisErrors:
     """Normalised errors in windows of 2 s (docs/signals.md); None where no test run can be scored.
 
     Args:
-        ladder: of the test runs.
+        context: with the ladder of the test runs.
         selected: number of selected effects.
     """
+    ladder = context.ladder
     errors = [rounded_or_none(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
         nominal=errors[0],
         with_effects=errors[selected],
         noise_floor=rounded_or_none(ladder.noise_floor),
+        times_floor=rounded_or_none(context.times_floor),
     )
 
 

@@ -33,7 +33,7 @@ def describe_unexplained(diagnosis: TrainDiagnosis, error: DiagnosisErrors) -> U
     if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
     if diagnosis.verdict != "unexplained":
-        times = error.times_floor(diagnosis.verdict)
+        times = error.surely_above(diagnosis.verdict)
         hint = TEST_RUNS_DIFFER_HINT.format(rounded(times, 2)) if times else NOISE_HINT
         return Unexplained(fraction=0.0, significant=False, hint=hint)
     share = diagnosis.structures[0].share if diagnosis.structures else None

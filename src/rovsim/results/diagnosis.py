@@ -124,22 +124,33 @@ MIN_TIMES_FLOOR = 1.5
 
 
 class DiagnosisErrors(Section):
-    """`windows_2s` on the test runs: of the base, with the selected effects, of a perfect model."""
+    """`windows_2s` on the test runs: of the base, with the selected effects, of a perfect model.
+
+    `times_floor`: how many times that of a perfect model the error with effects is in windows that
+    begin 1 s after the log of commands or later. Of what thrusters were told before, nobody knows.
+    """
 
     nominal: float | None
     with_effects: float | None
     noise_floor: float | None
+    times_floor: float | None = None
 
-    def times_floor(self, verdict: Verdict) -> float | None:
+    def surely_above(self, verdict: Verdict) -> float | None:
         """How many times the noise floor the error with effects is, where test runs surely differ.
 
         None where it is near the floor, or where the train runs leave more than noise, too.
         """
         nothing_left = verdict in ("adequate", "missing_effects")
-        if not (nothing_left and self.with_effects and self.noise_floor):
-            return None
-        ratio = self.with_effects / self.noise_floor
-        return ratio if ratio > MIN_TIMES_FLOOR else None
+        times = self.times_floor if nothing_left and self.noise_floor else None
+        return times if times and times > MIN_TIMES_FLOOR else None
+
+    @property
+    def above_at_start(self) -> bool:
+        """Whether only windows that begin with the log have an error far above the noise floor."""
+        if not (self.with_effects and self.noise_floor and self.times_floor):
+            return False
+        above = self.with_effects > MIN_TIMES_FLOOR * self.noise_floor
+        return above and self.times_floor <= MIN_TIMES_FLOOR
 
 
 class RivalEffect(Section):

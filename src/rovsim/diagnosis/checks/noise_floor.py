@@ -4,6 +4,9 @@ It has three sources, which are drawn at random here: the disturbance that pushe
 that no model knows, the noise of the measured state from which a window starts, and the noise of
 the measured velocity with which the model is compared. The latter two have passed the filter of the
 measurement. Sizes and correlation times are those of `noise.py`, fitted to the train runs.
+
+Another source is not drawn: what thrusters that respond late were told before the log began. So
+whether test runs are like the train runs is judged by windows that begin later.
 """
 
 from dataclasses import dataclass
@@ -18,22 +21,27 @@ from rovsim.estimation.observer.noise import Noise
 from rovsim.estimation.observer.observed_run import ObservedRun
 from rovsim.estimation.observer.windows import Windows
 from rovsim.evaluation.error_metrics import VelocityMoments, normalize, root_mean
+from rovsim.measurement.quality.unlogged_commands import MEMORY_SECONDS
 from rovsim.measurement.signals.chain import SignalSettings
 from rovsim.simulation.noise_draws import NoiseDraws
 
 DRAWS_PER_RUN = 8  # of noise and disturbance along each test run; their errors are pooled
+FORGOTTEN_SECONDS = 2.0 * MEMORY_SECONDS  # of commands before the log: five times a lag of 0.2 s
 
 
 class NoiseFloor(NamedTuple):
-    """The error of a perfect model.
+    """The error of a perfect model in windows of 2 s, normalised by `error_metrics.normalize`.
 
     Attributes:
-        error: in windows of 2 s, normalised by `error_metrics.normalize`; None where no axis moved.
+        error: in all of them; None where no axis moved.
         windows: how many there were in the runs.
+        times: how many times the floor the model's error is, in windows that begin when thrusters
+            have forgotten what was before the log; None where there are none.
     """
 
     error: float | None
     windows: int
+    times: float | None
 
 
 def simulate_noise_floor(
@@ -57,15 +65,52 @@ def simulate_noise_floor(
         know how the noise of these passes the filter.
     """
     perfect = _PerfectModel(model, noise, signals, np.random.default_rng(seed))
-    squares, count, windows, moments = np.zeros(6), 0, 0, VelocityMoments.nothing()
+    drawn, late, reached = _Squares.none(), _Squares.none(), _Squares.none()
+    windows, moments = 0, VelocityMoments.nothing()
     for run in runs:
         if run.motion.measured is not None:
             return None
-        errors = perfect.errors(run)
-        squares, count = squares + np.square(errors).sum(axis=0), count + len(errors)
-        windows += len(Windows(run).spans)
+        errors, of_run = perfect.errors(run), Windows(run)
+        after = _begin_late(of_run)
+        drawn += _Squares.of(errors)
+        late += _Squares.of(errors[:, after])
+        reached += _Squares.of(of_run.compare([model])[:, after])
+        windows += len(of_run.spans)
         moments += VelocityMoments.of(run.motion)
-    return NoiseFloor(normalize(moments.std, root_mean(squares, count)), windows)
+    floor, late_floor, error = (x.normalised(moments.std) for x in (drawn, late, reached))
+    return NoiseFloor(floor, windows, error / late_floor if error and late_floor else None)
+
+
+@dataclass(frozen=True, eq=False)
+class _Squares:
+    """Sum (6,) of squared velocity errors, and their number."""
+
+    total: Array
+    count: int
+
+    @staticmethod
+    def none() -> "_Squares":
+        return _Squares(np.zeros(6), 0)
+
+    @staticmethod
+    def of(errors: Array) -> "_Squares":
+        """Of errors (m, n, 6)."""
+        return _Squares(np.square(errors).sum(axis=(0, 1)), errors.shape[0] * errors.shape[1])
+
+    def __add__(self, other: "_Squares") -> "_Squares":
+        return _Squares(self.total + other.total, self.count + other.count)
+
+    def normalised(self, spread: Array) -> float | None:
+        """Their root mean, see `error_metrics.normalize`."""
+        return normalize(spread, root_mean(self.total, self.count)) if self.count else None
+
+
+def _begin_late(windows: Windows) -> Array:
+    """Mask (n,) of compared velocities in windows that begin some time after the log."""
+    time, log = windows.run.motion.time, windows.run.motion.commands.time
+    if not len(log):
+        return np.ones(len(windows.number), bool)
+    return np.asarray((time[windows.first] >= log[0] + FORGOTTEN_SECONDS)[windows.number])
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +130,7 @@ class _PerfectModel:
     random: np.random.Generator
 
     def errors(self, run: ObservedRun) -> Array:
-        """Velocity errors (n, 6) in the windows of one run, of all draws, m/s and rad/s."""
+        """Velocity errors (draws, n, 6) in the windows of one run, m/s and rad/s."""
         windows, measured_state = Windows(run), run.motion.state
         draws = self.noise.draws(run, self.random)
         wrenches = self._draw_wrench(draws, run)
@@ -100,7 +145,7 @@ class _PerfectModel:
         predicted = windows.compare(models, starts)
         at = windows.compared
         reading_errors = np.array([state[at, 7:] - measured_state[at, 7:] for state in reported])
-        return (predicted - actual - reading_errors).reshape(-1, 6)
+        return np.asarray(predicted - actual - reading_errors)
 
     def _draw_wrench(self, draws: NoiseDraws, run: ObservedRun) -> Array:
         """Draw the disturbance of k integration steps: a wrench (draws, k, 6), N and N m."""

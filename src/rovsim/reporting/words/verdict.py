@@ -207,12 +207,24 @@ def error_sentence(diagnosis: Diagnosis) -> str:
         text += f" {FLOOR_COUNTS_ALL.format(significant(floor))}"
     else:
         text += f" A perfect model would show about {significant(floor)} (noise floor)."
-        if times := error.times_floor(diagnosis.verdict):
-            text += (
-                f" The error is {significant(times, 2)} times that, although nothing but noise is "
-                "left in the train runs: the test runs differ from them."
-            )
+        text += _compare_with_floor(diagnosis)
     return f"{text} {ERROR_MEANING}."
+
+
+def _compare_with_floor(diagnosis: Diagnosis) -> str:
+    """Say what an error above the noise floor means; nothing where it is near."""
+    if times := diagnosis.error.surely_above(diagnosis.verdict):
+        return (
+            f" The error is {significant(times, 2)} times that, also in windows that begin a "
+            "second after the log or later, although nothing but noise is left in the train runs: "
+            "the test runs differ from them."
+        )
+    if diagnosis.error.above_at_start:
+        return (
+            " What is above that is in windows that begin within a second of the log: nobody knows "
+            "what the thrusters were told before."
+        )
+    return ""
 
 
 def _change(before: float, after: float) -> str:
