@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests import worlds
 
 from rovsim.core.run import RunInfo
-from rovsim.diagnosis.checks.clocks import find_clock_difference, find_lag
+from rovsim.diagnosis.checks.clocks import find_clock_difference, find_lag, find_shifts
 from rovsim.simulation.measured_states import drive_as_measured
 from rovsim.simulation.settings import SimulationSettings
 
@@ -81,3 +81,16 @@ def test_axes_that_nothing_moves_do_not_count():
     )
     assert find_lag(BASE, [flat], SETTINGS).value == pytest.approx(0.1, abs=0.01)
     assert find_lag(BASE, [replace(flat, nu_dot=0.0 * flat.nu_dot)], SETTINGS) is None
+
+
+def test_logs_of_test_runs_are_compared_with_those_of_train_runs():
+    like = [late(0.1, 1, name="a"), late(0.1, 2, name="b")]
+    tests = [
+        late(0.11, 3, name="same"),
+        late(0.25, 4, gain=0.5, name="later"),
+        late(0.0, 5, name="z"),
+    ]
+    found = find_shifts(BASE, like, tests, SETTINGS)
+    assert found == pytest.approx({"later": 0.15, "z": -0.1}, abs=0.01)
+    idle = replace(like[0], commands=replace(like[0].commands, value=0 * like[0].commands.value))
+    assert find_shifts(BASE, [idle], tests, SETTINGS) == {}

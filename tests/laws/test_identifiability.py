@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, COMPARE_TEST_RUNS, LEAVE_OUT_ENDS, advise
+from rovsim.diagnosis.advice import (
+    ADVICE_ON_DOUBT,
+    COMPARE_TEST_RUNS,
+    LEAVE_OUT_ENDS,
+    HeldOutRuns,
+    advise,
+)
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.beside_law import (
     doubt_beside_law,
@@ -112,7 +118,9 @@ def test_what_to_record_is_what_reveals_the_effect_most_of_them_belong_to():
     reveals = built_in()["onboard_control"].revealed_by
     assert advice == f"To know {loops[0]}, {loops[1]} one by one: {reveals}"
     assert advise(found, [], [], built_in()).startswith("Nothing is needed")
-    assert advise(found, [], [], built_in(), test_runs_differ=True) == COMPARE_TEST_RUNS
+    assert advise(found, [], [], built_in(), HeldOutRuns(True)) == COMPARE_TEST_RUNS
+    late = advise(found, [], [], built_in(), HeldOutRuns(True, {"t": 0.1}))
+    assert "`commands_shift_s: 0.100` to t" in late
     end = DisturbedEnd(run="a", from_s=0.0, to_s=4.0, times=5.0)
     disturbed = replace(found, disturbed_ends=(end,))
     assert advise(disturbed, [], [], built_in()) == LEAVE_OUT_ENDS

@@ -1,6 +1,6 @@
 """Advise what to record next, so that the next diagnosis is surer."""
 
-from typing import Sequence
+from typing import Mapping, NamedTuple, Sequence
 
 from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.checks.wrong_units import list_absurd
@@ -50,8 +50,9 @@ ASK_WHAT_CHANGED = (
 
 ALIGN_CLOCKS = (
     "The logs of commands have other clocks: add {} in campaign.yaml, and diagnose again. By so "
-    "much later than in {} the motion follows its commands. Test runs may need a shift, too."
+    "much later than in {} the motion follows its commands."
 )
+TRAIN_RUNS = "the train runs"
 
 COMPARE_TEST_RUNS = (
     "Find out what was changed for the test runs: the load, the trim, the battery, the tether, the "
@@ -81,12 +82,28 @@ ADVICE_ON_DOUBT: dict[Doubt, str] = {
 }
 
 
+class HeldOutRuns(NamedTuple):
+    """What is wrong with the test runs.
+
+    Attributes:
+        differ: whether the error on them is far above the noise of the train runs.
+        late: by run id, by how many s its log is earlier than those of the train runs, or than that
+            of the earliest one where these differ.
+    """
+
+    differ: bool = False
+    late: Mapping[str, float] = {}
+
+
+NOTHING_WRONG = HeldOutRuns()
+
+
 def advise(
     diagnosis: TrainDiagnosis,
     groups: Sequence[Sequence[str]],
     joint: Sequence[Sequence[str]],
     catalogue: Catalogue,
-    test_runs_differ: bool = False,
+    test_runs: HeldOutRuns = NOTHING_WRONG,
 ) -> str:
     """Advise in a few sentences what to record, or to check, next.
 
@@ -95,7 +112,7 @@ def advise(
         groups: ids of effects that cannot be told apart, each group by itself.
         joint: parameters, as `effect.parameter`, that are only known together, in groups, too.
         catalogue: says what reveals each effect.
-        test_runs_differ: whether the error on them is far above the noise of the train runs.
+        test_runs: what is wrong with these.
     """
     if not diagnosis.enough:
         return _advise_new_data(diagnosis)
@@ -118,9 +135,10 @@ def advise(
     if diagnosis.scale:
         parts.append(FIX_SCALE)
     parts += _advise_excitation(diagnosis)
-    if test_runs_differ:
-        parts.insert(0, COMPARE_TEST_RUNS)
-    parts += _advise_on_rest(diagnosis)
+    if test_runs.differ:
+        late = _align(test_runs.late, TRAIN_RUNS) if test_runs.late else COMPARE_TEST_RUNS
+        parts.insert(0, late)
+    parts += _advise_on_rest(diagnosis, test_runs)
     return " ".join(parts) or _confirm(diagnosis)
 
 
@@ -142,20 +160,25 @@ def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
-def _advise_on_difference(difference: RunDifference) -> str:
+def _advise_on_difference(difference: RunDifference, test_runs: HeldOutRuns) -> str:
     """Say what to do where an effect has another value in each run."""
     if difference.effect_id != InputDelay.id:
         return ASK_WHAT_CHANGED.format(difference.effect_id)
     lags = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
     (first, lag), *others = sorted(lags.items(), key=lambda x: x[1])
-    shifts = (f"`commands_shift_s: {x - lag:.3f}` to {run}" for run, x in others)
-    return ALIGN_CLOCKS.format(", ".join(shifts), first)
+    return _align({**{run: x - lag for run, x in others}, **test_runs.late}, first)
 
 
-def _advise_on_rest(diagnosis: TrainDiagnosis) -> list[str]:
+def _align(late: Mapping[str, float], reference: str) -> str:
+    """Say how to shift logs, by run id, that are so many s earlier than others."""
+    shifts = (f"`commands_shift_s: {x:.3f}` to {run}" for run, x in late.items())
+    return ALIGN_CLOCKS.format(", ".join(shifts), reference)
+
+
+def _advise_on_rest(diagnosis: TrainDiagnosis, test_runs: HeldOutRuns) -> list[str]:
     """Say what to do about what is left unexplained."""
     if diagnosis.difference:
-        return [_advise_on_difference(diagnosis.difference)]
+        return [_advise_on_difference(diagnosis.difference, test_runs)]
     if diagnosis.disturbed_ends:
         return [LEAVE_OUT_ENDS]
     if not diagnosis.structures:

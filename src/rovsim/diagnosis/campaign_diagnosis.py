@@ -10,12 +10,14 @@ from rovsim.core.files import write_text
 from rovsim.core.horizons import STANDARD_HORIZON, STANDARD_WINDOW
 from rovsim.core.model_names import NOISE_FLOOR
 from rovsim.core.progress import begin_stage, step
+from rovsim.diagnosis.checks.clocks import find_shifts
 from rovsim.diagnosis.checks.noise_floor import NoiseFloor, simulate_noise_floor
 from rovsim.diagnosis.checks.standstills import find_standstills
 from rovsim.diagnosis.diagnosis_document import CampaignContext, assemble_diagnosis
 from rovsim.diagnosis.settings import DiagnosisSettings
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis, diagnose_train_runs
 from rovsim.dynamics.catalogue import Catalogue
+from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.train_runs import prepare_test, prepare_train
 from rovsim.evaluation.error_conditions.entries import list_conditions
@@ -24,7 +26,7 @@ from rovsim.evaluation.error_metrics import subtract
 from rovsim.evaluation.ladder import StepScore
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.diagnosis import Diagnosis, Standstill, law_beside
+from rovsim.results.diagnosis import MIN_TIMES_FLOOR, Diagnosis, Standstill, law_beside
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import Ladder, LadderStep
 from rovsim.simulation.replay import replay
@@ -102,6 +104,7 @@ def diagnose_campaign(
         diverges_in,
         train.unlogged,
         floor.times if floor else None,
+        _compare_clocks(diagnosis, runs, settings, floor),
     )
     document = assemble_diagnosis(diagnosis, context, catalogue)
     return CampaignDiagnosis(
@@ -128,6 +131,20 @@ def _scan_train_runs(
     for name in runs.of("test") if search.split == "test" else ():
         search.add_run(runs.motions[name])
     return [search.result], standstills
+
+
+def _compare_clocks(
+    diagnosis: TrainDiagnosis, runs: Runs, settings: DiagnosisSettings, floor: NoiseFloor | None
+) -> dict[str, float]:
+    """By how much logs of test runs are early, where clocks or test runs differ."""
+    difference, like = diagnosis.difference, runs.of("train")
+    if difference and difference.effect_id == InputDelay.id:
+        delays = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
+        like = [min(delays, key=delays.__getitem__)]
+    elif not (floor and floor.times and floor.times > MIN_TIMES_FLOOR):
+        return {}
+    own, tests = (map(runs.motions.__getitem__, names) for names in (like, runs.of("test")))
+    return find_shifts(diagnosis.base, own, tests, settings)
 
 
 def _climb(

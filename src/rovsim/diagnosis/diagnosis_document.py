@@ -7,7 +7,7 @@ import numpy as np
 
 from rovsim.core.odds import share_odds
 from rovsim.core.rounding import rounded, rounded_or_none
-from rovsim.diagnosis.advice import advise
+from rovsim.diagnosis.advice import HeldOutRuns, advise
 from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.diagnosis.selection.accepted_effects import find_std
 from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect
@@ -58,6 +58,7 @@ class CampaignContext:
         diverges_in: ids of the test runs in which the base diverges.
         unlogged: by train run, how many s are not used as nobody knows what was commanded.
         times_floor: see `DiagnosisErrors`.
+        late_tests: see `advice.HeldOutRuns`.
     """
 
     recordings: Mapping[str, str]
@@ -68,6 +69,7 @@ class CampaignContext:
     diverges_in: Sequence[str] = ()
     unlogged: Mapping[str, float] = field(default_factory=dict)
     times_floor: float | None = None
+    late_tests: Mapping[str, float] = field(default_factory=dict)
 
 
 def assemble_diagnosis(
@@ -85,7 +87,7 @@ def assemble_diagnosis(
     groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
     error = _summarise_errors(context, len(diagnosis.selected))
-    differ = error.surely_above(diagnosis.verdict) is not None
+    test_runs = HeldOutRuns(error.surely_above(diagnosis.verdict) is not None, context.late_tests)
     return Diagnosis(
         verdict=diagnosis.verdict,
         selected=tuple(map(_describe_selected, diagnosis.selected)),
@@ -95,7 +97,7 @@ def assemble_diagnosis(
         common_scale=_say_scale(diagnosis.scale),
         where=tuple(context.where),
         unexplained=describe_unexplained(diagnosis, error),
-        next_experiment=advise(diagnosis, groups, joint, catalogue, differ),
+        next_experiment=advise(diagnosis, groups, joint, catalogue, test_runs),
         error=error,
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,

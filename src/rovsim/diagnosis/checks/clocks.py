@@ -8,7 +8,7 @@ the thrusters adds to all runs alike.
 """
 
 from itertools import combinations
-from typing import NamedTuple, Sequence
+from typing import Iterable, NamedTuple, Sequence
 
 import numpy as np
 from numpy import ndarray as Array
@@ -70,15 +70,42 @@ def find_clock_difference(
     )
 
 
-def find_lag(base: Model, parts: Sequence[Motion], settings: SimulationSettings) -> RunLag | None:
-    """The lag of one run that may be in several parts; None where nothing tells it.
+def find_shifts(
+    base: Model, like: Iterable[Motion], runs: Iterable[Motion], settings: SimulationSettings
+) -> dict[str, float]:
+    """By how much later runs follow their commands, s, where their clock surely is another one.
+
+    Args:
+        base: gives the geometry of the thrusters.
+        like: runs whose clocks agree.
+        runs: that are compared with them.
+        settings: how runs are filtered, and how commands are held.
+
+    Returns:
+        The time by run id, which `commands_shift_s` takes.
+    """
+    reference = find_lag(base, like, settings)
+    if reference is None:
+        return {}
+    lags = {motion.run.id: find_lag(base, [motion], settings) for motion in runs}
+    return {
+        run: lag.value - reference.value
+        for run, lag in lags.items()
+        if lag and _differ(lag, reference)
+    }
+
+
+def find_lag(base: Model, parts: Iterable[Motion], settings: SimulationSettings) -> RunLag | None:
+    """The lag of one run in several parts, or of runs whose clocks agree; None where nothing tells.
 
     Its standard deviation is that of a jackknife over blocks of time (Efron 1982).
     """
     lags = np.arange(-MAX_LAG, MAX_LAG + 0.5 * LAG_STEP, LAG_STEP)
-    if any(motion.measured is not None for motion in parts):
-        return None
-    squares = [_sum_squares(base, motion, settings, lags) for motion in parts]
+    squares = []
+    for motion in parts:
+        if motion.measured is not None:
+            return None
+        squares.append(_sum_squares(base, motion, settings, lags))
     blocks = np.concatenate(squares, axis=1)  # (axes, blocks, lags)
     count = blocks.shape[1]
     if count < MIN_BLOCKS:
