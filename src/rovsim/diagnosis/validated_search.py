@@ -18,6 +18,7 @@ from rovsim.diagnosis.answer import (
 )
 from rovsim.diagnosis.checks.clocks import find_clock_difference
 from rovsim.diagnosis.checks.feedback_axes import find_feedback_axes, find_feedback_only
+from rovsim.diagnosis.checks.needless_effects import find_needless
 from rovsim.diagnosis.checks.run_differences import (
     RunDifference,
     find_harmful,
@@ -138,15 +139,26 @@ def search_and_validate(problem: DiagnosisProblem) -> ValidatedSearch:
         return search_and_validate(replace(problem, usable=usable.where_no_water_wanders()))
     answer, feedback_only = _judge_feedback(answer, usable)
     varying = find_varying(answer.fit, answer.bank) if answer.complete else set()
-    may_differ = varying or not answer.complete
-    difference = _find_difference(answer, problem) if may_differ else None
-    judged = difference is not None and answer.fit.is_finite
-    reduced = _drop_harmful(answer, usable, holdout) if judged else answer
-    if reduced is not answer:
-        answer, difference = reduced, find_run_difference(reduced.selection) or difference
+    difference = None
+    if varying or not answer.complete:
+        answer, difference = _judge_difference(answer, problem, holdout)
     return ValidatedSearch(
         problem, answer, start, smoothing, holdout, varying, feedback_only, difference
     )
+
+
+def _judge_difference(
+    answer: SettledAnswer, problem: DiagnosisProblem, holdout: HoldoutValidation
+) -> tuple[SettledAnswer, RunDifference | None]:
+    """What runs differ in, and the answer without what makes up for that or does harm by it."""
+    difference, usable = _find_difference(answer, problem), problem.usable
+    if difference is None or not answer.fit.is_finite:
+        return answer, difference
+    answer, difference = _drop_needless(answer, difference, usable, holdout)
+    reduced = _drop_harmful(answer, usable, holdout)
+    if reduced is answer:
+        return answer, difference
+    return reduced, find_run_difference(reduced.selection) or difference
 
 
 def _find_difference(answer: SettledAnswer, problem: DiagnosisProblem) -> RunDifference | None:
@@ -204,6 +216,27 @@ def _unmask(answer: SettledAnswer) -> SettledAnswer:
     gain = whole.two_log_likelihood - answer.fit.two_log_likelihood if whole else 0.0
     structures = find_masked_laws(answer.selection, gain)
     return replace(answer, structures=(*structures, *answer.structures))
+
+
+def _drop_needless(
+    answer: SettledAnswer,
+    difference: RunDifference,
+    usable: UsableRuns,
+    holdout: HoldoutValidation,
+) -> tuple[SettledAnswer, RunDifference]:
+    """The answer without effects that only make up for what differs, and what then differs."""
+    if not difference.explains:
+        return answer, difference
+    penalty = answer.selection.workspace.penalty
+    needless = find_needless(answer.fit, answer.bank, difference, penalty)
+    selection = answer.selection.without_effect(needless) if needless else None
+    if selection is None:
+        return answer, difference
+    reduced = settle(selection, usable, holdout)
+    remaining = find_run_difference(reduced.selection)
+    if remaining is None or remaining.effect_id != difference.effect_id:
+        return answer, difference
+    return _drop_needless(reduced, remaining, usable, holdout)
 
 
 def _drop_harmful(

@@ -9,6 +9,7 @@ feedback_axes     axes on which an autopilot knows more than the cameras, and wh
 by_run            products of derivatives and innovations, run by run
 varying_effects   accepted effects whose values vary from run to run
 run_differences   an effect that has another value in each run
+needless_effects  accepted effects that nothing asks for once runs differ
 clocks            runs whose commands have another clock, found without a model
 wrong_units       values so far from the vehicle file that a unit may be wrong
 noise_floor       the error that a perfect model would have

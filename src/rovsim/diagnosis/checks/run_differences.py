@@ -79,7 +79,7 @@ def find_run_difference(selection: SearchResult) -> RunDifference | None:
     best = max(_list_differing(selection, runs), key=lambda one: one.score, default=None)
     if best is None or best.score < HOPELESS_LR:
         return None
-    linearised = _linearise(fit, best.term, bank)
+    linearised = linearise_term(fit, best.term, bank)
     e, J = (bank.whiten(x, fit.noise) for x in (fit.linearised.e, linearised))
     products = ProductsByRun.of(e, J, bank.runs)
     steps = products.steps
@@ -192,7 +192,7 @@ def _eliminate(products: ProductsByRun, penalty: float) -> list[int]:
     return kept
 
 
-def _linearise(fit: Fit, term: Term, bank: FilterBank) -> list[Array]:
+def linearise_term(fit: Fit, term: Term, bank: FilterBank) -> list[Array]:
     """Derivatives (k, 6, n) of each run to the free parameters of a term, accepted or not."""
     h, linearised = fit.hypothesis, fit.linearised
     if term.id not in {accepted.id for accepted in h.terms}:
