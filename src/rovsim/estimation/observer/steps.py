@@ -50,7 +50,7 @@ def choose_group_seconds(motion: Motion) -> float:
     Runs that are compared need groups of the same length, the shortest. Bins are readings as they
     are.
     """
-    usable = motion.nu_dot[motion.usable]
+    usable = np.nan_to_num(motion.nu_dot[motion.usable])
     if motion.binned or not len(usable):
         return GROUP_SECONDS
     usual = np.quantile(np.abs(usable), USUAL_SHARE, axis=0)
