@@ -181,21 +181,21 @@ def test_ends_of_runs_that_hands_may_have_moved_are_told_with_what_leaves_them_o
 )
 def test_test_runs_that_differ_from_the_train_runs_are_told(content, after, verdict, differ):
     times = after and after / 0.024
-    errors = {"nominal": 0.3, "with_effects": after, "noise_floor": 0.024, "times_floor": times}
+    errors = {"nominal": 0.3, "with_effects": after, "noise_floor": 0.024}
     error = content["diagnosis"].error.model_copy(update=errors)
     nothing = content["diagnosis"].unexplained.model_copy(update={"significant": False})
-    given = {"verdict": verdict, "error": error, "unexplained": nothing}
+    given = {"verdict": verdict, "error": error, "unexplained": nothing, "times_floor": times}
     found = content["diagnosis"].model_copy(update=given)
     said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     assert ("The error is 7.1 times that" in said) == differ
 
 
 def test_an_error_at_the_start_of_logs_is_no_difference(content):
-    errors = {"nominal": 0.3, "with_effects": 0.05, "noise_floor": 0.024, "times_floor": 1.02}
+    errors = {"nominal": 0.3, "with_effects": 0.05, "noise_floor": 0.024}
     error = content["diagnosis"].error.model_copy(update=errors)
     nothing = content["diagnosis"].unexplained.model_copy(update={"significant": False})
-    given = {"verdict": "missing_effects", "error": error, "unexplained": nothing}
-    found = content["diagnosis"].model_copy(update=given)
+    given = {"verdict": "missing_effects", "error": error, "times_floor": 1.02}
+    found = content["diagnosis"].model_copy(update={**given, "unexplained": nothing})
     said = " ".join(terminal.tell_diagnosis(found, built_in()).split())
     assert "differ from them" not in said
     assert "nobody knows what the thrusters were told before" in said

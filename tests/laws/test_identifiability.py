@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from rovsim.core.axes import AXES
-from rovsim.diagnosis.advice import (
-    ADVICE_ON_DOUBT,
+from rovsim.diagnosis.advice import ADVICE_ON_DOUBT, LEAVE_OUT_ENDS, advise
+from rovsim.diagnosis.checks.run_differences import RunDifference, RunValues
+from rovsim.diagnosis.differing_runs import (
     COMPARE_TEST_RUNS,
-    LEAVE_OUT_ENDS,
+    NOTHING_WRONG,
     HeldOutRuns,
-    advise,
+    advise_on_difference,
 )
 from rovsim.diagnosis.selection.accepted_effects import AcceptedEffect, name_drift
 from rovsim.diagnosis.selection.beside_law import (
@@ -346,3 +347,21 @@ def test_what_wanders_may_be_what_has_no_name():
     drift = DriftFit(WalkRate(0.01, std=0.001, lr_statistic=120.0), lr_margin=100.0)
     assert name_drift(drift, leaves_physics=False).probability == pytest.approx(1.0)
     assert name_drift(drift, leaves_physics=True).probability is None
+
+
+def gains(**by_run):
+    """A difference in the gains of thrusters."""
+    effect = built_in()["thruster_gain"]
+    return RunDifference(
+        {run: RunValues(Term(effect(**own), tuple(own)), {}) for run, own in by_run.items()}
+    )
+
+
+def test_a_thruster_that_is_weak_in_one_run_is_named():
+    found = gains(a={"t6": 1.02}, b={"t6": 0.61}, c={"t6": 1.01})
+    named = ["", "", "", "", "", "stern"]
+    assert "stern (t6) in b (0.61 of its thrust):" in advise_on_difference(
+        found, NOTHING_WRONG, named
+    )
+    battery = gains(a={"all": 1.0}, b={"all": 0.8})
+    assert "the battery" in advise_on_difference(battery, NOTHING_WRONG, named)

@@ -13,6 +13,7 @@ answer              the accepted effects, validated, at their final values, and 
 validated_search    observes, searches and validates, again where an assumption was wrong
 selected_effects    which accepted effects are selected, and which in doubt
 train_diagnosis     diagnoses the train runs: all that was found on them
+differing_runs      what to do where runs differ
 advice              what to record next
 unexplained         what no effect explains, as the document has it
 diagnosis_document  the same as `diagnosis.json`

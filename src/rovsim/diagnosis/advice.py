@@ -1,13 +1,17 @@
 """Advise what to record next, so that the next diagnosis is surer."""
 
-from typing import Mapping, NamedTuple, Sequence
+from typing import Sequence
 
-from rovsim.diagnosis.checks.run_differences import RunDifference
 from rovsim.diagnosis.checks.wrong_units import list_absurd
+from rovsim.diagnosis.differing_runs import (
+    NOTHING_WRONG,
+    HeldOutRuns,
+    advise_on_difference,
+    advise_on_tests,
+)
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
 from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Effect
-from rovsim.dynamics.effects.clocks import InputDelay
 from rovsim.dynamics.parameter_labels import label_parameters
 from rovsim.results.fitted import Doubt
 
@@ -43,22 +47,6 @@ CHECK_UNITS = (
     "in the recordings."
 )
 
-ASK_WHAT_CHANGED = (
-    "Find out what was changed between the runs, as they differ in {}: the battery, ballast, "
-    "markers, the tether. Then diagnose runs that are alike."
-)
-
-ALIGN_CLOCKS = (
-    "The logs of commands have other clocks: add {} in campaign.yaml, and diagnose again. By so "
-    "much later than in {} the motion follows its commands."
-)
-TRAIN_RUNS = "the train runs"
-
-COMPARE_TEST_RUNS = (
-    "Find out what was changed for the test runs: the load, the trim, the battery, the tether, the "
-    "clock of the log, or holes in it. Or write `split: train` for some of them and diagnose again."
-)
-
 LEAVE_OUT_ENDS = (
     "Look at the ends of runs in `disturbed_ends`: leave out with `use` where the vehicle was "
     "moved by hand, lifted or aground, and diagnose again."
@@ -80,22 +68,6 @@ ADVICE_ON_DOUBT: dict[Doubt, str] = {
     "depth_at_rest": "Let it float without commands for most of a run: the median of a run's "
     "depths is taken for its depth at rest, and a constant force in heave shifts that.",
 }
-
-
-class HeldOutRuns(NamedTuple):
-    """What is wrong with the test runs.
-
-    Attributes:
-        differ: whether the error on them is far above the noise of the train runs.
-        late: by run id, by how many s its log is earlier than those of the train runs, or than that
-            of the earliest one where these differ.
-    """
-
-    differ: bool = False
-    late: Mapping[str, float] = {}
-
-
-NOTHING_WRONG = HeldOutRuns()
 
 
 def advise(
@@ -136,8 +108,7 @@ def advise(
         parts.append(FIX_SCALE)
     parts += _advise_excitation(diagnosis)
     if test_runs.differ:
-        late = _align(test_runs.late, TRAIN_RUNS) if test_runs.late else COMPARE_TEST_RUNS
-        parts.insert(0, late)
+        parts.insert(0, advise_on_tests(test_runs))
     parts += _advise_on_rest(diagnosis, test_runs)
     return " ".join(parts) or _confirm(diagnosis)
 
@@ -160,25 +131,14 @@ def _doubt_units(diagnosis: TrainDiagnosis) -> list[str]:
     return [CHECK_UNITS.format(" and ".join(absurd))] if absurd else []
 
 
-def _advise_on_difference(difference: RunDifference, test_runs: HeldOutRuns) -> str:
-    """Say what to do where an effect has another value in each run."""
-    if difference.effect_id != InputDelay.id:
-        return ASK_WHAT_CHANGED.format(difference.effect_id)
-    lags = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
-    (first, lag), *others = sorted(lags.items(), key=lambda x: x[1])
-    return _align({**{run: x - lag for run, x in others}, **test_runs.late}, first)
-
-
-def _align(late: Mapping[str, float], reference: str) -> str:
-    """Say how to shift logs, by run id, that are so many s earlier than others."""
-    shifts = (f"`commands_shift_s: {x:.3f}` to {run}" for run, x in late.items())
-    return ALIGN_CLOCKS.format(", ".join(shifts), reference)
-
-
 def _advise_on_rest(diagnosis: TrainDiagnosis, test_runs: HeldOutRuns) -> list[str]:
     """Say what to do about what is left unexplained."""
     if diagnosis.difference:
-        return [_advise_on_difference(diagnosis.difference, test_runs)]
+        return [
+            advise_on_difference(
+                diagnosis.difference, test_runs, diagnosis.base.vehicle.thruster_names
+            )
+        ]
     if diagnosis.disturbed_ends:
         return [LEAVE_OUT_ENDS]
     if not diagnosis.structures:

@@ -7,7 +7,8 @@ import numpy as np
 
 from rovsim.core.odds import share_odds
 from rovsim.core.rounding import rounded, rounded_or_none
-from rovsim.diagnosis.advice import HeldOutRuns, advise
+from rovsim.diagnosis.advice import advise
+from rovsim.diagnosis.differing_runs import HeldOutRuns
 from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.diagnosis.selection.accepted_effects import find_std
 from rovsim.diagnosis.selection.ranking import OrderedEffect, RankedEffect
@@ -28,6 +29,7 @@ from rovsim.results.diagnosis import (
     RivalEffect,
     ScaleOfForces,
     Standstill,
+    times_above_floor,
 )
 from rovsim.results.error_conditions import ConditionShare
 from rovsim.results.fitted import (
@@ -57,8 +59,8 @@ class CampaignContext:
             would move.
         diverges_in: ids of the test runs in which the base diverges.
         unlogged: by train run, how many s are not used as nobody knows what was commanded.
-        times_floor: see `DiagnosisErrors`.
-        late_tests: see `advice.HeldOutRuns`.
+        times_floor: see `Diagnosis`.
+        late_tests: see `HeldOutRuns`.
     """
 
     recordings: Mapping[str, str]
@@ -86,8 +88,9 @@ def assemble_diagnosis(
     """
     groups = group_indistinguishable(diagnosis.rivals)
     joint = _list_joint(diagnosis)
-    error = _summarise_errors(context, len(diagnosis.selected))
-    test_runs = HeldOutRuns(error.surely_above(diagnosis.verdict) is not None, context.late_tests)
+    error = _summarise_errors(context.ladder, len(diagnosis.selected))
+    times = times_above_floor(diagnosis.verdict, context.times_floor)
+    test_runs = HeldOutRuns(times is not None, context.late_tests)
     return Diagnosis(
         verdict=diagnosis.verdict,
         selected=tuple(map(_describe_selected, diagnosis.selected)),
@@ -96,9 +99,10 @@ def assemble_diagnosis(
         known_together=tuple(map(tuple, joint)),
         common_scale=_say_scale(diagnosis.scale),
         where=tuple(context.where),
-        unexplained=describe_unexplained(diagnosis, error),
+        unexplained=describe_unexplained(diagnosis, times),
         next_experiment=advise(diagnosis, groups, joint, catalogue, test_runs),
         error=error,
+        times_floor=rounded_or_none(context.times_floor),
         not_excited=diagnosis.usable.still,
         not_measured=diagnosis.usable.unmeasured,
         not_commanded=diagnosis.not_commanded,
@@ -145,20 +149,18 @@ def _say_scale(scale: CommonScale | None) -> ScaleOfForces | None:
     return ScaleOfForces(std=rounded_or_none(scale.std), parameters=scale.parameters)
 
 
-def _summarise_errors(context: CampaignContext, selected: int) -> DiagnosisErrors:
+def _summarise_errors(ladder: Ladder, selected: int) -> DiagnosisErrors:
     """Normalised errors in windows of 2 s (docs/signals.md); None where no test run can be scored.
 
     Args:
-        context: with the ladder of the test runs.
+        ladder: of the test runs.
         selected: number of selected effects.
     """
-    ladder = context.ladder
     errors = [rounded_or_none(step.windows_2s) for step in ladder.models]
     return DiagnosisErrors(
         nominal=errors[0],
         with_effects=errors[selected],
         noise_floor=rounded_or_none(ladder.noise_floor),
-        times_floor=rounded_or_none(context.times_floor),
     )
 
 

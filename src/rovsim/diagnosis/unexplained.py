@@ -8,7 +8,7 @@ from rovsim.diagnosis.equations.describe import describe_force, describe_law
 from rovsim.diagnosis.fitted_values import describe_values
 from rovsim.diagnosis.structure.residual import Structure
 from rovsim.diagnosis.train_diagnosis import TrainDiagnosis
-from rovsim.results.diagnosis import DiagnosisErrors, Unexplained
+from rovsim.results.diagnosis import Unexplained
 from rovsim.results.fitted import FittedEffect
 
 REFUSED_EFFECTS_HINT = (
@@ -23,18 +23,19 @@ TEST_RUNS_DIFFER_HINT = (
 )
 
 
-def describe_unexplained(diagnosis: TrainDiagnosis, error: DiagnosisErrors) -> Unexplained:
+def describe_unexplained(diagnosis: TrainDiagnosis, times_above: float | None) -> Unexplained:
     """Report what no effect of the catalogue explains, and a law for it, where one was found.
 
     Args:
         diagnosis: of the train runs.
-        error: on the test runs.
+        times_above: how many times the noise floor the error is, where test runs surely differ.
     """
     if not diagnosis.enough:
         return Unexplained(fraction=None, significant=False, hint=TOO_LITTLE_DATA_HINT)
     if diagnosis.verdict != "unexplained":
-        times = error.surely_above(diagnosis.verdict)
-        hint = TEST_RUNS_DIFFER_HINT.format(rounded(times, 2)) if times else NOISE_HINT
+        hint = NOISE_HINT
+        if times_above:
+            hint = TEST_RUNS_DIFFER_HINT.format(rounded(times_above, 2))
         return Unexplained(fraction=0.0, significant=False, hint=hint)
     share = diagnosis.structures[0].share if diagnosis.structures else None
     doubted = (s.term.id for s in diagnosis.selected if s.doubt == "stand_in")

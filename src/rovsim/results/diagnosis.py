@@ -124,33 +124,25 @@ MIN_TIMES_FLOOR = 1.5
 
 
 class DiagnosisErrors(Section):
-    """`windows_2s` on the test runs: of the base, with the selected effects, of a perfect model.
-
-    `times_floor`: how many times that of a perfect model the error with effects is in windows that
-    begin 1 s after the log of commands or later. Of what thrusters were told before, nobody knows.
-    """
+    """`windows_2s` on the test runs: of the base, with the selected effects, of a perfect model."""
 
     nominal: float | None
     with_effects: float | None
     noise_floor: float | None
-    times_floor: float | None = None
 
-    def surely_above(self, verdict: Verdict) -> float | None:
-        """How many times the noise floor the error with effects is, where test runs surely differ.
 
-        None where it is near the floor, or where the train runs leave more than noise, too.
-        """
-        nothing_left = verdict in ("adequate", "missing_effects")
-        times = self.times_floor if nothing_left and self.noise_floor else None
-        return times if times and times > MIN_TIMES_FLOOR else None
+def times_above_floor(verdict: Verdict, times_floor: float | None) -> float | None:
+    """How many times the noise floor the error with effects is, where test runs surely differ.
 
-    @property
-    def above_at_start(self) -> bool:
-        """Whether only windows that begin with the log have an error far above the noise floor."""
-        if not (self.with_effects and self.noise_floor and self.times_floor):
-            return False
-        above = self.with_effects > MIN_TIMES_FLOOR * self.noise_floor
-        return above and self.times_floor <= MIN_TIMES_FLOOR
+    None where it is near the floor, or where the train runs leave more than noise, too.
+
+    Args:
+        verdict: on the train runs.
+        times_floor: see `Diagnosis`.
+    """
+    nothing_left = verdict in ("adequate", "missing_effects")
+    above = nothing_left and times_floor is not None and times_floor > MIN_TIMES_FLOOR
+    return times_floor if above else None
 
 
 class RivalEffect(Section):
@@ -231,6 +223,8 @@ class Diagnosis(Result):
     were not used, by run, as nobody knows what was commanded; `thrusters` their names in the
     vehicle file: the parameter `t1` of an effect is of the first. `recordings` that it is of: the
     start of each file's SHA-256, by its path from the campaign; empty in files of earlier versions.
+    `times_floor`: how many times that of a perfect model the error with effects is in windows that
+    begin 1 s after the log of commands or later: of what thrusters were told before, nobody knows.
     """
 
     noun: ClassVar[str] = "diagnosis"
@@ -247,6 +241,7 @@ class Diagnosis(Result):
     unexplained: Unexplained
     next_experiment: str
     error: DiagnosisErrors
+    times_floor: float | None = None
     not_excited: tuple[str, ...] = ()
     not_measured: tuple[str, ...] = ()
     not_commanded: tuple[str, ...] = ()
@@ -264,6 +259,14 @@ class Diagnosis(Result):
     recordings: dict[str, str] = Field(default_factory=dict)
     base: dict[str, JsonValue]
     ladder: Ladder
+
+    @property
+    def above_at_start(self) -> bool:
+        """Whether only windows that begin with the log have an error far above the noise floor."""
+        reached, floor = self.error.with_effects, self.error.noise_floor
+        if not (reached and floor and self.times_floor):
+            return False
+        return self.times_floor <= MIN_TIMES_FLOOR < reached / floor
 
     @property
     def fitted(self) -> dict[str, FittedEffect]:

@@ -22,7 +22,7 @@ from rovsim.reporting.words.sureness import tell_sureness, unsure_sentences
 from rovsim.reporting.words.symbols import Meaning, explain_symbols
 from rovsim.reporting.words.unexplained import leaves_unexplained, unexplained_sentences
 from rovsim.results.base import or_nan
-from rovsim.results.diagnosis import Diagnosis
+from rovsim.results.diagnosis import Diagnosis, times_above_floor
 from rovsim.results.fitted import FittedEffect, FittedValue
 
 VERDICT_SENTENCES = {
@@ -213,13 +213,13 @@ def error_sentence(diagnosis: Diagnosis) -> str:
 
 def _compare_with_floor(diagnosis: Diagnosis) -> str:
     """Say what an error above the noise floor means; nothing where it is near."""
-    if times := diagnosis.error.surely_above(diagnosis.verdict):
+    if times := times_above_floor(diagnosis.verdict, diagnosis.times_floor):
         return (
             f" The error is {significant(times, 2)} times that, also in windows that begin a "
             "second after the log or later, although nothing but noise is left in the train runs: "
             "the test runs differ from them."
         )
-    if diagnosis.error.above_at_start:
+    if diagnosis.above_at_start:
         return (
             " What is above that is in windows that begin within a second of the log: nobody knows "
             "what the thrusters were told before."
