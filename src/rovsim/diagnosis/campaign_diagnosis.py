@@ -26,7 +26,7 @@ from rovsim.evaluation.error_metrics import subtract
 from rovsim.evaluation.ladder import StepScore
 from rovsim.measurement.runs import Runs
 from rovsim.measurement.signals.motion import Motion
-from rovsim.results.diagnosis import MIN_TIMES_FLOOR, Diagnosis, Standstill, law_beside
+from rovsim.results.diagnosis import Diagnosis, Standstill, law_beside, times_above_floor
 from rovsim.results.error_conditions import ErrorConditions
 from rovsim.results.ladder import Ladder, LadderStep
 from rovsim.simulation.replay import replay
@@ -139,9 +139,9 @@ def _compare_clocks(
     """By how much logs of test runs are early, where clocks or test runs differ."""
     difference, like = diagnosis.difference, runs.of("train")
     if difference and difference.effect_id == InputDelay.id:
-        delays = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
+        delays = difference.values("delay")
         like = [min(delays, key=delays.__getitem__)]
-    elif not (floor and floor.times and floor.times > MIN_TIMES_FLOOR):
+    elif times_above_floor(diagnosis.verdict, floor.times if floor else None) is None:
         return {}
     own, tests = (map(runs.motions.__getitem__, names) for names in (like, runs.of("test")))
     return find_shifts(diagnosis.base, own, tests, settings)

@@ -60,8 +60,7 @@ def advise_on_difference(
         return LOOK_AT_THRUSTERS.format(", and at ".join(weak))
     if difference.effect_id != InputDelay.id:
         return ASK_WHAT_CHANGED.format(difference.effect_id)
-    lags = {run: one.term.effect["delay"] for run, one in difference.by_run.items()}
-    (first, lag), *others = sorted(lags.items(), key=lambda x: x[1])
+    (first, lag), *others = sorted(difference.values("delay").items(), key=lambda x: x[1])
     return _align({**{run: x - lag for run, x in others}, **test_runs.late}, first)
 
 
@@ -72,7 +71,7 @@ def _list_weak_thrusters(difference: RunDifference, thrusters: Sequence[str]) ->
         return []
     weak = []
     for gain in gains:
-        by_run = {run: one.term.effect[gain] for run, one in difference.by_run.items()}
+        by_run = difference.values(gain)
         usual, label = median(by_run.values()), label_parameter(ThrusterGain.id, gain, thrusters)
         weak += [
             f"{label} in {run} ({value:.2f} of its thrust)"

@@ -48,13 +48,12 @@ def find_needless(
     e = whiten(fit.linearised.e)
     left = _explain(e, [by_run, *(rows for _, rows in common.values())])
     spread = np.maximum(np.std(left, axis=1, keepdims=True), MIN_SPREAD)
-    worth = {}
+    least, worth = np.sum(np.square(left / spread)), {}
     for name, (k, _) in common.items():
         without = whiten(bank.innovations(accepted.without(k).model))
         others = [rows for other, (_, rows) in common.items() if other != name]
-        rest = _explain(without / spread, [by_run / spread, *(x / spread for x in others)])
-        gain = np.sum(np.square(rest)) - np.sum(np.square(left / spread))
-        worth[name] = gain - penalty * accepted.terms[k].choices
+        rest = _explain(without / spread, [x / spread for x in (by_run, *others)])
+        worth[name] = np.sum(np.square(rest)) - least - penalty * accepted.terms[k].choices
     weakest = min(worth, key=worth.__getitem__, default=None)
     return weakest if weakest and worth[weakest] < 0.0 else None
 

@@ -70,8 +70,8 @@ def simulate_noise_floor(
     for run in runs:
         if run.motion.measured is not None:
             return None
-        errors, of_run = perfect.errors(run), Windows(run)
-        after = _begin_late(of_run)
+        of_run = Windows(run)
+        errors, after = perfect.errors(of_run), _begin_late(of_run)
         drawn += _Squares.of(errors)
         late += _Squares.of(errors[:, after])
         reached += _Squares.of(of_run.compare([model])[:, after])
@@ -129,9 +129,9 @@ class _PerfectModel:
     signals: SignalSettings
     random: np.random.Generator
 
-    def errors(self, run: ObservedRun) -> Array:
+    def errors(self, windows: Windows) -> Array:
         """Velocity errors (draws, n, 6) in the windows of one run, m/s and rad/s."""
-        windows, measured_state = Windows(run), run.motion.state
+        run, measured_state = windows.run, windows.run.motion.state
         draws = self.noise.draws(run, self.random)
         wrenches = self._draw_wrench(draws, run)
         noisy = draws.resample_measurement_noise(

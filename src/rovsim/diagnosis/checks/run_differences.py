@@ -55,6 +55,10 @@ class RunDifference:
         """Id of the effect."""
         return next(iter(self.by_run.values())).term.id
 
+    def values(self, parameter: str) -> dict[str, float]:
+        """Values of one of its parameters, in its unit, by the run's id."""
+        return {run: one.term.effect[parameter] for run, one in self.by_run.items()}
+
 
 class _Differing(NamedTuple):
     """A term with those of its parameters free that differ, and the score of that."""

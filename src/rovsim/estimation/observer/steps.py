@@ -58,9 +58,7 @@ def choose_group_seconds(motion: Motion) -> float:
     return float(np.clip(lengths.min(), LEAST_GROUP_SECONDS, GROUP_SECONDS))
 
 
-def divide_run(
-    stage: Stage, motion: Motion, grid: StepGrid, group_seconds: float = GROUP_SECONDS
-) -> Steps:
+def divide_run(stage: Stage, motion: Motion, grid: StepGrid, group_seconds: float) -> Steps:
     """The steps of a run.
 
     Args:

@@ -104,7 +104,7 @@ def prepare_test(
     settings: ReplaySettings,
     catalogue: Catalogue,
     free: Array,
-    group_seconds: float = GROUP_SECONDS,
+    group_seconds: float,
 ) -> Iterator[ObservedRun]:
     """Test runs as the observer sees them, one after the other; see `prepare_run`."""
     for name in runs.of("test"):
