@@ -1,7 +1,7 @@
 """Is an effect needed beside what other commands may have done than were logged?
 
-The model pushes late at each lost line, so it is late on the whole by the share of lost lines times
-their period. A hundredth of lines at 10 Hz is a delay of -1 ms, which precise runs are sure of.
+Where lost lines cannot be put back (`lost_lines`), the model pushes late, so it is late on the
+whole: by 1 ms where a log at 10 Hz lost a hundredth of its lines, which precise runs are sure of.
 """
 
 from dataclasses import replace

@@ -1,8 +1,8 @@
 """When a command log does not say which command acted: no physics shows there.
 
-A command holds until the next line. Where a line was lost, the thrusters already follow another
-command, so the model pushes late. Where stamps of a regular log jitter, it pushes early or late by
-as much.
+A command holds until the next line. Where lines were lost, the thrusters already follow other
+commands: the model pushes late, or as the lines beside them say (`lost_lines`). Where stamps of a
+regular log jitter, it pushes early or late by as much.
 """
 
 from dataclasses import dataclass

@@ -2,6 +2,7 @@
 
 steps             when a run is read, and the integration steps from reading to reading
 observed_run      a run as the observer sees it: readings before the filter
+lost_lines        commands that a log lost
 train_runs        prepares runs of a campaign; of long ones, the parts that tell most
 usable_runs       the runs with a usable stretch, and whether they are enough
 divergence        runs in which a model diverges although it is corrected

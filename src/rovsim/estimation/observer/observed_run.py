@@ -13,6 +13,7 @@ from rovsim.dynamics.catalogue import Catalogue
 from rovsim.dynamics.effects.base import Wrench
 from rovsim.dynamics.mocap_view import NO_CHANGE, MocapView
 from rovsim.estimation.kernels.axis import BIN_MEAN, POSE, SUM
+from rovsim.estimation.observer.lost_lines import fill_lost_lines
 from rovsim.estimation.observer.steps import GROUP_SECONDS, Steps, divide_run
 from rovsim.measurement.signals.chain import Stage
 from rovsim.measurement.signals.clock import time_step
@@ -40,8 +41,8 @@ class ObservedRun(Steps):
 
     Attributes:
         motion: the run, filtered and differentiated.
-        drives: of models over the steps of the observer.
-        replay_drives: of models over the steps of a replay.
+        drives: of models over the steps of the observer, with the lines that the log lost.
+        replay_drives: of models over the steps of a replay: commands hold until the next line.
         wrenches: the wrench effects that models of the same task may have.
         free_axes: (6,) in which the vehicle can move at all.
         current_may_drift: whether a wandering current may be looked for.
@@ -239,10 +240,12 @@ def prepare_run(
     grid = StepGrid.over(motion, settings.step)
     steps = divide_run(stage, motion, grid, group_seconds)
     fine_grid = np.linspace(steps.edges[0], steps.edges[-1], int(steps.substeps.sum()) + 1)
-    drives = Drives(motion.commands, fine_grid, settings.commands, steps.substeps, kept)
+    commands = motion.commands
+    sent = commands if motion.binned else fill_lost_lines(commands)
+    drives = Drives(sent, fine_grid, settings.commands, steps.substeps, kept)
     replay_drives = drives
     if not motion.binned:
-        replay_drives = Drives(motion.commands, grid.edges, settings.commands, kept=kept)
+        replay_drives = Drives(commands, grid.edges, settings.commands, kept=kept)
     return ObservedRun(
         **vars(steps),
         motion=motion,
