@@ -262,8 +262,8 @@ def _make_starts(
 
     Where the cameras smooth, the delay of the motion gives the filter's cutoff more precisely than
     the noise does. So the search starts from that cutoff, before an effect can take up the delay.
-    But where the two cutoffs are far apart, another missing effect may look like a delay; then the
-    search starts from the cutoff that the noise gives, and from the other one only if that fails.
+    But another missing effect may look like a delay. If that search fails, one starts from the
+    cutoff that the noise gives; where the two cutoffs are far apart, that one comes first.
     """
 
     def start_with(smoothing: Smoothing | None) -> SearchStart:
@@ -277,10 +277,13 @@ def _make_starts(
         return
     no_effects = SearchResult(by_noise.workspace, by_noise.base_fit, ())
     _, by_delay = absorb_delay(no_effects, problem.base, smoothing)
-    if by_delay is smoothing or not by_delay.is_near(smoothing):
+    near = by_delay.is_near(smoothing)
+    if not near or by_delay is smoothing:
         yield by_noise
     if by_delay is not smoothing:
         yield start_with(by_delay)
+        if near:
+            yield by_noise
 
 
 def _observe(
