@@ -17,6 +17,7 @@ from rovsim.diagnosis.structure.response import respond
 from rovsim.dynamics.model import Model
 from rovsim.estimation.observer.kalman import AxisFilter
 from rovsim.estimation.observer.least_squares import gram, solve
+from rovsim.estimation.observer.lost_lines import MAX_JITTER_SHARE
 from rovsim.estimation.observer.observed_run import ObservedRun
 
 NEARBY = 3  # lines before and after a lost one, which may have been like any of them
@@ -25,7 +26,6 @@ SPIN_UP_SECONDS = 0.3  # s within which propellers and motors follow a command
 # changes.
 MAX_SHARE = 0.05
 MIN_JITTER_SECONDS = 5e-4  # stamps are rounded to milliseconds
-MAX_JITTER_SHARE = 0.2  # of the usual step: a log whose steps vary by more is not regular
 JITTER_STDS = 2.0  # standard deviations of a stamp, to either side
 # Standard deviations: removing a smaller push would cost more than it does harm.
 MIN_REMOVED_STDS = 1.0
