@@ -66,6 +66,10 @@ class Commands:
         """Values (..., c) that hold at instants (...), s; the log must have lines."""
         return np.asarray(self.value[latest(self.time, at)])
 
+    def linear_at(self, at: Array) -> Array:
+        """Values (n, c) at instants (n,), s, straight from line to line (m > 0)."""
+        return np.stack([np.interp(at, self.time, column) for column in self.value.T], axis=1)
+
     def within(self, begin: float, end: float) -> "Commands":
         """The lines between two times, s, with the one held at `begin` and the one after `end`."""
         first, last = np.searchsorted(self.time, [begin, end], side="right")

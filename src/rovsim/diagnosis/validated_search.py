@@ -277,13 +277,14 @@ def _make_starts(
         return
     no_effects = SearchResult(by_noise.workspace, by_noise.base_fit, ())
     _, by_delay = absorb_delay(no_effects, problem.base, smoothing)
-    near = by_delay.is_near(smoothing)
-    if not near or by_delay is smoothing:
+    if by_delay is smoothing:
         yield by_noise
-    if by_delay is not smoothing:
+    elif by_delay.is_near(smoothing):
         yield start_with(by_delay)
-        if near:
-            yield by_noise
+        yield by_noise
+    else:
+        yield by_noise
+        yield start_with(by_delay)
 
 
 def _observe(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import ndarray as Array
 
 from rovsim.core.errors import BadInput
-from rovsim.core.run import Between, CommandKind, Commands, latest
+from rovsim.core.run import Between, CommandKind, Commands
 from rovsim.dynamics.effects.base import (
     Autopilot,
     CommandTiming,
@@ -225,7 +225,7 @@ class ThrustPath:
         steady = between == "held" and self._is_steady(lines)  # evaluate lines, not pieces
         cut = (cuts or StepCuts()).at(lines.time, edges, steady)
         if not steady:
-            value = _between(lines.time, lines.value, cut.middle, between)
+            value = _between(lines, cut.middle, between)
             lines = replace(lines, time=cut.middle, value=value)
         return self.at(lines, start, duration).each(cut.average)
 
@@ -271,13 +271,11 @@ class ThrustPath:
         return len(lines.time) > 0 and not timed
 
 
-def _between(time: Array, value: Array, at: Array, between: Between) -> Array:
-    """Values (m, c) logged at `time`, at other instants: held or linear; zero if m = 0."""
-    if not len(time):
-        return np.zeros((len(at), value.shape[1]))
-    if between == "held":
-        return value[latest(time, at)]
-    return np.stack([np.interp(at, time, column) for column in value.T], axis=1)
+def _between(lines: Commands, at: Array, between: Between) -> Array:
+    """Values (n, c) of the lines at instants (n,): held or linear; zero if there are no lines."""
+    if not len(lines.time):
+        return np.zeros((len(at), lines.value.shape[1]))
+    return lines.held_at(at) if between == "held" else lines.linear_at(at)
 
 
 def _logged(lines: Commands, name: str) -> Array:

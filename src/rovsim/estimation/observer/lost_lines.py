@@ -35,16 +35,15 @@ def fill_lost_lines(commands: Commands) -> Commands:
     regular = robust_std(steps - usual) < MAX_JITTER_SHARE * usual
     if not (regular and 0 < lost[gaps].sum() <= MAX_LOST_SHARE * len(time)):
         return commands
-    missing = np.concatenate([_between(time[k], time[k + 1], lost[k]) for k in gaps])
-    values = np.stack([np.interp(missing, time, column) for column in value.T], axis=1)
+    missing = np.concatenate([_divide(time[k], time[k + 1], lost[k]) for k in gaps])
     place = np.searchsorted(time, missing)
     return replace(
         commands,
         time=np.insert(time, place, missing),
-        value=np.insert(value, place, values, axis=0),
+        value=np.insert(value, place, commands.linear_at(missing), axis=0),
     )
 
 
-def _between(begin: float, end: float, count: int) -> Array:
+def _divide(begin: float, end: float, count: int) -> Array:
     """Instants (count,) that divide the time from `begin` to `end` evenly."""
     return np.linspace(begin, end, count + 2)[1:-1]
